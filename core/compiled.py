@@ -1,0 +1,50 @@
+"""The one way in which functions are compiled, and two machine instructions that the compiler does not offer.
+
+Compiled code is kept on disk beside the source, so only the first process after an installation compiles.
+Floating-point semantics stay strict (no reassociation, no contraction): the error bounds rest on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
+    """Compile a function to machine code, on import for given signatures, otherwise at the first call."""
+
+    def compile_it(function: F) -> F:
+        chosen = {"cache": True, "error_model": "numpy", **options}
+        listed = [list(signatures)] if signatures else []
+        return cast(F, numba.njit(*listed, **chosen)(function))
+
+    return compile_it
+
+
+@intrinsic
+def fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
+    """Return a*b + c rounded once."""
+    signature = types.float64(types.float64, types.float64, types.float64)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.fma(*arguments)
+
+    return signature, generate
+
+
+@intrinsic
+def double_from_bits(typing_context: Any, pattern: Any) -> Any:
+    """Return the double whose bit pattern is the given 64-bit integer."""
+    signature = types.float64(types.int64)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], ir.DoubleType())
+
+    return signature, generate

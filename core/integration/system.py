@@ -1,0 +1,85 @@
+"""What can be solved: a system with an initial state at t = 0, an equation of motion, and perhaps a closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numba import types
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+VECTOR_FIELD = types.void(types.float64, types.float64[::1], types.float64[::1], types.float64[::1])
+"""Signature of a compiled equation of motion: (time, state, parameters, derivative to be filled in)."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """The smallest model that suffices for a question, and why it does.
+
+    Attributes
+    ----------
+    name : str
+        For example ``"torque-free rigid body"``.
+    regime : str
+        The branch of the solution that applies, for example ``"rotation about the axis of largest moment"``.
+    why : str
+        The facts of the question that selected it.
+    degrees_of_freedom : int
+        Of the motion that is computed, not of the body.
+    """
+
+    name: str
+    regime: str
+    why: str
+    degrees_of_freedom: int
+
+
+class ClosedForm(Protocol):
+    """An exact solution that can be evaluated at any time at the same cost."""
+
+    @property
+    def model(self) -> Model:
+        """The model, with the regime that holds."""
+
+    @property
+    def period(self) -> float | None:
+        """Period of the state, or None when it has none (s)."""
+
+    def sample(self, times: Floats) -> Floats:
+        """Return the states, shape (n, k), at `times`, shape (n,), in any order."""
+
+    def error(self, times: Floats) -> float:
+        """Return a bound of the numerical error of `sample`, relative to the largest norm, inputs taken as exact."""
+
+    def inherited(self, times: Floats, uncertainty: float) -> float:
+        """Return how far the states may move, relative to the largest norm, if every input is known to `uncertainty`."""
+
+
+class System(Protocol):
+    """A motion to be computed."""
+
+    @property
+    def initial_state(self) -> Floats:
+        """State at t = 0, shape (k,)."""
+
+    @property
+    def parameters(self) -> Floats:
+        """What the equation of motion is given beside the state."""
+
+    @property
+    def equation(self) -> Any:
+        """Compiled equation of motion, of signature `VECTOR_FIELD`."""
+
+    @property
+    def model(self) -> Model:
+        """The model as an integrator sees it."""
+
+    def closed_form(self) -> ClosedForm | None:
+        """Return the exact solution, or None where there is none."""
+
+    def invariants(self, states: Floats) -> Mapping[str, Floats]:
+        """Return the conserved quantities, by name, each of shape (n,), for states of shape (n, k)."""

@@ -1,0 +1,77 @@
+"""What a solved motion is: samples, the model that gave them, how right they are and what they cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from core.integration.system import Floats, Model
+
+How = Literal["closed form", "measured against closed form", "finer run"]
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """How right an answer is; every figure is relative to the largest norm of the motion.
+
+    Attributes
+    ----------
+    requested : float
+        Largest error of any sample that the client tolerates.
+    error : float or None
+        Largest numerical error of any sample, inputs taken as exact; never smaller than the true one.
+        None only where nothing is known, which `how` cannot then claim.
+    final_error : float or None
+        The same at the last of the times.
+    how : str
+        What the figure rests on.
+    inherited : float or None
+        What half an ulp in every input (or the stated input uncertainty) would move.
+    drifts : mapping of str to float
+        Largest relative change of each conserved quantity. A drift is not an error: it can be 1e-15 while the phase
+        is wrong altogether.
+    """
+
+    requested: float
+    error: float
+    how: How
+    final_error: float | None = None
+    inherited: float | None = None
+    drifts: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What an answer cost, counted and therefore the same on every machine."""
+
+    samples: int
+    evaluations: int = 0
+    steps: int = 0
+    rejected_steps: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Samples of a motion.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        In the order that was asked for (s).
+    state : ndarray, shape (n, k)
+        One row per time.
+    method : str
+        Kind of the method that made it.
+    ended : str
+        ``"horizon"``, or the event that ended the motion before it.
+    """
+
+    time: Floats
+    state: Floats
+    model: Model
+    method: str
+    accuracy: Accuracy
+    work: Work
+    period: float | None = None
+    ended: str = "horizon"

@@ -1,0 +1,157 @@
+"""Physical quantities: unit and admissible range, each stated once.
+
+The annotations are read by three parties. `check` enforces them wherever an object is built; the service's
+validator and its OpenAPI document read the same marks through the two hooks below, which return plain
+dictionaries, so that nothing is imported here for their sake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cache
+from math import inf, isfinite
+from numbers import Real
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+
+from core.errors import InvalidParameter, Path
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A real number with an SI unit and an admissible range.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit, ``"1"`` for a pure number.
+    above, at_least, at_most, below : float
+        Open and closed ends of the range.
+    """
+
+    unit: str
+    above: float = -inf
+    at_least: float = -inf
+    at_most: float = inf
+    below: float = inf
+
+    def check(self, path: Path, value: object) -> None:
+        """Raise `InvalidParameter` unless `value` is a finite real number inside the range."""
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise InvalidParameter(path, "be a number")
+        number = float(value)
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        if not isfinite(number):
+            raise InvalidParameter(path, "be finite")
+        if number <= self.above:
+            raise InvalidParameter(path, f"be greater than {self.above:g}{unit}")
+        if number < self.at_least:
+            raise InvalidParameter(path, f"be at least {self.at_least:g}{unit}")
+        if number > self.at_most:
+            raise InvalidParameter(path, f"be at most {self.at_most:g}{unit}")
+        if number >= self.below:
+            raise InvalidParameter(path, f"be less than {self.below:g}{unit}")
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """The finite ends of the range under their JSON Schema names."""
+        ends = {
+            "exclusiveMinimum": self.above,
+            "minimum": self.at_least,
+            "maximum": self.at_most,
+            "exclusiveMaximum": self.below,
+        }
+        return {name: end for name, end in ends.items() if isfinite(end)}
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
+        names = {"gt": self.above, "ge": self.at_least, "le": self.at_most, "lt": self.below}
+        ends = {name: end for name, end in names.items() if isfinite(end)}
+        return {"type": "float", "strict": True, "allow_inf_nan": False, **ends}
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        return {"type": "number", **self.limits, "x-unit": self.unit}
+
+
+@dataclass(frozen=True)
+class TaggedBy:
+    """A closed union of dataclasses told apart by the literal default of one field."""
+
+    field: str
+
+    def __get_pydantic_core_schema__(self, union: Any, handler: Any) -> dict[str, Any]:
+        members = {getattr(member, self.field): member for member in members_of(union)}
+        choices = {tag: handler.generate_schema(member) for tag, member in members.items()}
+        return {"type": "tagged-union", "discriminator": self.field, "choices": choices}
+
+
+def members_of(union: Any) -> tuple[type, ...]:
+    """Return the classes of a union annotation, also of a union with one member, which Python collapses."""
+    bare = get_args(union)[0] if get_origin(union) is Annotated else union
+    return get_args(bare) if get_origin(bare) in (Union, UnionType) else (bare,)
+
+
+PureNumber = Annotated[float, Quantity("1")]
+PositiveNumber = Annotated[float, Quantity("1", above=0)]
+Mass = Annotated[float, Quantity("kg", above=0)]
+SignedMass = Annotated[float, Quantity("kg")]
+Density = Annotated[float, Quantity("kg m^-3", above=0)]
+Length = Annotated[float, Quantity("m", above=0)]
+Coordinate = Annotated[float, Quantity("m")]
+MomentOfInertia = Annotated[float, Quantity("kg m^2", above=0)]
+InertiaComponent = Annotated[float, Quantity("kg m^2")]
+AngularRate = Annotated[float, Quantity("rad s^-1")]
+Angle = Annotated[float, Quantity("rad")]
+Time = Annotated[float, Quantity("s")]
+Duration = Annotated[float, Quantity("s", above=0)]
+Velocity = Annotated[float, Quantity("m s^-1")]
+Acceleration = Annotated[float, Quantity("m s^-2", above=0)]
+Energy = Annotated[float, Quantity("J", above=0)]
+Tolerance = Annotated[float, Quantity("1", above=0, below=1)]
+
+Position = tuple[Coordinate, Coordinate, Coordinate]
+AngularVelocity = tuple[AngularRate, AngularRate, AngularRate]
+Quaternion = tuple[PureNumber, PureNumber, PureNumber, PureNumber]
+
+
+def check(instance: Any) -> None:
+    """Enforce every range declared in the annotations of a dataclass instance.
+
+    Raises
+    ------
+    InvalidParameter
+        Naming the field, as a path from `instance`, and the rule it breaks.
+    """
+    for name, hint in _hints(type(instance)).items():
+        _check((name,), hint, getattr(instance, name))
+
+
+@cache
+def _hints(cls: type) -> Mapping[str, Any]:
+    hints = get_type_hints(cls, include_extras=True)
+    return {field.name: hints[field.name] for field in fields(cls)}
+
+
+def _check(path: Path, hint: Any, value: Any) -> None:
+    origin = get_origin(hint)
+    if origin is Annotated:
+        for mark in hint.__metadata__:
+            if hasattr(mark, "check"):
+                mark.check(path, value)
+    elif origin is tuple:
+        _check_tuple(path, get_args(hint), value)
+    elif origin in (Union, UnionType) and NoneType in get_args(hint):
+        if value is not None:
+            inner = [arg for arg in get_args(hint) if arg is not NoneType]
+            if len(inner) == 1:
+                _check(path, inner[0], value)
+
+
+def _check_tuple(path: Path, args: tuple[Any, ...], value: Any) -> None:
+    if not isinstance(value, (tuple, list)):
+        raise InvalidParameter(path, "be a list")
+    expected = args[:1] * len(value) if args[-1] is ... else args
+    if len(expected) != len(value):
+        raise InvalidParameter(path, f"have {len(expected)} entries, not {len(value)}")
+    for i, (hint, entry) in enumerate(zip(expected, value, strict=True)):
+        _check((*path, i), hint, entry)
