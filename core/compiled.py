@@ -21,16 +21,16 @@ def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
     """Compile a function to machine code, on import for given signatures, otherwise at the first call."""
 
     def compile_it(function: F) -> F:
+        compiler: Any = numba.njit
         chosen = {"cache": True, "error_model": "numpy", **options}
         listed = [list(signatures)] if signatures else []
-        return cast(F, numba.njit(*listed, **chosen)(function))
+        return cast(F, compiler(*listed, **chosen)(function))
 
     return compile_it
 
 
 @intrinsic
-def fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
-    """Return a*b + c rounded once."""
+def _fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     signature = types.float64(types.float64, types.float64, types.float64)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -40,11 +40,17 @@ def fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
 
 
 @intrinsic
-def double_from_bits(typing_context: Any, pattern: Any) -> Any:
-    """Return the double whose bit pattern is the given 64-bit integer."""
+def _double_from_bits(typing_context: Any, pattern: Any) -> Any:
     signature = types.float64(types.int64)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], ir.DoubleType())
 
     return signature, generate
+
+
+fma = cast(Callable[[float, float, float], float], _fma)
+"""a*b + c rounded once, in compiled code."""
+
+double_from_bits = cast(Callable[[int], float], _double_from_bits)
+"""The double whose bit pattern is the given 64-bit integer, in compiled code."""

@@ -38,6 +38,9 @@ class Quantity:
 
     def check(self, path: Path, value: object) -> None:
         """Raise `InvalidParameter` unless `value` is a finite real number inside the range."""
+        # Nearly every value passes here; infinities fail the strict comparisons and NaN fails all of them.
+        if type(value) is float and self.above < value < self.below and self.at_least <= value <= self.at_most:
+            return
         if isinstance(value, bool) or not isinstance(value, Real):
             raise InvalidParameter(path, "be a number")
         number = float(value)

@@ -1,1 +1,160 @@
 """Mass, centre of mass and inertia of a body; its principal moments and axes; whether matter can have them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.bodies.exact import Matrix, Vector, exact_matrix, exact_vector, pair, pairs, parallel_axis
+from core.bodies.principal_inertia import ZEROS, PrincipalInertia, Symmetry
+from core.bodies.validity import Condition, Validity
+from core.errors import NotApplicable
+from core.notices import Notice
+
+__all__ = ["Condition", "MassProperties", "PrincipalInertia", "Symmetry", "Validity"]
+
+Floats = NDArray[np.float64]
+About = Literal["center-of-mass", "origin"]
+
+
+@dataclass(frozen=True, eq=False)
+class MassProperties:
+    """What the mechanics needs to know of a body.
+
+    A derived number is kept as an unevaluated sum of two doubles, value and tail, right to about 1e-30, so that rounding
+    it does not enter a motion as an error. Off-diagonal components are I_xy = -(integral of x y dm).
+
+    Attributes
+    ----------
+    inertia, inertia_tail : ndarray, shape (3, 3)
+        Tensor of inertia about the centre of mass, in body axes (kg m^2).
+    mass, mass_tail : float
+        Total mass (kg); `mass` is None where the body was given by its moments alone.
+    center_of_mass, center_of_mass_tail : ndarray, shape (3,), or None
+        In the frame in which the body was given (m).
+    about : {"center-of-mass", "origin"}
+        The point about which the body turns: the origin for a body that is pinned there.
+    warnings : tuple of Notice
+        What was noticed while the body was read; paths lead from the body.
+    conditions : tuple of Condition
+        What the validity report says beyond the moments.
+    """
+
+    inertia: Floats
+    inertia_tail: Floats
+    mass: float | None = None
+    center_of_mass: Floats | None = None
+    mass_tail: float = 0.0
+    center_of_mass_tail: Floats | None = None
+    about: About = "center-of-mass"
+    warnings: tuple[Notice, ...] = ()
+    conditions: tuple[Condition, ...] = ()
+
+    @classmethod
+    def from_exact(
+        cls,
+        mass: Fraction,
+        center_of_mass: Vector,
+        inertia: Matrix,
+        *,
+        warnings: tuple[Notice, ...] = (),
+        conditions: tuple[Condition, ...] = (),
+    ) -> MassProperties:
+        """Round rational mass properties once, to a pair of doubles each.
+
+        Raises
+        ------
+        InvalidParameter
+            If one lies outside the range of doubles.
+        """
+        m, m_tail = pair(mass)
+        c, c_tail = pairs(center_of_mass)
+        i, i_tail = pairs(inertia)
+        return cls(i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions)
+
+    @property
+    def exact_mass(self) -> Fraction:
+        """The mass, both parts."""
+        if self.mass is None:
+            raise NotApplicable("the mass of this body is not known", remedy="state its mass")
+        return Fraction(self.mass) + Fraction(self.mass_tail)
+
+    @property
+    def exact_center_of_mass(self) -> Vector:
+        """The centre of mass, both parts."""
+        if self.center_of_mass is None:
+            raise NotApplicable("the centre of mass of this body is not known", remedy="state its center_of_mass")
+        return exact_vector(self.center_of_mass, self.center_of_mass_tail)
+
+    @property
+    def exact_inertia(self) -> Matrix:
+        """The tensor about the centre of mass, both parts."""
+        return exact_matrix(self.inertia, self.inertia_tail)
+
+    @cached_property
+    def principal(self) -> PrincipalInertia:
+        """Principal inertia about the centre of mass."""
+        return PrincipalInertia.of(self.inertia, self.inertia_tail)
+
+    def inertia_about(self, point: Sequence[float] | Floats) -> tuple[Floats, Floats]:
+        """Return the tensor about another point, in body axes, as value and tail, each of shape (3, 3).
+
+        By the parallel-axis theorem (Steiner): I + m (d.d 1 - d d^T), d from the centre of mass to the point.
+
+        Raises
+        ------
+        NotApplicable
+            If mass or centre of mass is not known.
+        """
+        center = self.exact_center_of_mass
+        d = [Fraction(float(p)) - c for p, c in zip(point, center, strict=True)]
+        return pairs(parallel_axis(self.exact_mass, d, self.exact_inertia))
+
+    @cached_property
+    def about_origin(self) -> tuple[Floats, Floats] | None:
+        """The tensor about the origin as value and tail, or None where mass or centre of mass is not known."""
+        if self.mass is None or self.center_of_mass is None:
+            return None
+        return self.inertia_about((0.0, 0.0, 0.0))
+
+    @property
+    def inertia_about_origin(self) -> Floats | None:
+        """The tensor about the origin, shape (3, 3), rounded."""
+        return None if self.about_origin is None else self.about_origin[0]
+
+    @cached_property
+    def principal_about_origin(self) -> PrincipalInertia | None:
+        """Principal inertia about the origin, or None where mass or centre of mass is not known."""
+        return None if self.about_origin is None else PrincipalInertia.of(*self.about_origin)
+
+    @property
+    def principal_of_motion(self) -> PrincipalInertia:
+        """Principal inertia about the point about which the body turns."""
+        if self.about == "origin" and self.principal_about_origin is not None:
+            return self.principal_about_origin
+        return self.principal
+
+    @property
+    def symmetry(self) -> Symmetry:
+        """Symmetry class of the principal moments about the centre of mass."""
+        return self.principal.symmetry
+
+    @cached_property
+    def validity(self) -> Validity:
+        """The validity report."""
+        mass = ()
+        if self.mass is not None:
+            mass = (Condition("positive-mass", self.mass > 0.0, f"the mass is {self.mass:.6g} kg"),)
+        return Validity.of(self.principal, (*mass, *self.conditions))
+
+
+def diagonal(moments: Sequence[float]) -> MassProperties:
+    """Return mass properties of which only principal moments are known, in body axes as given, shape (3,)."""
+    a, b, c = moments
+    return MassProperties(np.array([[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]), ZEROS)

@@ -11,9 +11,42 @@ from numba import types
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 VECTOR_FIELD = types.void(types.float64, types.float64[::1], types.float64[::1], types.float64[::1])
 """Signature of a compiled equation of motion: (time, state, parameters, derivative to be filled in)."""
+
+PART_FLOW = types.void(types.int64, types.float64, types.float64[::1], types.float64[::1])
+"""Signature of the exact flows of the parts of an equation: (part, duration, state to be moved, parameters)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Splitting:
+    """An equation of motion written as a sum of parts, each of which can be solved exactly.
+
+    Methods that compose these flows keep every quantity that all of the flows keep, whatever the step.
+
+    Attributes
+    ----------
+    parts : int
+        Number of parts.
+    flow : compiled function of signature `PART_FLOW`
+        Moves the state along one part, numbered from 0, for a duration that may be negative.
+    """
+
+    parts: int
+    flow: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """What a system offers to structure-preserving methods beyond its equation of motion.
+
+    One field per capability, each None where the system lacks it, so that a further one (the discrete mechanics of a
+    variational integrator, say) is a further field and no change for the systems without it.
+    """
+
+    splitting: Splitting | None = None
 
 
 @dataclass(frozen=True)
@@ -56,7 +89,7 @@ class ClosedForm(Protocol):
         """Return a bound of the numerical error of `sample`, relative to the largest norm, inputs taken as exact."""
 
     def inherited(self, times: Floats, uncertainty: float) -> float:
-        """Return how far the states may move, relative to the largest norm, if every input is known to `uncertainty`."""
+        """Return how far the states may move, relative to the largest norm, if inputs are known to `uncertainty`."""
 
 
 class System(Protocol):
@@ -73,6 +106,10 @@ class System(Protocol):
     @property
     def equation(self) -> Any:
         """Compiled equation of motion, of signature `VECTOR_FIELD`."""
+
+    @property
+    def structure(self) -> Structure:
+        """What structure-preserving methods may use; ``Structure()`` if there is nothing."""
 
     @property
     def model(self) -> Model:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from core.integration.system import Floats, Model
+from core.notices import Notice
 
 How = Literal["closed form", "measured against closed form", "finer run"]
 
@@ -19,11 +20,10 @@ class Accuracy:
     ----------
     requested : float
         Largest error of any sample that the client tolerates.
-    error : float or None
+    error : float
         Largest numerical error of any sample, inputs taken as exact; never smaller than the true one.
-        None only where nothing is known, which `how` cannot then claim.
     final_error : float or None
-        The same at the last of the times.
+        The same at the time farthest from the start.
     how : str
         What the figure rests on.
     inherited : float or None
@@ -43,12 +43,25 @@ class Accuracy:
 
 @dataclass(frozen=True)
 class Work:
-    """What an answer cost, counted and therefore the same on every machine."""
+    """What an answer cost, counted and therefore the same on every machine.
+
+    Attributes
+    ----------
+    samples : int
+        Rows of the answer.
+    evaluations : int
+        Of the equation of motion, or of the flows of its parts.
+    steps, rejected_steps : int
+        Taken by the method, and tried in vain beside them.
+    evaluations_for_error : int
+        Spent on stating the error, beside those that made the samples.
+    """
 
     samples: int
     evaluations: int = 0
     steps: int = 0
     rejected_steps: int = 0
+    evaluations_for_error: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +78,8 @@ class Trajectory:
         Kind of the method that made it.
     ended : str
         ``"horizon"``, or the event that ended the motion before it.
+    warnings : tuple of Notice
+        What the reader of the samples should know.
     """
 
     time: Floats
@@ -75,3 +90,4 @@ class Trajectory:
     work: Work
     period: float | None = None
     ended: str = "horizon"
+    warnings: tuple[Notice, ...] = ()

@@ -1,0 +1,105 @@
+"""Whether matter can have given mass properties: a report that names each condition, and never a repair.
+
+For any distribution of positive mass the principal moments are not negative and none exceeds the sum of the other
+two, with equality for a lamina (I3 = I1 + I2) and a needle (I1 = 0, I2 = I3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.bodies.principal_inertia import EPSILON, PrincipalInertia
+
+TOLERANCE = 16.0 * EPSILON
+"""Share of the trace by which a condition may be missed: what the rounding of a tensor's components explains."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One condition of the report.
+
+    Attributes
+    ----------
+    name : str
+        For example ``"triangle-inequality"``.
+    holds : bool
+        Whether `excess` is within `tolerance`.
+    detail : str
+        The condition with its figures.
+    excess : float
+        By how much it is missed, free of scale (for moments, as a share of the trace); negative where there is room.
+    tolerance : float
+        The largest excess that rounding explains.
+    moments : tuple of float
+        The moments concerned, the one that is too large or too small first (kg m^2); empty for other conditions.
+    """
+
+    name: str
+    holds: bool
+    detail: str
+    excess: float = 0.0
+    tolerance: float = 0.0
+    moments: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Validity:
+    """The validity report.
+
+    Attributes
+    ----------
+    physical : bool
+        Whether every condition holds.
+    report : tuple of Condition
+        All conditions, those that hold included.
+    """
+
+    physical: bool
+    report: tuple[Condition, ...]
+
+    @classmethod
+    def of(cls, principal: PrincipalInertia, others: tuple[Condition, ...] = ()) -> Validity:
+        """Judge principal moments, and adopt further conditions as they are."""
+        report = (*others, *_moments(principal))
+        return cls(all(condition.holds for condition in report), report)
+
+    @property
+    def violations(self) -> tuple[Condition, ...]:
+        """The conditions that do not hold."""
+        return tuple(condition for condition in self.report if not condition.holds)
+
+
+def _moments(principal: PrincipalInertia) -> list[Condition]:
+    low, middle, high = (float(x) for x in principal.moments)
+    # Of magnitudes and of shares, so that neither signs nor the ends of the double range spoil it.
+    size = max(abs(low), abs(high)) or 1.0
+    a, b, c = low / size, middle / size, high / size
+    trace = abs(a) + abs(b) + abs(c) or 1.0
+    least = -a / trace
+    found = [
+        Condition(
+            "positive-moments",
+            least <= TOLERANCE,
+            f"no principal moment is negative: the smallest is {low:.6g} kg m^2",
+            least,
+            TOLERANCE,
+            (low,),
+        )
+    ]
+    for (x, one), (y, other), (z, largest) in (
+        ((a, low), (b, middle), (c, high)),
+        ((a, low), (c, high), (b, middle)),
+        ((b, middle), (c, high), (a, low)),
+    ):
+        excess = (z - x - y) / trace
+        found.append(
+            Condition(
+                "triangle-inequality",
+                excess <= TOLERANCE,
+                f"{largest:.6g} <= {one:.6g} + {other:.6g} kg m^2",
+                excess,
+                TOLERANCE,
+                (largest, one, other),
+            )
+        )
+    return found

@@ -1,0 +1,31 @@
+"""How much one question may cost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from core.quantities import Quantity, check
+
+Count = Annotated[int, Quantity("1", at_least=1)]
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The largest counts allowed to one question.
+
+    Counts are the same on every machine, which times are not: what is refused here is refused everywhere.
+
+    Attributes
+    ----------
+    evaluations : int
+        Of the equation of motion, or of the flows of its parts.
+    samples : int
+        Rows of the answer.
+    """
+
+    evaluations: Count = 20_000_000
+    samples: Count = 1_000_000
+
+    def __post_init__(self) -> None:
+        check(self)

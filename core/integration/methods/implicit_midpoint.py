@@ -1,0 +1,111 @@
+"""The implicit midpoint rule: one Gauss stage, which keeps every quadratic invariant.
+
+The stage equation is iterated until rounding stops it, so that what the rule keeps is kept to round-off.
+
+References
+----------
+E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., Springer 2006, sections IV.2.1 (quadratic
+invariants) and VIII.6 (when to stop the iteration).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from core.compiled import kernel
+from core.integration.methods.fixed_step import MARCH, NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep
+from core.integration.methods.method import Family, Invariance
+from core.integration.system import Floats, Integers, System
+from core.quantities import Duration, check
+
+ITERATIONS = 100
+
+
+@kernel(MARCH)
+def _march(
+    field: Any,
+    begin: Floats,
+    step: Floats,
+    count: Integers,
+    state: Floats,
+    parameters: Floats,
+    samples: Floats,
+    tally: Integers,
+) -> int:
+    slope, new, middle = np.empty_like(state), np.empty_like(state), np.empty_like(state)
+    tail = np.zeros_like(state)
+    for i in range(count.size):
+        h = step[i]
+        for j in range(count[i]):
+            t = begin[i] + (j + 0.5) * h
+            # The slope of the last step is the first guess; at the very start there is none.
+            if i == 0 and j == 0:
+                field(begin[0], state, parameters, slope)
+                tally[0] -= 1
+            last, spent = np.inf, 0
+            while True:
+                for k in range(state.size):
+                    middle[k] = state[k] + 0.5 * h * slope[k]
+                field(t, middle, parameters, new)
+                spent += 1
+                change, size = 0.0, 0.0
+                for k in range(state.size):
+                    change = max(change, abs(h * (new[k] - slope[k])))
+                    size = max(size, abs(state[k]), abs(middle[k]))
+                    slope[k] = new[k]
+                # Beside the round-off of the state, a change that no longer falls is round-off and nothing else.
+                if change == 0.0 or (change >= last and change <= 1e-13 * size):
+                    break
+                if spent >= ITERATIONS or not change < np.inf:
+                    tally[1] = OVERFLOW if not change < np.inf else NO_CONVERGENCE
+                    return i
+                last = change
+            tally[0] -= spent - 1
+            if tally[0] < 0:
+                tally[1] = OUT_OF_BUDGET
+                return i
+            for k in range(state.size):
+                # Compensated: the rounding of the sum is carried on, which keeps the invariants from drifting.
+                added = h * slope[k] + tail[k]
+                old = state[k]
+                state[k] = old + added
+                taken = state[k] - old
+                tail[k] = (old - (state[k] - taken)) + (added - taken)
+        if not keep(state, i, samples):
+            tally[1] = OVERFLOW
+            return i
+    return count.size
+
+
+@dataclass(frozen=True)
+class ImplicitMidpoint(FixedStep):
+    """The implicit midpoint rule: w[i+1] = w[i] + h f(t[i] + h/2, (w[i] + w[i+1])/2).
+
+    Parameters
+    ----------
+    step : float
+        Longest step (s).
+    """
+
+    step: Duration
+    kind: Literal["implicit-midpoint"] = "implicit-midpoint"
+
+    order: ClassVar[int] = 2
+    family: ClassVar[Family] = "implicit"
+    preserves: ClassVar[tuple[Invariance, ...]] = ("quadratic invariants", "time symmetry")
+    when_to_use: ClassVar[str] = (
+        "For long runs in which energy and angular momentum must not drift at all; the phase still does, in proportion "
+        "to the square of the step."
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def _evaluations_per_step(self, system: System) -> int:
+        return 1
+
+    def _compiled(self, system: System) -> Any:
+        return _march

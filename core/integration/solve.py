@@ -1,0 +1,222 @@
+"""`solve`: from a system and times to samples with a true statement of their error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError, NotApplicable
+from core.integration.accuracy import rest_of, run_to_accuracy
+from core.integration.budget import Budget
+from core.integration.error_statements import drifts, estimated, measured
+from core.integration.methods import ClosedFormEvaluation
+from core.integration.methods.method import AbstractMethod, Integration
+from core.integration.system import ClosedForm, Floats, System
+from core.integration.trajectory import Accuracy, Trajectory, Work
+from core.notices import Notice
+from core.quantities import Quantity
+
+HALF_ULP = 2.0**-53
+
+_tolerated = Quantity("1", above=0, below=1)
+_uncertainty = Quantity("1", at_least=0, below=1)
+
+
+def solve(
+    system: System,
+    times: ArrayLike,
+    *,
+    accuracy: float = 1e-9,
+    method: AbstractMethod | None = None,
+    budget: Budget | None = None,
+    input_uncertainty: float = HALF_ULP,
+) -> Trajectory:
+    """Sample the motion of a system.
+
+    Without a method, the closed form is evaluated where there is one, and otherwise the cheapest method that reaches
+    the accuracy is run. A method that is named is run as it is and answered whatever its error, which is what it is
+    there to show; a warning says so where the error is larger than what was asked for.
+
+    Parameters
+    ----------
+    system : System
+    times : array_like, shape (n,)
+        Measured from the initial state, of either sign, in any order, repeated or not (s).
+    accuracy : float
+        Largest error of any sample that is tolerated, relative to the largest norm of the motion.
+    method : AbstractMethod, optional
+    budget : Budget, optional
+        The default of `Budget` if omitted. What is spent on stating the error counts too.
+    input_uncertainty : float
+        Relative uncertainty of the inputs, for the inherited error.
+
+    Returns
+    -------
+    Trajectory
+        With ``accuracy.how`` one of ``"closed form"`` (a proven bound), ``"measured against closed form"`` (to which
+        the closed form's own bound is added) and ``"finer run"`` (an estimate with a factor of safety).
+
+    Raises
+    ------
+    InvalidParameter
+        For times that are none or not finite, an accuracy outside (0, 1), a method that fails with its setting.
+    AccuracyUnreachable
+        If the closed form's bound, or what integrators reach, is larger than the accuracy asked for.
+    BudgetExceeded
+        If more samples or evaluations are needed than are allowed.
+    NotApplicable
+        If the method does not exist for this system.
+    """
+    budget = budget or Budget()
+    _tolerated.check(("accuracy",), accuracy)
+    _uncertainty.check(("input_uncertainty",), input_uncertainty)
+    instants = _checked(times, budget)
+    exact = system.closed_form()
+    if exact is not None and (method is None or isinstance(method, ClosedFormEvaluation)):
+        return _evaluated(system, exact, instants, accuracy, input_uncertainty)
+    if method is None:
+        return _refined(system, instants, accuracy, budget)
+    with _inside("method"):
+        run = method.integrate(system, instants, budget)
+    if exact is None:
+        return _compared_with_finer_run(system, method, run, instants, accuracy, budget)
+    return _compared_with_closed_form(system, exact, method, run, instants, accuracy, input_uncertainty)
+
+
+def _checked(times: ArrayLike, budget: Budget) -> Floats:
+    instants = np.ascontiguousarray(times, dtype=np.float64)
+    if instants.ndim != 1 or instants.size == 0:
+        raise InvalidParameter("times", "be a list of at least one time")
+    if instants.size > budget.samples:
+        raise BudgetExceeded(
+            "samples",
+            instants.size,
+            budget.samples,
+            path=("times",),
+            remedy="ask for fewer times, in several questions",
+        )
+    finite = np.isfinite(instants)
+    if not finite.all():
+        raise InvalidParameter(("times", int(finite.argmin())), "be finite")
+    return instants
+
+
+def _evaluated(
+    system: System, exact: ClosedForm, times: Floats, accuracy: float, input_uncertainty: float
+) -> Trajectory:
+    error = exact.error(times)
+    if not error <= accuracy:
+        raise AccuracyUnreachable(
+            accuracy,
+            error,
+            "the closed form's own bound is larger",
+            remedy="ask for earlier times or for less accuracy",
+        )
+    states = exact.sample(times)
+    if not np.isfinite(states).all():
+        raise NotApplicable("the motion leaves the range of double precision", remedy="choose other units")
+    return Trajectory(
+        times,
+        states,
+        exact.model,
+        ClosedFormEvaluation().kind,
+        Accuracy(
+            accuracy,
+            error,
+            "closed form",
+            exact.error(_farthest(times)),
+            exact.inherited(times, input_uncertainty),
+            drifts(system, states),
+        ),
+        Work(times.size),
+        exact.period,
+    )
+
+
+def _compared_with_closed_form(
+    system: System,
+    exact: ClosedForm,
+    method: AbstractMethod,
+    run: Integration,
+    times: Floats,
+    accuracy: float,
+    input_uncertainty: float,
+) -> Trajectory:
+    found = measured(run.states, exact.sample(times), times)
+    # The reference may be wrong by its own bound, and the statement must not be smaller than the true error.
+    own = exact.error(times)
+    stated = Accuracy(
+        accuracy,
+        found.largest + own,
+        "measured against closed form",
+        found.final + own,
+        exact.inherited(times, input_uncertainty),
+        drifts(system, run.states),
+    )
+    return Trajectory(
+        times,
+        run.states,
+        system.model,
+        method.kind,
+        stated,
+        run.work,
+        exact.period,
+        warnings=_warnings(stated, method),
+    )
+
+
+def _compared_with_finer_run(
+    system: System, method: AbstractMethod, run: Integration, times: Floats, accuracy: float, budget: Budget
+) -> Trajectory:
+    with _inside("method"):
+        estimate = estimated(method, system, times, run, rest_of(budget, run.work.evaluations))
+    errors = estimate.errors
+    stated = Accuracy(accuracy, errors.largest, "finer run", errors.final, None, drifts(system, run.states))
+    work = replace(run.work, evaluations_for_error=estimate.integration.work.evaluations)
+    return Trajectory(times, run.states, system.model, method.kind, stated, work, warnings=_warnings(stated, method))
+
+
+def _refined(system: System, times: Floats, accuracy: float, budget: Budget) -> Trajectory:
+    try:
+        run = run_to_accuracy(system, times, accuracy, budget)
+    except InvalidParameter as fault:
+        # The client chose no setting; what it can change is how far the motion goes.
+        raise InvalidParameter(
+            "times", f"be within reach of an integrator, whose {fault}", remedy=fault.remedy
+        ) from fault
+    except BudgetExceeded as fault:
+        remedy = "ask for earlier times or for less accuracy"
+        raise BudgetExceeded(fault.what, fault.needed, fault.limit, path=("times",), remedy=remedy) from fault
+    stated = Accuracy(accuracy, run.errors.largest, "finer run", run.errors.final, None, drifts(system, run.states))
+    return Trajectory(times, run.states, system.model, run.method.kind, stated, run.work)
+
+
+def _warnings(stated: Accuracy, method: AbstractMethod) -> tuple[Notice, ...]:
+    if stated.error <= stated.requested:
+        return ()
+    detail = (
+        f"the error of {method.kind} with this setting is {stated.error:.3g}, and {stated.requested:.3g} was asked for; "
+        "leave out the method to have one chosen that reaches it"
+    )
+    return (Notice("accuracy-not-reached", detail, ("method",)),)
+
+
+def _farthest(times: Floats) -> Floats:
+    at = int(np.abs(times).argmax())
+    return times[at : at + 1]
+
+
+@contextmanager
+def _inside(step: str) -> Iterator[None]:
+    """Prefix the path of every fault with the field of the question that holds the method."""
+    try:
+        yield
+    except InvalidParameter as fault:
+        raise fault.inside(step) from fault.__cause__
+    except MechanicsError as fault:
+        fault.path = (step, *fault.path)
+        raise

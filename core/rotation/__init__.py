@@ -1,0 +1,1 @@
+"""The free rigid body: its motion, precession, stability and energy surface."""

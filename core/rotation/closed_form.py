@@ -1,0 +1,255 @@
+"""The angular velocity of a free rigid body in closed form, in every regime and at any horizon."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+
+from core.bodies.mass_properties import PrincipalInertia
+from core.double_double import Scaled, scaled
+from core.elliptic import LARGEST_QUARTER
+from core.errors import AccuracyUnreachable, InvalidParameter
+from core.integration.system import Floats, Model
+from core.rotation.constants_of_motion import (
+    PERIODIC,
+    REST,
+    SEPARATRIX,
+    STEADY,
+    UNDECIDED,
+    UNREACHABLE,
+    Motion,
+    Sensitivity,
+    constants_of_motion,
+)
+from core.rotation.principal_frame import PrincipalFrame
+from core.rotation.sampling import largest_magnitude, sample_components
+
+UNIT_ROUNDOFF = 2.0**-53
+
+EVALUATION_ERROR = 6.0 * UNIT_ROUNDOFF
+"""Bound of the error of one sample along principal axes, relative to the largest angular velocity.
+
+Each component is constant * numerator / denominator: two roundings in the constant, at most 1.5 units in each theta function,
+four in the quotient; the components' errors add as squares and their weights are amplitudes below one.
+"""
+
+TURNED_AXES_ERROR = 3.0 * UNIT_ROUNDOFF
+"""What expressing the sample in body axes adds, where they are not the principal axes."""
+
+SET_UP_ROUNDING = 2.0**-103
+"""Relative rounding of the constants of motion formed from exact inputs."""
+
+DERIVED_ROUNDING = 2.0**-96
+"""Relative error of moments and components that were themselves derived from the client's numbers."""
+
+
+def growth(sensitivity: Sensitivity, uncertainty: float, horizon: float) -> float:
+    """Return the relative error that a relative uncertainty of the inputs has grown to at `horizon`, at most 2.
+
+    The sensitivities are of first order, so a growth beyond a tenth is stated as what it can come to: the whole motion.
+    """
+    s = sensitivity
+    exponential = s.growth * math.exp(min(700.0, s.exponent * horizon)) if s.growth else 0.0
+    size = s.start + s.rate * horizon + s.quadratic * horizon * horizon + exponential
+    grown = uncertainty * size
+    return grown if grown < 0.1 else 2.0
+
+
+def _decided(i: Floats, it: Floats, w: Floats, wt: Floats) -> Scaled:
+    """Return D_B = C (C - B) w_C^2 - A (B - A) w_A^2 from exact rational arithmetic."""
+    a, b, c = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(i, it, strict=True))
+    wa, _, wc = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(w, wt, strict=True))
+    exact = c * (c - b) * wc * wc - a * (b - a) * wa * wa
+    if exact == 0:
+        return Scaled(0.0, 0.0, 0)
+    exponent = exact.numerator.bit_length() - exact.denominator.bit_length()
+    mantissa = exact / Fraction(2) ** exponent
+    high = float(mantissa)
+    decided: Scaled = scaled(high, float(mantissa - Fraction(high)), exponent)
+    return decided
+
+
+@dataclass(frozen=True, eq=False)
+class FreeRotation:
+    """The exact torque-free motion that starts with a given angular velocity at t = 0.
+
+    Attributes
+    ----------
+    inertia : PrincipalInertia
+        Principal moments and axes of the body; all moments positive.
+    angular_velocity : ndarray, shape (3,)
+        At t = 0, in body axes (rad/s).
+    """
+
+    inertia: PrincipalInertia
+    angular_velocity: Floats
+
+    def __post_init__(self) -> None:
+        if not self.inertia.moments[0] > 0.0:
+            raise InvalidParameter(
+                "body",
+                "have three moments of inertia greater than 0 to rotate freely",
+                remedy="give a body with extent in at least two directions",
+            )
+
+    @cached_property
+    def frame(self) -> PrincipalFrame:
+        """Principal axes as the motion uses them."""
+        return PrincipalFrame(self.inertia.axes, self.inertia.axes_tail)
+
+    @cached_property
+    def start(self) -> tuple[Floats, Floats]:
+        """Angular velocity at t = 0 along ascending principal axes, and its tail, each of shape (3,)."""
+        return self.frame.components(self.angular_velocity)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Constants of the motion.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            If the start is so near the separatrix, or the figures so far apart, that doubles cannot hold the constants.
+        """
+        i, it = self.inertia.moments, self.inertia.moments_tail
+        w, wt = self.start
+        motion: Motion = constants_of_motion(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
+        if motion.regime == UNDECIDED:
+            motion = constants_of_motion(i, it, w, wt, True, _decided(i, it, w, wt))
+        if motion.regime == UNREACHABLE:
+            raise AccuracyUnreachable(
+                EVALUATION_ERROR,
+                2.0,
+                "the start differs from a rotation about the middle axis by less than the range of doubles resolves",
+                path=("angular_velocity",),
+                remedy="start on the axis itself, or further from it",
+            )
+        return motion
+
+    @property
+    def _exact_inputs(self) -> bool:
+        return self.frame.aligned and not np.any(self.inertia.moments_tail)
+
+    @property
+    def model(self) -> Model:
+        """The branch of the solution that holds, and why."""
+        return _model(self.motion, self.inertia)
+
+    @property
+    def period(self) -> float | None:
+        """Period of the angular velocity in the body, 4K/p (s); None if it is constant or on the separatrix."""
+        return 4.0 / self.motion.rate / self.motion.time_scale if self.motion.regime == PERIODIC else None
+
+    @property
+    def flip_interval(self) -> float | None:
+        """Time between sign changes of the component along the middle axis, 2K/p (s); None without such an axis."""
+        i, it = self.inertia.moments, self.inertia.moments_tail
+        distinct = (i[0], it[0]) != (i[1], it[1]) and (i[1], it[1]) != (i[2], it[2])
+        return 0.5 * self.period if distinct and self.period is not None else None
+
+    @property
+    def largest_rate(self) -> float:
+        """Largest norm of the angular velocity in the whole motion (rad/s)."""
+        m = self.motion
+        if m.regime in (REST, STEADY):
+            return math.hypot(*(float(x) for x in self.angular_velocity))
+        return max(math.hypot(m.A_c, m.A_d), math.hypot(m.A_b, m.A_d * math.sqrt(m.m1)))
+
+    def horizon(self, times: Floats) -> float:
+        """Return the largest |t|, having checked that every time can be answered.
+
+        Raises
+        ------
+        InvalidParameter
+            If a time is not finite.
+        AccuracyUnreachable
+            If a time lies beyond 2^50 quarter periods.
+        """
+        largest = float(largest_magnitude(times))
+        if not math.isfinite(largest):
+            raise InvalidParameter("times", "be finite")
+        m = self.motion
+        if m.regime == PERIODIC and largest * m.time_scale * m.rate > LARGEST_QUARTER:
+            raise AccuracyUnreachable(
+                EVALUATION_ERROR,
+                2.0,
+                "a time lies beyond 2^48 periods, where the phase has no digits left",
+                path=("times",),
+                remedy=f"ask for times up to {LARGEST_QUARTER / m.rate / m.time_scale:.3g} s",
+            )
+        return largest
+
+    def sample(self, times: Floats) -> Floats:
+        """Return the angular velocity in body axes, shape (n, 3), at `times`, shape (n,).
+
+        The rows are views of one contiguous array per component.
+        """
+        times = np.ascontiguousarray(times, dtype=np.float64)
+        self.horizon(times)
+        m = self.motion
+        out = np.empty((3, times.size))
+        if m.regime in (REST, STEADY):
+            out[:] = self.angular_velocity[:, None]
+            return out.T
+        c, d = (0, 2) if m.circled == 2 else (2, 0)
+        if self.frame.aligned:
+            row, sign = self.frame.rows, self.frame.signs
+            m = m._replace(A_c=sign[c] * m.A_c, A_b=sign[1] * m.A_b, A_d=sign[d] * m.A_d)
+            sample_components(m, times, out[row[c]], out[row[1]], out[row[d]])
+            return out.T
+        sample_components(m, times, out[c], out[1], out[d])
+        turned: Floats = (self.inertia.axes @ out).T
+        return turned
+
+    def error(self, times: Floats) -> float:
+        """Return a bound of the error of `sample`, relative to the largest norm, inputs taken as exact."""
+        m, horizon = self.motion, self.horizon(times)
+        if m.regime in (REST, STEADY):
+            return 0.0
+        if self._exact_inputs:
+            return EVALUATION_ERROR + growth(m.computed, SET_UP_ROUNDING, horizon)
+        turned = 0.0 if self.frame.aligned else TURNED_AXES_ERROR
+        return EVALUATION_ERROR + turned + growth(m.inherited, DERIVED_ROUNDING, horizon)
+
+    def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
+        """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
+        return growth(self.motion.inherited, uncertainty, self.horizon(times))
+
+
+def _model(motion: Motion, inertia: PrincipalInertia) -> Model:
+    name = "torque-free rigid body"
+    low, middle, high = inertia.moments
+    equal = [low == middle, middle == high]
+    if motion.regime == REST:
+        return Model(name, "rest", "the angular velocity is zero", 0)
+    if motion.regime == STEADY:
+        if all(equal):
+            why = "the three moments are equal, so every axis is principal"
+        elif any(equal):
+            why = "the spin lies along a principal axis or in the plane of two equal moments"
+        else:
+            why = "the spin lies along a principal axis"
+        return Model(name, "steady rotation", f"{why}: nothing accelerates", 0)
+    axis = "largest" if motion.circled == 2 else "smallest"
+    if motion.regime == SEPARATRIX:
+        return Model(
+            name,
+            "separatrix",
+            "L^2 = 2 E I_middle exactly: the motion tends to the middle axis, by hyperbolic functions",
+            1,
+        )
+    if any(equal):
+        return Model(
+            name, "regular precession", "two moments are equal: sine and cosine about the axis of the third", 1
+        )
+    return Model(
+        name,
+        f"circulation about the axis of {axis} moment",
+        f"three moments differ and L^2 {'>' if motion.circled == 2 else '<'} 2 E I_middle: Jacobian elliptic functions, "
+        f"parameter m = {motion.m:.6g}",
+        1,
+    )

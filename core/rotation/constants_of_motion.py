@@ -1,0 +1,330 @@
+"""The constants of a torque-free motion: which axis it circles, amplitudes, modulus, rate and starting phase, compiled.
+
+In principal axes with moments A <= B <= C the motion is
+
+    w_c = A_c cn u,   w_b = s A_b sn u,   w_d = s A_d dn u,   u = u0 + p t,
+
+where d is the extreme axis that the motion circles, c the other extreme, b the middle and s the sign of w_d. All constants
+are sums and products of positive terms, except the one difference D_B = C(C-B) w_C^2 - A(B-A) w_A^2 that decides which axis is
+circled; they are formed in double-double with separate exponents, so that neither cancellation nor the range of doubles
+enters. Right for ascending moments in a right-handed frame, in which time never runs backwards.
+
+References
+----------
+L. D. Landau, E. M. Lifshitz, "Mechanics", section 37. E. T. Whittaker, "A Treatise on the Analytical Dynamics of Particles and
+Rigid Bodies", section 69.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.compiled import kernel
+from core.double_double import (
+    Scaled,
+    dd_add_d,
+    dd_div,
+    dd_mul,
+    dd_sqrt,
+    dd_sub,
+    sc_abs,
+    sc_add,
+    sc_div,
+    sc_mul,
+    sc_neg,
+    sc_pair,
+    sc_sqrt,
+    scaled,
+)
+from core.elliptic import Lattice, lattice, rf_of_roots
+
+REST, STEADY, PERIODIC, SEPARATRIX, UNDECIDED, UNREACHABLE = range(6)
+
+UNDECIDED_CANCELLATION = 2.0**6
+"""Where D_B has cancelled by more than this, exact arithmetic forms it, so that near the separatrix the flips are as right as elsewhere."""
+
+
+class Sensitivity(NamedTuple):
+    """Growth of a relative uncertainty u of every input, relative to the largest |w| of the motion.
+
+    |dw(t)| <= u (start + rate |t| + quadratic t^2 + growth exp(exponent |t|)), and never more than 2.
+    """
+
+    start: float
+    rate: float
+    quadratic: float
+    growth: float
+    exponent: float
+
+
+class Motion(NamedTuple):
+    """Constants of one motion; times in seconds, rates in rad/s, axes numbered in ascending order of moments."""
+
+    regime: int
+    circled: int
+    """Number of the axis d: 2 (largest moment) or 0 (smallest)."""
+    A_c: float
+    A_b: float
+    A_d: float
+    """Signed amplitudes of the components along c, b, d."""
+    m: float
+    m1: float
+    p: float
+    lattice: Lattice
+    rate: float
+    rate_tail: float
+    """Quarter periods per unit of scaled time; on the separatrix, u per unit of scaled time."""
+    time_scale: float
+    """A power of two: scaled time is time_scale t."""
+    start_quarter: float
+    start: float
+    start_tail: float
+    """Quarter periods at t = 0: start_quarter + start; on the separatrix, u at t = 0."""
+    inherited: Sensitivity
+    """With u = 1: for uncertainties of the client's inputs."""
+    computed: Sensitivity
+    """With u = 1: for the rounding of 2^-104 with which these constants were formed."""
+
+
+@kernel()
+def _no_lattice() -> Lattice:
+    return Lattice(True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel()
+def _motionless(regime: int, start: float, rate: float, quadratic: float) -> Motion:
+    still = Sensitivity(0.0, 0.0, 0.0, 0.0, 0.0)
+    return Motion(
+        regime,
+        2,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+        0.0,
+        _no_lattice(),
+        0.0,
+        0.0,
+        1.0,
+        0.0,
+        0.0,
+        0.0,
+        Sensitivity(start, rate, quadratic, 0.0, 0.0),
+        still,
+    )
+
+
+@kernel()
+def _difference(i: NDArray[np.float64], it: NDArray[np.float64], j: int, k: int) -> Scaled:
+    h, low = dd_sub(i[j], it[j], i[k], it[k])
+    return scaled(h, low, 0)
+
+
+@kernel()
+def _e_minus_m1_k(m: float, m1: float, K: float) -> float:
+    """Return (E - m1 K)/m, where 0 <= m <= 1, to a few digits."""
+    if m < 1e-4:
+        return 0.25 * math.pi * (1.0 + 0.125 * m)
+    a, g, c, factor, total = 1.0, math.sqrt(m1), math.sqrt(m), 1.0, 0.5 * m
+    for _ in range(12):
+        a, g, c = 0.5 * (a + g), math.sqrt(a * g), 0.5 * (a - g)
+        total += factor * c * c
+        factor *= 2.0
+        if c < 1e-9:
+            break
+    return (K * (1.0 - total) - m1 * K) / m
+
+
+@kernel()
+def _sensitivity(
+    A: float, B: float, C: float, wa: float, wb: float, wc: float, am: float, bm: float, cm: float,
+    m: float, m1: float, p: float, K: float, sn: float, cn: float, dn: float, difference: float, missed: float, largest: float,
+) -> Sensitivity:  # fmt: skip
+    """First-order growth of relative input errors; here c is the circled axis, a the other extreme, b the middle.
+
+    Each term is the sum of the absolute relative sensitivities of one constant: p, the modulus, u0, the amplitudes.
+    `difference` is the relative uncertainty of D_B per unit uncertainty of the inputs, `missed` that of m1 where it is 0.
+    """
+    g_cb, g_ca = (C + B) / abs(C - B), (C + A) / abs(C - A)
+    d_c = 2 * (wc / cm) ** 2 + (wb / cm) ** 2 * (B * abs(B - A) * (4 + g_ca) + B * (A + B)) / (C * abs(C - A))
+    d_b = 2 + (A * abs(C - A) / (B * abs(C - B))) * (wa / bm) ** 2 * (2 + g_ca + g_cb)
+    d_a = 2 + (B * abs(C - B) / (A * abs(C - A))) * (wb / am) ** 2 * (2 + g_ca + g_cb)
+    d_p = 0.5 * (g_cb + g_ca + 2 + d_c)
+    from_m = m * (2 + g_ca + d_b + d_c) + (A + B) * B / (abs(C - A) * C) * (bm / cm) ** 2
+    from_m1 = difference + g_cb + 1 + d_c
+    relative = min(from_m / m1, from_m1) if m1 > 0.0 else from_m1
+    shift = 0.5 * _e_minus_m1_k(m, m1, K) * relative if m1 > 0.0 else 0.5 * relative
+    start = abs(sn * cn) * (1 + 0.5 * (d_a + d_b)) / dn + shift
+    slope = math.sqrt(max(am * am, bm * bm) + 0.25 * (m * cm) ** 2)
+    amplitudes = 0.5 * max(am * d_a, bm * d_b, cm * d_c)
+    rate = p * d_p + (p / K * shift if m1 > 0.0 else 0.0)
+    growth = 0.0
+    if m1 == 0.0:
+        # cn(u|1 - m1) = sech u - (m1/4)(sinh u cosh u - u) tanh u sech u + ...: a separatrix missed by m1 is left as exp u.
+        growth = 0.25 * missed * math.exp(math.asinh(abs(sn) / cn)) * slope / largest
+    return Sensitivity((slope * start + amplitudes) / largest, slope * rate / largest, 0.0, growth, p)
+
+
+@kernel()
+def constants_of_motion(
+    i: NDArray[np.float64],
+    it: NDArray[np.float64],
+    w: NDArray[np.float64],
+    wt: NDArray[np.float64],
+    decided: bool,
+    exact: Scaled,
+) -> Motion:
+    """Return the constants of the motion that starts with angular velocity `w` at t = 0.
+
+    Parameters
+    ----------
+    i, it : ndarray, shape (3,)
+        Principal moments in ascending order, as sums i + it, all positive (kg m^2).
+    w, wt : ndarray, shape (3,)
+        Angular velocity in right-handed principal axes, as sums w + wt (rad/s).
+    decided : bool
+        Whether D_B / (2^k (scaled inputs)) is given by `exact`.
+    exact : Scaled
+        D_B in the units of the inputs, used if `decided`.
+    """
+    largest = max(abs(w[0]), abs(w[1]), abs(w[2]))
+    if largest == 0.0:
+        return _motionless(REST, 0.0, 0.0, 0.0)
+    AB = _difference(i, it, 1, 0)
+    BC = _difference(i, it, 2, 1)
+    AC = _difference(i, it, 2, 0)
+    turning_a = BC.high != 0.0 and w[1] != 0.0 and w[2] != 0.0
+    turning_b = AC.high != 0.0 and w[0] != 0.0 and w[2] != 0.0
+    turning_c = AB.high != 0.0 and w[0] != 0.0 and w[1] != 0.0
+    if not (turning_a or turning_b or turning_c):
+        if int(w[0] != 0.0) + int(w[1] != 0.0) + int(w[2] != 0.0) == 1:
+            return _motionless(STEADY, 1.0, 0.0, 0.0)
+        # Were the equal moments not quite equal, the spin would drift out of their plane in proportion to t (the Jordan
+        # block of this equilibrium) and, once out, turn in the plane in proportion to t^2.
+        pair, single = (i[0], i[2]) if AB.high == 0.0 else (i[2], i[0])
+        drift = 4.0 * largest * max(1.0, pair / single)
+        turn = 4.0 * largest * abs(1.0 - single / pair)
+        return _motionless(STEADY, 1.0, drift + turn, drift * turn)
+
+    IA, IB, IC = scaled(i[0], it[0], 0), scaled(i[1], it[1], 0), scaled(i[2], it[2], 0)
+    WA, WB, WC = scaled(w[0], wt[0], 0), scaled(w[1], wt[1], 0), scaled(w[2], wt[2], 0)
+    WA2, WB2, WC2 = sc_mul(WA, WA), sc_mul(WB, WB), sc_mul(WC, WC)
+    t_a = sc_mul(sc_mul(IA, AB), WA2)
+    t_c = sc_mul(sc_mul(IC, BC), WC2)
+    D = sc_add(t_c, sc_neg(t_a))
+    S = sc_add(t_c, t_a)
+    if decided:
+        D = exact
+    cancellation = 1e300
+    if D.high != 0.0:
+        ratio = sc_div(S, sc_abs(D))
+        if ratio.exponent < 900:
+            cancellation = sc_pair(ratio)[0]
+    if cancellation > UNDECIDED_CANCELLATION and not decided:
+        return _motionless(UNDECIDED, 0.0, 0.0, 0.0)
+
+    if D.high >= 0.0:
+        circled, I_d, I_c, W_d, W_c, bd = 2, IC, IA, WC, WA, BC
+        X = sc_add(sc_mul(sc_mul(IA, AC), WA2), sc_mul(sc_mul(IB, BC), WB2))
+        Y = sc_add(sc_mul(sc_mul(IC, AC), WC2), sc_mul(sc_mul(IB, AB), WB2))
+        bc = AB
+    else:
+        circled, I_d, I_c, W_d, W_c, bd = 0, IA, IC, WA, WC, AB
+        X = sc_add(sc_mul(sc_mul(IC, AC), WC2), sc_mul(sc_mul(IB, AB), WB2))
+        Y = sc_add(sc_mul(sc_mul(IA, AC), WA2), sc_mul(sc_mul(IB, BC), WB2))
+        bc = BC
+    Ac = sc_sqrt(sc_div(X, sc_mul(I_c, AC)))
+    Ab = sc_sqrt(sc_div(X, sc_mul(IB, bd)))
+    Ad = sc_sqrt(sc_div(Y, sc_mul(I_d, AC)))
+    bdY = sc_mul(bd, Y)
+    p = sc_sqrt(sc_div(bdY, sc_mul(IA, sc_mul(IB, IC))))
+    k1 = sc_sqrt(sc_div(sc_mul(AC, sc_abs(D)), bdY))
+    k0 = sc_sqrt(sc_div(sc_mul(bc, X), bdY))
+    s = -1.0 if W_d.high < 0.0 else 1.0
+
+    sn = sc_pair(sc_div(WB, Ab))
+    sh, sl = s * sn[0], s * sn[1]
+    ch, cl = sc_pair(sc_div(W_c, Ac))
+    dh, dl = sc_pair(sc_div(sc_abs(W_d), Ad))
+    kh, kl = sc_pair(k0)
+    k1h, k1l = sc_pair(k1)
+    if abs(p.exponent) > 1000 or (k1.high != 0.0 and k1.exponent < -946):
+        return _motionless(UNREACHABLE, 0.0, 0.0, 0.0)
+    ah, al = (sh, sl) if sh >= 0.0 else (-sh, -sl)
+    gh, gl = (ch, cl) if ch >= 0.0 else (-ch, -cl)
+
+    amplitude_c, amplitude_b, amplitude_d = sc_pair(Ac)[0], s * sc_pair(Ab)[0], s * sc_pair(Ad)[0]
+    p_pair = sc_pair(p)
+    # Sensitivities in units in which the largest moment and the largest component are of order one.
+    ie = math.ldexp(1.0, -max(-1000, min(1000, IC.exponent)))
+    we = math.ldexp(1.0, -max(-1000, min(1000, scaled(largest, 0.0, 0).exponent)))
+    m, m1 = kh * kh, k1h * k1h
+    dec = (
+        sc_pair(I_c)[0] * ie, i[1] * ie, sc_pair(I_d)[0] * ie,
+        sc_pair(W_c)[0] * we, w[1] * we, sc_pair(W_d)[0] * we,
+        amplitude_c * we, abs(amplitude_b) * we, abs(amplitude_d) * we,
+    )  # fmt: skip
+    top = max(dec[6], dec[7], dec[8])
+    outer = max(abs(dec[3]), abs(dec[5]))
+    wa2, wc2 = (dec[3] / outer) ** 2, (dec[5] / outer) ** 2
+    tA = dec[0] * abs(dec[1] - dec[0]) * wa2
+    tC = dec[2] * abs(dec[2] - dec[1]) * wc2
+    grown = 3 * tA + dec[0] * (dec[0] + dec[1]) * wa2 + 3 * tC + dec[2] * (dec[2] + dec[1]) * wc2
+    d_D = grown / (tA + tC) * cancellation
+
+    if k1h == 0.0:
+        # sech has no sign of its own: half a turn about d gives w_c its sign, and w_b with it.
+        side = -1.0 if ch < 0.0 else 1.0
+        sh, sl, ch, cl = side * sh, side * sl, side * ch, side * cl
+        amplitude_c, amplitude_b = side * amplitude_c, side * amplitude_b
+        missed = grown / (tA + tC) * sc_pair(sc_div(sc_mul(AC, S), bdY))[0]
+        uh, ul = rf_of_roots(gh, gl, gh, gl, 1.0, 0.0)
+        uh, ul = dd_mul(uh, ul, sh, sl)
+        inherited = _sensitivity(
+            dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
+            1.0, 0.0, p_pair[0], 1.0, sh, ch, dh, 8.0, missed, top,
+        )  # fmt: skip
+        computed = _sensitivity(
+            dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
+            1.0, 0.0, p_pair[0], 1.0, sh, ch, dh, 8.0, 0.0 if decided else missed, top,
+        )  # fmt: skip
+        return Motion(
+            SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0], _no_lattice(),
+            p.high, p.low, math.ldexp(1.0, p.exponent), 0.0, uh, ul, inherited, computed,
+        )  # fmt: skip
+    lat = lattice(kh, kl, k1h, k1l)
+    # Distance from the nearest quarter period, where |sn(K/2)|^2 = 1/(1 + k').
+    near_even = ah * ah * (1.0 + k1h) <= 1.0
+    if near_even:
+        vh, vl = rf_of_roots(gh, gl, dh, dl, 1.0, 0.0)
+        vh, vl = dd_mul(vh, vl, ah, al)
+    else:
+        eh, el = dd_mul(k1h, k1l, ah, al)
+        vh, vl = rf_of_roots(eh, el, k1h, k1l, dh, dl)
+        vh, vl = dd_mul(vh, vl, gh, gl)
+    rh, rl = dd_div(vh, vl, lat.K, lat.K_tail)
+    side = 1.0 if sh >= 0.0 else -1.0
+    if near_even:
+        quarter = 0.0 if ch >= 0.0 else 2.0 * side
+        sign = side if ch >= 0.0 else -side
+    else:
+        quarter = side
+        sign = -side if ch >= 0.0 else side
+    f = sc_div(p, scaled(lat.K, lat.K_tail, 0))
+    inherited = _sensitivity(
+        dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
+        m, m1, p_pair[0], lat.K, sh, ch, dh, d_D, 0.0, top,
+    )  # fmt: skip
+    computed = _sensitivity(
+        dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
+        m, m1, p_pair[0], lat.K, sh, ch, dh, 8.0 if decided else 8.0 * cancellation, 0.0, top,
+    )  # fmt: skip
+    return Motion(
+        PERIODIC, circled, amplitude_c, amplitude_b, amplitude_d, m, m1, p_pair[0], lat,
+        f.high, f.low, math.ldexp(1.0, f.exponent), quarter, sign * rh, sign * rl, inherited, computed,
+    )  # fmt: skip

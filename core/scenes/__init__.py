@@ -1,0 +1,10 @@
+"""Constrained systems, one per file; the union is the catalogue."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from core.quantities import TaggedBy
+from core.scenes.unwinding_shafts import UnwindingShafts
+
+Scene = Annotated[UnwindingShafts, TaggedBy("kind")]

@@ -1,0 +1,254 @@
+"""What a scene answers, and the one way in which every scene does: only what is asked for is computed."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from core.errors import AccuracyUnreachable, InvalidParameter
+from core.integration.system import Floats, Model
+from core.integration.trajectory import Accuracy, Work
+from core.scenes.enclosure import Ball, Caution, Rounding, precision
+
+HORIZON = "horizon"
+MOTION = ("events", "ended", "trajectory")
+"""Outputs that need the motion, in every scene."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens at an instant.
+
+    Attributes
+    ----------
+    kind : str
+        For example ``"string-1-unwound"``.
+    time : ball
+        From the given state (s).
+    """
+
+    kind: str
+    time: Ball
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Samples of a motion, by name, each of shape (n,) or (n, 2), and a bound of their errors.
+
+    Attributes
+    ----------
+    values : mapping of str to ndarray
+        Without the times.
+    errors : mapping of str to ndarray
+        Bound of the absolute error of each sample, broadcastable to the values.
+    scales : mapping of str to float
+        Largest magnitude of each column in the motion, the given state included.
+    cautions : tuple of Caution
+        Columns that could not be given, and why.
+    """
+
+    values: Mapping[str, Floats]
+    errors: Mapping[str, Floats]
+    scales: Mapping[str, float]
+    cautions: tuple[Caution, ...] = ()
+
+    def error(self) -> float:
+        """Return a bound of the error of any sample, relative to the largest norm of its column."""
+        worst = 0.0
+        for name, bound in self.errors.items():
+            largest = float(np.max(bound, initial=0.0))
+            if largest > 0.0:
+                scale = self.scales[name]
+                worst = max(worst, largest / scale if scale > 0.0 else math.inf)
+        return worst
+
+
+class Motion(ABC):
+    """A motion known in closed form, as long as its model holds."""
+
+    @property
+    @abstractmethod
+    def model(self) -> Model:
+        """The model and its regime."""
+
+    @property
+    @abstractmethod
+    def began(self) -> float:
+        """Earliest time at which the model holds, minus infinity if it always did (s)."""
+
+    @property
+    @abstractmethod
+    def end(self) -> Event | None:
+        """The event that ends the motion, or None if nothing does."""
+
+    @abstractmethod
+    def events(self) -> tuple[Event, ...]:
+        """Return what happens from t = 0 on, in order, the end included."""
+
+    @abstractmethod
+    def sample(self, times: Floats) -> Columns:
+        """Return the motion at `times`, shape (n,), all between the beginning and the end."""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneAnswer:
+    """Answer to a question about a scene.
+
+    Attributes
+    ----------
+    model : Model
+        The smallest model that suffices for what was asked.
+    figures : mapping
+        The outputs that were asked for, by name: numbers, lists, mappings, None where a double cannot hold the number.
+    trajectory : mapping of str to ndarray, or None
+        Columns, the first of them ``time``: only the samples that exist.
+    ended : str or None
+        ``"horizon"``, or the event that ended the motion before it; None if nothing ends it or no motion was asked for.
+    accuracy : Accuracy
+        Bound of the error: of figures relative to themselves, of samples to the largest norm of their column.
+    cautions : tuple of Caution
+        What the reader must know.
+    work : Work
+        Samples computed.
+    requested_samples : int
+        Samples asked for; `work` counts those that exist.
+    """
+
+    model: Model
+    figures: Mapping[str, Any]
+    trajectory: Mapping[str, Floats] | None
+    ended: str | None
+    accuracy: Accuracy
+    cautions: tuple[Caution, ...]
+    work: Work
+    requested_samples: int
+
+
+class ConstrainedSystem(ABC):
+    """A scene: parameters, figures that follow from them, and a motion."""
+
+    outputs: ClassVar[tuple[str, ...]]
+    """Names of everything that can be asked for."""
+    of_motion: ClassVar[tuple[str, ...]] = ()
+    """Those among them, beside `MOTION`, that follow from the motion."""
+
+    @abstractmethod
+    def figures(self) -> Mapping[str, Callable[[], Any]]:
+        """Return the figures that need no motion, by name, each to be computed only when it is called."""
+
+    @abstractmethod
+    def motion(self, horizon: float) -> Motion:
+        """Return the motion at least up to `horizon` (s)."""
+
+    @abstractmethod
+    def still(self) -> Model:
+        """Return the model of a question that needs no motion."""
+
+    def motion_figures(self, motion: Motion) -> Mapping[str, Callable[[], Any]]:
+        """Return figures of the motion beside its events, by name."""
+        return {}
+
+    def answer(
+        self, times: Floats | None = None, outputs: frozenset[str] | None = None, accuracy: float = 1e-9
+    ) -> SceneAnswer:
+        """Compute what is asked for and nothing else.
+
+        Parameters
+        ----------
+        times : ndarray, shape (n,), optional
+            Instants of the trajectory, measured from the given state, in any order (s).
+        outputs : frozenset of str, optional
+            Names out of `outputs`; by default all, the trajectory if there are times.
+        accuracy : float
+            Largest error that is tolerated.
+
+        Raises
+        ------
+        InvalidParameter
+            For an unknown output, a trajectory without times, times that are not finite or before the beginning.
+        AccuracyUnreachable
+            If the bound of the error is larger than `accuracy`.
+        """
+        wanted = self._wanted(times, outputs)
+        instants = _checked(times)
+        with precision():
+            rounded = Rounding()
+            table = dict(self.figures())
+            motion = None
+            if wanted & {*MOTION, *self.of_motion}:
+                motion = self.motion(float(np.max(instants, initial=0.0)) if times is not None else math.inf)
+                table |= self.motion_figures(motion)
+            figures = {name: rounded(table[name](), (name,)) for name in self.outputs if name in wanted and name in table}
+            ended, trajectory, columns = None, None, None
+            if motion is not None:
+                end = math.inf if motion.end is None else float(motion.end.time)
+                horizon = float(np.max(instants, initial=0.0)) if times is not None else math.inf
+                if motion.end is not None and end <= horizon:
+                    ended = motion.end.kind
+                elif times is not None:
+                    ended = HORIZON
+                if "events" in wanted:
+                    happened = [event for event in motion.events() if float(event.time) <= horizon]
+                    figures["events"] = rounded([{"kind": e.kind, "time": e.time} for e in happened], ("events",))
+                if "trajectory" in wanted:
+                    if float(np.min(instants, initial=0.0)) < motion.began:
+                        raise InvalidParameter(
+                            "times",
+                            f"be at least {motion.began:.17g} s",
+                            remedy="the model does not hold earlier; start from an earlier state",
+                        )
+                    instants = instants[instants <= end]
+                    columns = motion.sample(instants)
+                    trajectory = {"time": instants, **columns.values}
+        error = rounded.error if columns is None else max(rounded.error, columns.error())
+        if error > accuracy:
+            raise AccuracyUnreachable(
+                accuracy, error, "the samples are differences of far larger numbers", remedy="ask for fewer digits"
+            )
+        return SceneAnswer(
+            model=self.still() if motion is None else motion.model,
+            figures=figures,
+            trajectory=trajectory,
+            ended=ended,
+            accuracy=Accuracy(requested=accuracy, error=error, how="closed form"),
+            cautions=(*rounded.cautions, *self.cautions(wanted), *(columns.cautions if columns else ())),
+            work=Work(samples=0 if trajectory is None else instants.size),
+            requested_samples=0 if times is None else np.asarray(times).size,
+        )
+
+    def cautions(self, wanted: frozenset[str]) -> tuple[Caution, ...]:
+        """Return what the reader of the wanted outputs must know."""
+        return ()
+
+    def _wanted(self, times: Floats | None, outputs: frozenset[str] | None) -> frozenset[str]:
+        if outputs is None:
+            return frozenset(self.outputs) - (frozenset({"trajectory"}) if times is None else frozenset())
+        for name in sorted(outputs - set(self.outputs)):
+            raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {self.outputs}")
+        if "trajectory" in outputs and times is None:
+            raise InvalidParameter("times", "be given when a trajectory is asked for")
+        return outputs
+
+
+def _checked(times: Floats | None) -> Floats:
+    instants = np.zeros(0) if times is None else np.asarray(times, dtype=np.float64)
+    if instants.ndim != 1:
+        raise InvalidParameter("times", "be a list of numbers")
+    if not np.all(np.isfinite(instants)):
+        raise InvalidParameter("times", "be finite")
+    return instants
+
+
+def finite(values: Mapping[str, Floats]) -> Mapping[str, Floats]:
+    """Return the columns, or refuse them if a sample has left the range of doubles."""
+    for name, column in values.items():
+        if not np.all(np.isfinite(column)):
+            raise InvalidParameter(
+                "times", f"keep {name} inside the range of double precision", remedy="ask for shorter times"
+            )
+    return values

@@ -1,0 +1,179 @@
+"""Samples of two shafts on one string, in doubles, from the phases that were found in ball arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.integration.system import Floats, Model
+from core.scenes.answer import Columns, Event, Motion, finite
+from core.scenes.bounces import Sequence
+from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Caution, as_pair
+from core.scenes.string_phases import Phase, Phases
+
+WHY = {"taut": "the string is taut", "slack": "the string is slack", "stick": "both shafts roll on the string's track"}
+FREEDOM = {"taut": 3, "slack": 4, "stick": 2}
+SMALLEST = 2.0**-1074
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One coordinate in one phase: value and rate at its start, acceleration, and the gain nu of the rate per unit of S."""
+
+    value: Ball
+    rate: Ball
+    acceleration: Ball
+    gain: Ball = ZERO
+
+
+class ShaftMotion(Motion):
+    """Positions are quadratic in the time between events.
+
+    Parameters
+    ----------
+    phases : Phases
+        As they were found.
+    radii : tuple of float
+        Of the shafts (m).
+    given : mapping of str to float
+        Largest magnitude of each column in the given state.
+    unresolved : float
+        Difference of velocities that was small enough to be taken as zero (m/s).
+    """
+
+    def __init__(
+        self, phases: Phases, radii: tuple[float, float], given: Mapping[str, float], unresolved: float
+    ) -> None:
+        self.phases, self._radii, self._given, self._unresolved = phases, np.array(radii), given, unresolved
+
+    @property
+    def model(self) -> Model:
+        """The phases that occur, and the degrees of freedom of the freest."""
+        kinds = list(dict.fromkeys(phase.drive.kind for phase in self.phases.phases))
+        why = ", ".join(WHY[kind] for kind in kinds) + "; accelerations are constant between events"
+        return Model("two unwinding shafts on one string", ", ".join(kinds), why, max(FREEDOM[kind] for kind in kinds))
+
+    @property
+    def began(self) -> float:
+        """Jerks and friction do not run backwards, so the motion begins with the given state."""
+        return 0.0
+
+    @property
+    def end(self) -> Event | None:
+        """The end of a string or of a slope, or the apex."""
+        return self.phases.end
+
+    def events(self) -> tuple[Event, ...]:
+        """Jerks, ends of slipping, and the end."""
+        return self.phases.events
+
+    def sample(self, times: Floats) -> Columns:
+        """Evaluate the phase in which each of the times lies: right after a jerk, not right before it."""
+        phases = self.phases.phases
+        starts = np.array([float(phase.start.time) for phase in phases])
+        which = np.searchsorted(starts, times, side="right") - 1
+        x, v, s, r = (np.zeros((times.size, 2)) for _ in range(4))
+        dx, dv, ds, dr = (np.zeros((times.size, 2)) for _ in range(4))
+        tension = np.zeros(times.size)
+        determinate = True
+        with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+            for k in np.unique(which):
+                here = np.flatnonzero(which == k)
+                phase = phases[k]
+                clock = _Clock(phase, times[here])
+                gains_x, gains_s, _ = phase.sequence.gains() if phase.sequence else ((ZERO, ZERO),) * 3
+                for i in (0, 1):
+                    along = Coordinate(
+                        phase.start.positions[i], phase.start.velocities[i], phase.drive.positions[i], gains_x[i]
+                    )
+                    x[here, i], v[here, i], dx[here, i], dv[here, i] = clock.evaluate(along)
+                    around = Coordinate(
+                        phase.start.unwound[i], phase.start.rates[i], phase.drive.unwound[i], gains_s[i]
+                    )
+                    s[here, i], r[here, i], ds[here, i], dr[here, i] = clock.evaluate(around)
+                if phase.drive.tension is None:
+                    determinate = False
+                else:
+                    tension[here] = float(phase.drive.tension)
+            drift = self._unresolved
+            elapsed = np.abs(times)[:, None]
+            values = {"positions": x, "velocities": v, "spins": r / self._radii, "unwound": s}
+            errors = {
+                "positions": dx + drift * elapsed,
+                "velocities": dv + drift,
+                "spins": (dr + drift + UNIT_ROUNDOFF * np.abs(r)) / self._radii,
+                "unwound": ds + drift * elapsed,
+            }
+        cautions: tuple[Caution, ...] = ()
+        if determinate:
+            values["tension"], errors["tension"] = tension, UNIT_ROUNDOFF * tension
+        else:
+            cautions = (Caution("indeterminate", "nothing fixes the tension while both shafts stick", ("trajectory",)),)
+        finite(values)
+        scales = {
+            name: max(float(np.max(np.abs(column), initial=0.0)), self._given.get(name, 0.0))
+            for name, column in values.items()
+        }
+        return Columns(values, errors, scales, cautions)
+
+
+class _Clock:
+    """The number S of arcs done, and the time since the last jerk, at each of the times in one phase."""
+
+    def __init__(self, phase: Phase, times: Floats) -> None:
+        high, low = as_pair(phase.start.time)
+        elapsed = (times - high) - low
+        self.elapsed = np.maximum(elapsed, 0.0)
+        self.first = 0.0
+        self.S: Floats | float = 0.0
+        self.ratio: Floats | float = 1.0
+        self.time = self.elapsed
+        self.gap = self.sum_of_ratios = 0.0
+        if phase.sequence is not None:
+            self._count(phase.sequence, phase.last_arc)
+
+    def _count(self, sequence: Sequence, last_arc: int | None) -> None:
+        e, d = sequence.restitution, float(sequence.first)
+        self.first, self.gap, self.sum_of_ratios = d, float(1 - e), float(1 + e)
+        arcs = self.elapsed / d
+        if sequence.limit is None:
+            n = np.floor(arcs)
+            self.S, self.ratio = n, np.ones_like(n)
+        else:
+            log = float(e.log())
+            left = 1.0 - self.gap * arcs
+            with np.errstate(divide="ignore", invalid="ignore"):
+                n = np.floor(np.log1p(-np.minimum(self.gap * arcs, 1.0)) / log)
+            n = np.where(left > 0.0, np.maximum(n, 0.0), np.inf)
+            if last_arc is not None:
+                n = np.minimum(n, last_arc)
+            self.ratio = np.exp(n * log)
+            self.S = -np.expm1(n * log) / self.gap
+        self.time = np.maximum(self.elapsed - d * self.S, 0.0)
+
+    def evaluate(self, coordinate: Coordinate) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return value and rate, and bounds of their absolute errors."""
+        y, v, a, nu = (
+            float(ball) for ball in (coordinate.value, coordinate.rate, coordinate.acceleration, coordinate.gain)
+        )
+        t, S, d = self.time, self.S, self.first
+        rate = v + nu * S
+        value = y + t * (rate + 0.5 * a * t)
+        size = np.abs(y) + t * (np.abs(v) + np.abs(nu) * S + np.abs(a) * t)
+        if d > 0.0:
+            jump = d * S * (v + (nu * (S - 1.0) + 0.5 * a * d * (1.0 + self.ratio)) / self.sum_of_ratios)
+            value = value + jump
+            size = size + d * S * (np.abs(v) + np.abs(nu) * (S + 1.0) + np.abs(a) * d)
+        later = rate + a * t
+        whole = self.elapsed
+        pace = np.abs(v) + np.abs(nu) * S + np.abs(a) * t
+        tiny = SMALLEST * (1.0 + whole) * (1.0 + whole)
+        few = 32.0 * UNIT_ROUNDOFF
+        return (
+            value,
+            later,
+            few * (size + pace * whole) + tiny,
+            few * (pace + np.abs(a) * (t if d == 0.0 else whole)) + tiny,
+        )

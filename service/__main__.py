@@ -1,0 +1,68 @@
+"""Starts the service: python -m service [--host --port --workers]."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+from collections.abc import Sequence
+
+import uvicorn
+
+from service import VERSION
+from service.app import create_app
+from service.logs import configure
+from service.settings import Settings
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line, which also documents every setting."""
+    lines = [
+        f"  POLHODE_{name.upper():<22} {field.description} Default: {field.default}."
+        for name, field in Settings.model_fields.items()
+    ]
+    parser = argparse.ArgumentParser(
+        "python -m service",
+        description="Polhode: the motion of rigid bodies over HTTP.",
+        epilog="environment variables, one per setting:\n" + "\n".join(lines),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--host", help="address to listen on (default 127.0.0.1)")
+    parser.add_argument("--port", type=int, help="port to listen on (default 8000)")
+    parser.add_argument("--workers", type=int, help="server processes that share the port (default 1)")
+    parser.add_argument("--openapi", action="store_true", help="write the OpenAPI document to standard output and stop")
+    parser.add_argument("--version", action="version", version=VERSION)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the service until it is told to stop."""
+    options = parser().parse_args(arguments)
+    given = {name: value for name in ("host", "port", "workers") if (value := getattr(options, name)) is not None}
+    settings = Settings(**given)
+    if options.openapi:
+        sys.stdout.buffer.write(create_app(settings).openapi() + b"\n")
+        return
+    configure(settings.log_level)
+    # Server processes read their settings from the environment that they inherit.
+    os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
+    with tempfile.TemporaryDirectory(prefix="polhode-metrics-") as directory:
+        if settings.workers > 1:
+            os.environ.setdefault("PROMETHEUS_MULTIPROC_DIR", directory)
+        uvicorn.run(
+            "service.server:app",
+            host=settings.host,
+            port=settings.port,
+            workers=settings.workers,
+            log_config=None,
+            access_log=False,
+            server_header=False,
+            timeout_graceful_shutdown=settings.shutdown_seconds,
+            timeout_keep_alive=15,
+            h11_max_incomplete_event_size=65536,
+        )
+
+
+if __name__ == "__main__":
+    main()

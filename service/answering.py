@@ -1,0 +1,59 @@
+"""From the bytes of a question to the fields of its answer, the same in the server process and in compute processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import orjson
+
+from core.errors import Path
+from core.integration.budget import Budget
+from core.notices import Notice
+from service.problems import pointer_of
+from service.reading import Reader
+from service.routing import Answer, Question
+from service.schemas import SIGNATURE
+
+
+class Answering:
+    """Reads and answers questions.
+
+    Parameters
+    ----------
+    routes : iterable of Question
+        What can be asked.
+    budget : Budget
+        What one question may cost.
+    deepest, most_keys : int
+        Limits on documents.
+    """
+
+    def __init__(self, routes: Iterable[Question], budget: Budget, *, deepest: int, most_keys: int) -> None:
+        self._routes = tuple(routes)
+        self._budget = budget
+        self._readers = {
+            route.path: Reader(route.question, deepest=deepest, most_keys=most_keys).read for route in self._routes
+        }
+
+    def read(self, route: Question, body: bytes) -> Any:
+        """Return the question that a body asks; see `Reader.read`."""
+        return self._readers[route.path](body)
+
+    def answer(self, route: Question, question: Any) -> Answer:
+        """Return the whole answer: signature, warnings, fields."""
+        fields = dict(route.handle(question, self._budget))
+        warnings = [_warning(notice) for notice in fields.pop("warnings", ())]
+        return {"signature": SIGNATURE, "warnings": warnings, **fields}
+
+    def warm(self) -> None:
+        """Answer every example once, so that no client waits for a function to be compiled or loaded."""
+        for route in self._routes:
+            for example in route.examples.values():
+                self.answer(route, self.read(route, orjson.dumps(example.question)))
+
+
+def _warning(notice: Notice) -> dict[str, str]:
+    path: Path = notice.path
+    entry = {"code": notice.code, "detail": notice.detail}
+    return entry | {"pointer": pointer_of(path)} if path else entry

@@ -1,0 +1,161 @@
+"""Where large questions are answered: in warm processes of their own, which can be killed and are replaced.
+
+Admission is by predicted time: a question whose turn would come too late is refused at once, which keeps short the time
+of those that are accepted.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+import os
+import tempfile
+from collections.abc import Awaitable, Callable
+from concurrent.futures import CancelledError, TimeoutError
+from itertools import count
+from math import ceil
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from pebble import ProcessExpired, ProcessPool
+
+from core.integration.budget import Budget
+from service.guards import ClientGone
+from service.logs import LOG
+from service.metrics import Metrics
+from service.problems import Problem, Refusal
+from service.routing import Answer, Question
+from service.settings import Settings
+from service.worker import Terms, prepare, restored, work
+
+
+class Compute:
+    """The compute processes of one server process.
+
+    Parameters
+    ----------
+    settings : Settings
+    metrics : Metrics
+    table : str
+        Where the route table is: ``"module:function"``.
+    """
+
+    def __init__(self, settings: Settings, metrics: Metrics, table: str) -> None:
+        self._settings, self._metrics = settings, metrics
+        self.terms = Terms(
+            table,
+            Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
+            settings.max_nesting,
+            settings.max_keys,
+        )
+        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        self.size = settings.compute_workers or max(1, cores // settings.workers)
+        self._pool: ProcessPool | None = None
+        self._scratch: tempfile.TemporaryDirectory[str] | None = None
+        self._numbers = count()
+        self._promised = 0.0
+        self._pace = 1.0
+
+    async def start(self) -> None:
+        """Start the processes and return when each has answered something."""
+        memory = Path("/dev/shm")
+        directory = self._settings.scratch or (memory if os.access(memory, os.W_OK) else None)
+        self._scratch = tempfile.TemporaryDirectory(prefix="polhode-", dir=directory, ignore_cleanup_errors=True)
+        # The fork server has everything imported, so that a process that is lost is replaced within milliseconds;
+        # forking the server process itself, with its threads and its event loop, would not be safe.
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload(["service.prepared"])
+        self._pool = ProcessPool(self.size, initializer=prepare, initargs=(self.terms,), context=context)
+        greetings = [self._pool.schedule(_greet, (0.05,)) for _ in range(self.size)]
+        await asyncio.gather(*map(asyncio.wrap_future, greetings))
+
+    async def stop(self) -> None:
+        """Kill what still runs and release the memory."""
+        if self._pool is not None:
+            self._pool.stop()  # type: ignore[no-untyped-call]
+            await asyncio.to_thread(self._pool.join)
+        if self._scratch is not None:
+            self._scratch.cleanup()
+
+    @property
+    def backlog(self) -> float:
+        """Predicted time until a question that is accepted now would have its turn (s)."""
+        return self._pace * self._promised / self.size
+
+    async def answer(self, route: Question, body: bytes, price: float, gone: Callable[[], Awaitable[None]]) -> Answer:
+        """Return the answer to a question, computed in another process.
+
+        Parameters
+        ----------
+        price : float
+            Predicted time (s).
+        gone : callable
+            Returns when the client has gone; the computation is then killed.
+
+        Raises
+        ------
+        Refusal
+            The question's own problem, 429 for too long a queue, or 503 for a computation that was killed.
+        ClientGone
+        """
+        if self._pool is None or self._scratch is None:
+            raise Refusal("not-ready", "the compute processes are not up yet", headers=(("Retry-After", "1"),))
+        self._admit()
+        file = Path(self._scratch.name, str(next(self._numbers)))
+        since = perf_counter()
+        self._promised += price
+        self._metrics.backlog.set(self.backlog)
+        task = self._pool.schedule(
+            work, (self.terms, route.path, body, str(file)), timeout=self._settings.deadline_seconds
+        )
+        future = asyncio.wrap_future(task)
+        watch = asyncio.ensure_future(gone())
+        try:
+            await asyncio.wait((future, watch), return_when=asyncio.FIRST_COMPLETED)
+            if not future.done():
+                raise ClientGone
+            result = restored(await self._outcome(future), file)
+        finally:
+            watch.cancel()
+            task.cancel()  # type: ignore[no-untyped-call]
+            file.unlink(missing_ok=True)
+            self._promised -= price
+            self._metrics.backlog.set(self.backlog)
+        seconds = perf_counter() - since
+        self._metrics.job_seconds.observe(seconds)
+        if isinstance(result, Problem):
+            raise Refusal.of(result)
+        answer: Answer = result
+        return answer
+
+    def _admit(self) -> None:
+        limit = self._settings.max_backlog_seconds
+        if self.backlog > limit:
+            raise Refusal(
+                "too-busy",
+                f"more than {limit:g} s of work wait already, the limit max_backlog_seconds",
+                headers=(("Retry-After", str(max(1, ceil(self.backlog - limit)))),),
+            )
+
+    async def _outcome(self, future: asyncio.Future[Any]) -> Any:
+        try:
+            return await future
+        except TimeoutError:
+            limit = self._settings.deadline_seconds
+            detail = f"the computation took longer than {limit:g} s, the limit deadline_seconds, and was stopped"
+            raise Refusal("deadline-exceeded", detail) from None
+        except ProcessExpired as error:
+            self._metrics.workers_lost.inc()
+            LOG.error("a compute process died", extra={"exit_code": error.exitcode})
+            detail = "the process that computed this answer died; other questions are not affected"
+            raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
+        except (CancelledError, asyncio.CancelledError):
+            raise Refusal("shutting-down", "the service is being stopped") from None
+
+
+def _greet(seconds: float) -> None:
+    """Occupy a process for a moment, so that as many greetings as processes reach every process."""
+    from time import sleep
+
+    sleep(seconds)

@@ -1,0 +1,162 @@
+"""What is refused before the mechanics sees it: size, media type, depth, number of keys, keys named twice."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Awaitable, Callable, Mapping, MutableMapping
+from typing import Any
+
+import numpy as np
+
+from service.problems import Fault, Refusal, pointer_of
+
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Headers = Mapping[bytes, bytes]
+
+_STRING = re.compile(rb'"(?:[^"\\]|\\.)*"', re.DOTALL)
+_KEY_END = re.compile(rb'"[ \t\r\n]*:')
+_KEY = re.compile(rb'"([^"\\]*)"[ \t\r\n]*:')
+_NOT_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
+_STEP = np.zeros(256, np.int8)
+_STEP[list(b"[{")], _STEP[list(b"]}")] = 1, -1
+
+LONGEST_KEY_SHOWN = 40
+
+
+class ClientGone(Exception):
+    """The client closed the connection; there is nobody to answer."""
+
+
+def require_json(headers: Headers) -> None:
+    """Refuse a body that is not declared to be plain JSON."""
+    declared = headers.get(b"content-type", b"")
+    if declared != b"application/json" and declared.split(b";", 1)[0].strip().lower() != b"application/json":
+        raise Refusal("unsupported-media-type", "the body must be declared as Content-Type: application/json")
+    if headers.get(b"content-encoding", b"identity").lower() != b"identity":
+        raise Refusal("unsupported-media-type", "compressed bodies are not read; send the body as it is")
+
+
+def require_acceptable(accept: bytes, offered: bytes = b"application/json") -> None:
+    """Refuse a request whose Accept header admits none of what is offered."""
+    accept = accept.lower()
+    family = offered.split(b"/", 1)[0] + b"/*"
+    if accept and not (b"*/*" in accept or offered in accept or family in accept):
+        raise Refusal("not-acceptable", f"this answer is {offered.decode()}")
+
+
+async def read_body(receive: Receive, headers: Headers, limit: int) -> bytes:
+    """Return the request's body, never holding more than `limit` bytes of it.
+
+    Raises
+    ------
+    Refusal
+        413 for a longer body. Up to four times the limit is read and dropped first, so that a client which writes
+        before it reads gets to see the answer.
+    ClientGone
+        The connection was closed before the body was complete.
+    """
+    declared = headers.get(b"content-length", b"")
+    if declared.isdigit() and int(declared) > limit:
+        if b"expect" not in headers and int(declared) <= 4 * limit:
+            await _drop(receive, 4 * limit)
+        raise _too_large(limit)
+    message = await receive()
+    body: bytes = message.get("body", b"")
+    if message["type"] == "http.request" and not message.get("more_body") and len(body) <= limit:
+        return body
+    parts, size = [body], len(body)
+    while True:
+        if message["type"] != "http.request":
+            raise ClientGone
+        if size > limit:
+            parts.clear()
+            if message.get("more_body"):
+                await _drop(receive, 4 * limit - size)
+            raise _too_large(limit)
+        if not message.get("more_body"):
+            return b"".join(parts)
+        message = await receive()
+        parts.append(message.get("body", b""))
+        size += len(parts[-1])
+
+
+async def _drop(receive: Receive, most: int) -> None:
+    while most > 0:
+        message = await receive()
+        if message["type"] != "http.request":
+            raise ClientGone
+        most -= len(message.get("body", b""))
+        if not message.get("more_body"):
+            return
+
+
+def _too_large(limit: int) -> Refusal:
+    detail = f"the body has more than {limit} bytes, the limit max_body_bytes"
+    return Refusal("body-too-large", detail, headers=(("Connection", "close"),), extra={"limit": limit})
+
+
+def require_simple(body: bytes, deepest: int, most_keys: int) -> None:
+    """Refuse a document that is nested too deeply or has too many keys, without building it."""
+    if body.count(b'":') > most_keys or (b":" in body and len(_KEY_END.findall(body)) > most_keys):
+        raise Refusal("too-complex", f"the body has more than {most_keys} keys, the limit max_keys")
+    if body.count(b"[") + body.count(b"{") > deepest and _depth(body) > deepest:
+        raise Refusal("too-complex", f"the body is nested deeper than {deepest} levels, the limit max_nesting")
+
+
+def _depth(body: bytes) -> int:
+    """Return how deeply brackets nest outside of strings; meaningless for what is not JSON, yet never an error."""
+    brackets = _STRING.sub(b"", body).translate(None, _NOT_BRACKETS)
+    steps = _STEP[np.frombuffer(brackets, np.uint8)]
+    return int(np.cumsum(steps, dtype=np.int64).max(initial=0))
+
+
+def require_distinct_keys(body: bytes) -> None:
+    """Refuse a valid JSON document of which an object names a key twice.
+
+    Where no key at all occurs twice in the document, as in most small questions, looking at the names suffices.
+    Otherwise, and where a name holds more than letters, digits and underscores, it is read again, object by object.
+    """
+    names = _KEY.findall(body)
+    plain = b"".join(names).replace(b"_", b"").isalnum()
+    if not plain or b"\\" in body or len(set(names)) != len(names):
+        try:
+            json.loads(body, object_pairs_hook=_distinct)
+        except _Twice:
+            path = _repeated(json.loads(body, object_pairs_hook=_Pairs)) or ()
+            if path and len(str(path[-1])) > LONGEST_KEY_SHOWN:
+                path = path[:-1]
+            fault = Fault(pointer_of(path), "is given twice in one object")
+            raise Refusal("duplicate-key", f"{fault.pointer} {fault.detail}", faults=[fault]) from None
+
+
+class _Pairs(list[tuple[str, Any]]):
+    """The members of an object as they were written."""
+
+
+def _distinct(pairs: list[tuple[str, Any]]) -> None:
+    if len({name for name, _ in pairs}) != len(pairs):
+        raise _Twice
+
+
+class _Twice(Exception):
+    """An object names a key twice."""
+
+
+def _repeated(node: Any, path: tuple[str | int, ...] = ()) -> tuple[str | int, ...] | None:
+    """Return the path of the first key that is named twice."""
+    if isinstance(node, _Pairs):
+        seen = set()
+        for name, value in node:
+            if name in seen:
+                return (*path, name)
+            seen.add(name)
+            found = _repeated(value, (*path, name))
+            if found is not None:
+                return found
+    elif isinstance(node, list):
+        for i, value in enumerate(node):
+            found = _repeated(value, (*path, i)) if isinstance(value, list) else None
+            if found is not None:
+                return found
+    return None

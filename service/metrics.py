@@ -1,0 +1,63 @@
+"""What the service counts about itself, in a registry of its own, for GET /metrics."""
+
+from __future__ import annotations
+
+import os
+
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
+from prometheus_client.multiprocess import MultiProcessCollector
+
+CONTENT_TYPE = b"text/plain; version=0.0.4; charset=utf-8"
+
+_SECONDS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
+
+
+class Metrics:
+    """Counters and histograms of one server process, or of all of them where they share a directory.
+
+    The one histogram of requests by operation and status gives rates, latencies and refusals, and costs one
+    observation per request.
+    """
+
+    def __init__(self) -> None:
+        self.registry = registry = CollectorRegistry()
+        self._requests = Histogram(
+            "polhode_request_seconds",
+            "Time from the request's headers to the last byte of the answer.",
+            ("operation", "status"),
+            buckets=_SECONDS,
+            registry=registry,
+        )
+        self._problems = Counter("polhode_problems", "Answers that are problems.", ("code",), registry=registry)
+        self.samples = Counter("polhode_samples", "Numbers in arrays of large answers.", registry=registry)
+        self.job_seconds = Histogram(
+            "polhode_job_seconds", "Time of questions in compute processes.", buckets=_SECONDS, registry=registry
+        )
+        self.backlog = Gauge(
+            "polhode_backlog_seconds", "Predicted time of the work that waits.", registry=registry,
+            multiprocess_mode="livesum",
+        )  # fmt: skip
+        self.workers_lost = Counter("polhode_workers_lost", "Compute processes that died.", registry=registry)
+        self.cache_hits = Counter("polhode_cache_hits", "Answers given from the cache.", registry=registry)
+        self._observers: dict[tuple[str, int], Histogram] = {}
+
+    def observe(self, operation: str, status: int, seconds: float) -> None:
+        """Count a request."""
+        key = (operation, status)
+        observer = self._observers.get(key)
+        if observer is None:
+            observer = self._observers[key] = self._requests.labels(operation, str(status))
+        observer.observe(seconds)
+
+    def problem(self, code: str) -> None:
+        """Count an answer that is a problem."""
+        self._problems.labels(code).inc()
+
+    def exposition(self) -> bytes:
+        """Return everything in Prometheus' text format."""
+        # The library itself reads this variable when it is imported; several processes share counters through it.
+        if "PROMETHEUS_MULTIPROC_DIR" in os.environ:
+            shared = CollectorRegistry()
+            MultiProcessCollector(shared)  # type: ignore[no-untyped-call]
+            return generate_latest(shared)
+        return generate_latest(self.registry)

@@ -1,0 +1,254 @@
+"""What goes wrong, as HTTP: one registry of problem types and one table from the mechanics' error tree into it.
+
+Documents follow RFC 9457. Nothing that a client sent is echoed, except a short name of a key inside a JSON pointer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import orjson
+
+from core import errors
+
+MEDIA_TYPE = "application/problem+json"
+MOST_FAULTS = 20
+MOST_BYTES = 1900
+
+
+@dataclass(frozen=True)
+class ProblemType:
+    """One entry of the registry that GET /v1/errors publishes.
+
+    Attributes
+    ----------
+    code : str
+        Stable name for machines.
+    status : int
+        HTTP status.
+    title : str
+        The same for every occurrence.
+    meaning : str
+        When it happens and what to do about it.
+    """
+
+    code: str
+    status: int
+    title: str
+    meaning: str
+
+    @property
+    def uri(self) -> str:
+        """Identifier of the type, which leads to its entry in the registry."""
+        return f"/v1/errors#{self.code}"
+
+
+REGISTRY: Mapping[str, ProblemType] = {
+    entry.code: entry
+    for entry in (
+        ProblemType(
+            "invalid-json", 400, "The body cannot be read as JSON", "Send one JSON document in UTF-8 (RFC 8259)."
+        ),
+        ProblemType(
+            "too-complex", 400, "The body is nested too deeply or has too many keys", "Send a flatter document."
+        ),
+        ProblemType(
+            "duplicate-key",
+            400,
+            "An object names a key twice",
+            "Which of the two values is meant cannot be known, so neither is taken.",
+        ),
+        ProblemType("not-found", 404, "There is nothing here", "GET /openapi.json lists every path."),
+        ProblemType(
+            "method-not-allowed", 405, "This path does not answer this method", "The Allow header lists the methods."
+        ),
+        ProblemType("not-acceptable", 406, "No representation fits the Accept header", "Accept application/json."),
+        ProblemType("body-too-large", 413, "The body is too large", "The limit is named; send less or split it."),
+        ProblemType(
+            "unsupported-media-type", 415, "The body has another media type", "Send Content-Type: application/json."
+        ),
+        ProblemType(
+            "invalid-parameter",
+            422,
+            "A parameter is missing, unknown or outside its range",
+            "Each entry of errors points at a place in the document that was sent and says what must hold there.",
+        ),
+        ProblemType(
+            "unphysical-inertia",
+            422,
+            "No body has this inertia",
+            "No distribution of positive mass has this tensor or these moments of inertia.",
+        ),
+        ProblemType(
+            "open-mesh", 422, "The mesh does not enclose a volume", "Close the mesh; every edge needs two faces."
+        ),
+        ProblemType(
+            "not-applicable",
+            422,
+            "The method or model does not exist for this system",
+            "Choose another method, or none: the service then chooses.",
+        ),
+        ProblemType(
+            "accuracy-unreachable",
+            422,
+            "The accuracy that was asked for cannot be reached",
+            "The members requested and achievable say what was asked for and what can be had.",
+        ),
+        ProblemType(
+            "budget-exceeded",
+            422,
+            "The question needs more work than one question may have",
+            "The members what, needed and limit say how much; ask for less, or in parts.",
+        ),
+        ProblemType("mechanics-error", 422, "The mechanics refuses the question", "The detail says why."),
+        ProblemType(
+            "too-busy",
+            429,
+            "More work is waiting than can be done in time",
+            "Ask again after the time in the Retry-After header.",
+        ),
+        ProblemType(
+            "internal-error",
+            500,
+            "The service failed",
+            "Not the question's fault. Report the id, under which the failure is logged.",
+        ),
+        ProblemType(
+            "worker-lost",
+            503,
+            "The process that computed this answer died",
+            "Other questions are not affected. Ask again.",
+        ),
+        ProblemType(
+            "deadline-exceeded",
+            503,
+            "The computation took longer than it may",
+            "Ask for fewer samples or a lower accuracy.",
+        ),
+        ProblemType("shutting-down", 503, "The service is being stopped", "Ask again in a moment."),
+        ProblemType("not-ready", 503, "The service is still preparing itself", "Ask again in a moment."),
+    )
+}
+
+MECHANICS: Mapping[type[errors.MechanicsError], str] = {
+    errors.MechanicsError: "mechanics-error",
+    errors.InvalidParameter: "invalid-parameter",
+    errors.UnphysicalInertia: "unphysical-inertia",
+    errors.OpenMesh: "open-mesh",
+    errors.NotApplicable: "not-applicable",
+    errors.AccuracyUnreachable: "accuracy-unreachable",
+    errors.BudgetExceeded: "budget-exceeded",
+}
+"""The one table from errors to problems; a class that is not listed takes its nearest listed ancestor's entry."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One entry of a problem's list: a place in the client's document and what must hold there."""
+
+    pointer: str
+    detail: str
+    remedy: str | None = None
+
+    def document(self) -> dict[str, str]:
+        """Return the entry as it is written."""
+        entry = {"pointer": self.pointer, "detail": self.detail}
+        return entry | {"remedy": self.remedy} if self.remedy else entry
+
+
+class Refusal(Exception):
+    """A request that is answered by a problem.
+
+    Parameters
+    ----------
+    code : str
+        Key of `REGISTRY`.
+    detail : str
+        One sentence about this occurrence.
+    faults : sequence of Fault
+        Places in the client's document.
+    headers : sequence of (str, str)
+        For example Allow or Retry-After.
+    extra : mapping
+        Further members of the document.
+    """
+
+    def __init__(
+        self,
+        code: str,
+        detail: str,
+        *,
+        faults: Sequence[Fault] = (),
+        headers: Sequence[tuple[str, str]] = (),
+        extra: Mapping[str, Any] | None = None,
+    ) -> None:
+        super().__init__(code, detail)
+        self.problem = Problem(REGISTRY[code], detail, tuple(faults), tuple(headers), dict(extra or {}))
+
+    @classmethod
+    def of(cls, problem: Problem) -> Refusal:
+        """Return the refusal that a problem amounts to."""
+        refusal = cls(problem.type.code, problem.detail)
+        refusal.problem = problem
+        return refusal
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One occurrence of a problem."""
+
+    type: ProblemType
+    detail: str
+    faults: tuple[Fault, ...] = ()
+    headers: tuple[tuple[str, str], ...] = ()
+    extra: Mapping[str, Any] = field(default_factory=dict)
+
+    def body(self) -> bytes:
+        """Return the document, with as many faults as fit into the bounds on their number and on its length."""
+        document: dict[str, Any] = {
+            "type": self.type.uri,
+            "title": self.type.title,
+            "status": self.type.status,
+            "detail": self.detail,
+            "code": self.type.code,
+            **self.extra,
+        }
+        room = MOST_BYTES - len(orjson.dumps(document))
+        entries: list[dict[str, str]] = []
+        for fault in self.faults[:MOST_FAULTS]:
+            entry = fault.document()
+            room -= len(orjson.dumps(entry)) + 1
+            if room < 0 and entries:
+                break
+            entries.append(entry)
+        if entries:
+            document["errors"] = entries
+        return orjson.dumps(document)
+
+
+def code_of(error: errors.MechanicsError) -> str:
+    """Return the problem code of an error of the mechanics."""
+    return next(MECHANICS[cls] for cls in type(error).__mro__ if cls in MECHANICS)
+
+
+def problem_of(error: errors.MechanicsError) -> Problem:
+    """Return the problem that an error raised while a question is being answered amounts to."""
+    pointer = pointer_of(error.path)
+    known = ("detail", "path", "remedy", "rule")
+    data = {name: value for name, value in vars(error).items() if name not in known}
+    return Problem(REGISTRY[code_of(error)], error.detail, (Fault(pointer, error.detail, error.remedy),), extra=data)
+
+
+def pointer_of(path: Iterable[str | int]) -> str:
+    """Return steps as an RFC 6901 JSON pointer."""
+    return "".join("/" + str(step).replace("~", "~0").replace("/", "~1") for step in path)
+
+
+def registry() -> list[dict[str, Any]]:
+    """Return the registry as GET /v1/errors publishes it."""
+    return [
+        {"code": t.code, "type": t.uri, "status": t.status, "title": t.title, "meaning": t.meaning}
+        for t in REGISTRY.values()
+    ]

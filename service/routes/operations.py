@@ -1,0 +1,46 @@
+"""For those who run the service: is it alive, is it ready, what has it done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from service.metrics import CONTENT_TYPE, Metrics
+from service.problems import MEDIA_TYPE, REGISTRY, Problem
+from service.routing import Page, Reply
+from service.schemas import View
+
+
+class Status(View):
+    """State of the service."""
+
+    status: str
+
+
+_ALIVE = Reply(b'{"status":"alive"}')
+_READY = Reply(b'{"status":"ready"}')
+
+
+def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[Page, ...]:
+    """Return the routes for operation."""
+    preparing = Problem(REGISTRY["not-ready"], "kernels are being compiled and compute processes started")
+    waiting = Reply(preparing.body(), MEDIA_TYPE.encode(), 503)
+
+    return (
+        Page("/healthz", "get_health", "Whether the process answers", "operations", lambda: _ALIVE, Status),
+        Page(
+            "/readyz",
+            "get_readiness",
+            "Whether every kernel is compiled and the compute processes are up",
+            "operations",
+            lambda: _READY if ready() else waiting,
+            Status,
+        ),
+        Page(
+            "/metrics",
+            "get_metrics",
+            "Counters in Prometheus' text format",
+            "operations",
+            lambda: Reply(metrics.exposition(), CONTENT_TYPE),
+            media_type="text/plain",
+        ),
+    )

@@ -1,0 +1,96 @@
+"""What an endpoint is: one entry of the route table, from which requests are served and the documentation is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import BaseModel
+
+from core.integration.budget import Budget
+
+TABLE = "service.routes:questions"
+"""Where the route table is; compute processes load it from there by themselves."""
+
+Answer = dict[str, Any]
+"""Fields of an answer in the order in which they are written; see `service.writing`."""
+
+
+@dataclass(frozen=True)
+class Example:
+    """A question that runs, shown in the documentation and asked while the service warms up."""
+
+    summary: str
+    question: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Reply:
+    """A response that is ready to be sent."""
+
+    body: bytes
+    media_type: bytes = b"application/json"
+    status: int = 200
+
+
+def free(question: Any) -> float:
+    """Price of a question that costs less than reading it."""
+    return 0.0
+
+
+@dataclass(frozen=True)
+class Question:
+    """POST: a question to the mechanics.
+
+    Attributes
+    ----------
+    path, operation_id, summary, description, tag : str
+        As they stand in the documentation.
+    question, answer : type
+        Pydantic models. Requests are validated by the first; the second only documents.
+    handle : callable
+        From question and budget to the fields of the answer; warnings under ``"warnings"``.
+    price : callable
+        Predicted time of `handle` in seconds.
+    examples : mapping
+        By a short name.
+    """
+
+    path: str
+    operation_id: str
+    summary: str
+    tag: str
+    question: type[BaseModel]
+    answer: type[BaseModel]
+    handle: Callable[[Any, Budget], Answer]
+    price: Callable[[Any], float] = free
+    description: str = ""
+    examples: Mapping[str, Example] = field(default_factory=dict)
+    method: str = "POST"
+
+
+@dataclass(frozen=True)
+class Page:
+    """GET: a document that takes no question.
+
+    Attributes
+    ----------
+    content : callable
+        Returns what is sent now.
+    answer : type or None
+        Pydantic model that documents a JSON page.
+    """
+
+    path: str
+    operation_id: str
+    summary: str
+    tag: str
+    content: Callable[[], Reply]
+    answer: type[BaseModel] | None = None
+    media_type: str = "application/json"
+    description: str = ""
+    method: str = "GET"
+
+
+Route = Question | Page

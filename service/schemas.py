@@ -1,0 +1,124 @@
+"""Requests that hold core's dataclasses as they are, and views of the answers for the documentation.
+
+Answers are never passed through these views; they are written as they come from the handlers. A test compares the two.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from core.errors import BudgetExceeded
+from core.integration.budget import Budget
+from core.quantities import Time
+from service import VERSION
+from service.reading import ARRAY, OBJECT
+
+SIGNATURE = {"source": "polhode", "version": VERSION}
+
+
+class Request(BaseModel):
+    """Base of every question: strict, closed and immutable."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, arbitrary_types_allowed=False)
+
+
+class View(BaseModel):
+    """Base of every view of an answer."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+class Signature(View):
+    """Who answered."""
+
+    source: Literal["polhode"]
+    version: str = Field(description="Version of the service; equal questions get equal bytes within one version.")
+
+
+class Warned(View):
+    """Something the client should know about an answer that is given all the same."""
+
+    code: str
+    detail: str
+    pointer: str | None = Field(default=None, description="RFC 6901 pointer into the question.")
+
+
+class Envelope(View):
+    """What every answer carries."""
+
+    signature: Signature
+    warnings: list[Warned]
+
+
+class ProblemFault(View):
+    """A place in the document that was sent and what must hold there."""
+
+    pointer: str = Field(description="RFC 6901 pointer into the document that was sent.")
+    detail: str
+    remedy: str | None = None
+
+
+class ProblemDocument(BaseModel):
+    """RFC 9457 problem document."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    code: str = Field(description="Stable; GET /v1/errors lists them all.")
+    errors: list[ProblemFault] | None = None
+
+
+class Span(Request):
+    """Evenly spaced times, both ends included, exactly as numpy.linspace gives them."""
+
+    start: Time
+    stop: Time
+    count: int = Field(ge=1, le=10**9)
+
+    def values(self) -> NDArray[np.float64]:
+        """Return the times, shape (count,)."""
+        return np.linspace(self.start, self.stop, self.count)
+
+
+class _ObjectOrArray:
+    """Labels the two members of a union, so that a fault is told about the one that the client meant."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
+        schema: dict[str, Any] = handler(source)
+        first, second = schema["choices"]
+        return {"type": "union", "mode": "left_to_right", "choices": [(first, OBJECT), (second, ARRAY)]}
+
+
+Times = Annotated[Span | Annotated[list[Time], Field(min_length=1)], _ObjectOrArray()]
+"""Times from the given state, which holds at t = 0; they may be negative and in any order."""
+
+
+def sample_count(times: Span | list[float]) -> int:
+    """Return the number of samples without making them."""
+    return times.count if isinstance(times, Span) else len(times)
+
+
+def sample_times(times: Span | list[float], budget: Budget) -> NDArray[np.float64]:
+    """Return the times, shape (n,).
+
+    Raises
+    ------
+    BudgetExceeded
+        For more samples than one answer may have.
+    """
+    count = sample_count(times)
+    if count > budget.samples:
+        remedy = "ask for fewer times, or in several questions"
+        path = ("times", "count") if isinstance(times, Span) else ("times",)
+        raise BudgetExceeded("samples", count, budget.samples, path=path, remedy=remedy)
+    return times.values() if isinstance(times, Span) else np.array(times, dtype=np.float64)
+
+
+Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
+Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
+QuaternionRow = Annotated[list[float], Field(min_length=4, max_length=4)]

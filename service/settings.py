@@ -1,0 +1,71 @@
+"""Every setting of the service: an environment variable POLHODE_*, most of them also an option on the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+
+class Settings(BaseSettings):
+    """The service's settings; the description of each field is its documentation."""
+
+    model_config = SettingsConfigDict(env_prefix="POLHODE_", frozen=True, extra="forbid")
+
+    host: str = Field(default="127.0.0.1", description="Address to listen on.")
+    port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
+    workers: int = Field(default=1, ge=1, le=256, description="Number of server processes that share the port.")
+
+    max_body_bytes: int = Field(
+        default=8_000_000, ge=1, description="Largest request body; a longer one is refused unread (413)."
+    )
+    max_nesting: int = Field(
+        default=32, ge=1, le=200, description="Deepest nesting of arrays and objects in a request body (400)."
+    )
+    max_keys: int = Field(
+        default=4000, ge=1, description="Largest number of keys in all objects of a request body (400)."
+    )
+    max_samples: int = Field(default=1_000_000, ge=1, description="Largest number of samples in one answer (422).")
+    max_evaluations: int = Field(
+        default=20_000_000,
+        ge=1,
+        description="Largest number of evaluations of an equation of motion for one question (422).",
+    )
+
+    compute_workers: int = Field(
+        default=0,
+        ge=0,
+        le=256,
+        description="Processes that compute large questions, per server process; 0 takes one per core.",
+    )
+    inline_seconds: float = Field(
+        default=0.003, ge=0, description="Questions predicted to take less are answered in the server process itself."
+    )
+    inline_bytes: int = Field(
+        default=65_536, ge=0, description="Request bodies longer than this are parsed in a compute process."
+    )
+    deadline_seconds: float = Field(
+        default=30.0, gt=0, description="Longest computation; a longer one is killed (503)."
+    )
+    max_backlog_seconds: float = Field(
+        default=5.0, gt=0, description="Predicted time in the queue above which new large questions are refused (429)."
+    )
+    scratch: Path | None = Field(
+        default=None, description="Directory for large results on their way between processes; default: shared memory."
+    )
+    cached_answers: int = Field(
+        default=1024, ge=0, description="Number of small answers that are kept for questions asked again; 0 keeps none."
+    )
+
+    log_level: Literal["debug", "info", "warning", "error"] = Field(
+        default="info", description="Least severe message logged."
+    )
+    log_requests: Literal["none", "failures", "all"] = Field(
+        default="failures",
+        description="Which requests are logged, one JSON line each; failures are answers from 500 upwards.",
+    )
+    shutdown_seconds: int = Field(
+        default=10, ge=0, description="Time that answers in flight are given when the service is stopped."
+    )

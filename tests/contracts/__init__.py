@@ -1,0 +1,1 @@
+"""What every member of a catalogue must obey, run over all members."""

@@ -1,0 +1,1 @@
+"""Tests of integration, on small systems of their own."""

@@ -1,0 +1,93 @@
+"""Clients of the application, in this process and over a socket."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from service.app import Service
+from service.settings import Settings
+
+ROOT = Path(__file__).parents[2]
+TOYS = "tests.service.toy_routes:table"
+
+
+@pytest.fixture(scope="session")
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+@asynccontextmanager
+async def client_of(app: Any) -> AsyncIterator[httpx.AsyncClient]:
+    transport = httpx.ASGITransport(app, raise_app_exceptions=False)
+    async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
+        yield client
+
+
+def toy_service(**settings: Any) -> Service:
+    return Service(Settings(cached_answers=0, **settings), TOYS)
+
+
+class Server:
+    """A server process on a free port."""
+
+    def __init__(self, **environment: str) -> None:
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "service", "--port", "0"],
+            cwd=ROOT,
+            env={**os.environ, **environment},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.log: list[str] = []
+        self.port = self._port()
+        self.url = f"http://127.0.0.1:{self.port}"
+
+    def _port(self) -> int:
+        assert self.process.stderr is not None
+        for line in self.process.stderr:
+            self.log.append(line)
+            if "running on" in line:
+                return int(line.split("running on http://127.0.0.1:")[1].split()[0].strip('",'))
+        raise RuntimeError("".join(self.log))
+
+    def wait_until_ready(self) -> None:
+        deadline = time.monotonic() + 120
+        while httpx.get(self.url + "/readyz").status_code != 200:
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+
+    def stop(self) -> str:
+        self.process.terminate()
+        _, rest = self.process.communicate(timeout=30)
+        return "".join(self.log) + (rest or "")
+
+
+@pytest.fixture(scope="session")
+def start_server() -> Iterator[Callable[..., Server]]:
+    started: list[Server] = []
+
+    def start(**environment: str) -> Server:
+        started.append(Server(**environment))
+        return started[-1]
+
+    yield start
+    for server in started:
+        if server.process.poll() is None:
+            server.stop()
+
+
+@pytest.fixture(scope="session")
+def server(start_server: Callable[..., Server]) -> Server:
+    running = start_server()
+    running.wait_until_ready()
+    return running

@@ -1,0 +1,58 @@
+import orjson
+import pytest
+
+from core import errors
+from service.problems import (
+    MECHANICS,
+    MOST_BYTES,
+    MOST_FAULTS,
+    REGISTRY,
+    Fault,
+    Problem,
+    code_of,
+    pointer_of,
+    problem_of,
+    registry,
+)
+from tests.service.toy_routes import Unlisted
+
+
+def tree(root: type) -> list[type]:
+    return [root, *(leaf for branch in root.__subclasses__() for leaf in tree(branch))]
+
+
+@pytest.mark.parametrize("error", tree(errors.MechanicsError), ids=lambda cls: cls.__name__)
+def test_every_error_of_the_mechanics_has_its_problem(error: type) -> None:
+    if error.__module__.startswith("core."):
+        assert error in MECHANICS
+        assert MECHANICS[error] in REGISTRY
+        assert 400 <= REGISTRY[MECHANICS[error]].status < 500
+
+
+def test_an_unlisted_error_takes_its_ancestors_problem() -> None:
+    assert code_of(Unlisted("new")) == "mechanics-error"
+
+
+def test_the_data_of_an_error_are_members_of_its_problem() -> None:
+    document = orjson.loads(problem_of(errors.BudgetExceeded("samples", 7, 5, path=("times", "count"))).body())
+    assert (document["what"], document["needed"], document["limit"]) == ("samples", 7, 5)
+    assert document["errors"][0]["pointer"] == "/times/count"
+    assert document["type"] == "/v1/errors#budget-exceeded"
+
+
+def test_pointers_are_escaped_as_rfc_6901_says() -> None:
+    assert pointer_of(("a/b", "m~n", 0)) == "/a~1b/m~0n/0"
+
+
+def test_faults_are_bounded_in_number_and_length() -> None:
+    many = tuple(Fault(f"/{i}", "x") for i in range(100))
+    document = orjson.loads(Problem(REGISTRY["invalid-parameter"], "bad", many).body())
+    assert len(document["errors"]) == MOST_FAULTS
+    long = tuple(Fault(f"/{'p' * 300}/{i}", "x") for i in range(100))
+    assert len(Problem(REGISTRY["invalid-parameter"], "bad", long).body()) <= MOST_BYTES + 20
+
+
+def test_codes_are_unique_and_published() -> None:
+    published = registry()
+    assert [entry["code"] for entry in published] == list(REGISTRY)
+    assert all(entry["title"] and entry["meaning"].endswith(".") for entry in published)

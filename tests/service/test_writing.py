@@ -1,0 +1,81 @@
+import json
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from service.writing import CHUNK, ONE_PIECE, NotFinite, array_size, chunks, written
+
+RNG = np.random.default_rng(20240229)
+
+
+@dataclass(frozen=True)
+class Figures:
+    name: str
+    value: float | None
+
+
+ANSWERS = {
+    "scalars": {"a": 1.5, "b": None, "c": [1.0, {"d": "é"}], "model": Figures("x", None)},
+    "rows": {"time": RNG.normal(size=5), "rows": RNG.normal(size=(5, 3))},
+    "transposed": {"rows": RNG.normal(size=(3, 70000)).T, "one": 1.0},
+    "vector": {"first": 1, "time": RNG.normal(size=70001), "last": [1, 2]},
+    "nested": {"mesh": {"vertices": RNG.normal(size=(40000, 3)), "faces": RNG.integers(0, 9, (40000, 3))}, "x": 1},
+    "several": {"polhodes": [{"points": RNG.normal(size=(n, 3))} for n in (1, 2000, 30000, 0)]},
+    "cube": {"members": RNG.normal(size=(7, 5000, 3))},
+    "extremes": {"v": np.array([5e-324, 1.7976931348623157e308, -0.0, 0.1] * 20000)},
+    "numpy scalar": {"a": np.float64(0.1), "b": np.int64(3)},
+}
+
+
+def plain(value: object) -> object:
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, Figures):
+        return {"name": value.name, "value": value.value}
+    if isinstance(value, dict):
+        return {key: plain(entry) for key, entry in value.items()}
+    return [plain(entry) for entry in value] if isinstance(value, list) else value
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_both_ways_of_writing_give_the_same_document(name: str) -> None:
+    answer = ANSWERS[name]
+    one = written(answer)
+    pieces = list(chunks(answer))
+    assert b"".join(pieces) == one
+    assert json.loads(one) == plain(answer)
+    assert list(json.loads(one)) == list(answer)
+
+
+def test_chunks_are_small() -> None:
+    pieces = list(chunks(ANSWERS["transposed"]))
+    assert len(pieces) > 210000 // CHUNK
+    assert max(map(len, pieces)) < 25 * CHUNK
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("large", [False, True])
+def test_what_is_not_finite_is_never_written(bad: float, large: bool) -> None:
+    rows = np.zeros((ONE_PIECE if large else 4, 3))
+    rows[-1, 1] = bad
+    for answer in (
+        {"rows": rows},
+        {"a": {"b": [rows]}},
+        {"model": Figures("x", float(bad))},
+        {"a": [1.0, float(bad)]},
+        {"a": np.float64(bad)},
+        {"a": {"b": float(bad)}},
+    ):
+        with pytest.raises(NotFinite):
+            written(answer)
+        with pytest.raises(NotFinite):
+            chunks(answer)
+
+
+def test_null_is_written_where_it_is_meant() -> None:
+    assert written({"energy": None, "null": "null"}) == b'{"energy":null,"null":"null"}'
+
+
+def test_size_counts_numbers_in_arrays_at_any_depth() -> None:
+    assert array_size({"a": np.zeros((2, 3)), "b": [np.zeros(4), {"c": np.zeros(5)}], "d": "text", "e": 1.0}) == 15

@@ -1,0 +1,113 @@
+"""A route table that needs no mechanics: the transport is tested with it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from core.errors import AccuracyUnreachable, MechanicsError, UnphysicalInertia
+from core.integration.budget import Budget
+from core.notices import Notice
+from core.quantities import AngularVelocity, Mass, MomentOfInertia, Position, TaggedBy, check
+from service.routing import Example, Question
+from service.schemas import Envelope, Request, Times, Vector, sample_count, sample_times
+
+
+@dataclass(frozen=True)
+class Moments:
+    moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
+    kind: Literal["moments"] = "moments"
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.moments[2] == 7.0:
+            raise UnphysicalInertia(("moments", 2), "not exceed the sum of the others", remedy="make it smaller")
+
+
+@dataclass(frozen=True)
+class Points:
+    masses: tuple[Mass, ...]
+    positions: tuple[Position, ...]
+    kind: Literal["points"] = "points"
+
+    def __post_init__(self) -> None:
+        check(self)
+
+
+@dataclass(frozen=True)
+class Nest:
+    inner: tuple[ToyBody, ...]
+    kind: Literal["nest"] = "nest"
+
+
+ToyBody = Annotated[Moments | Points | Nest, TaggedBy("kind")]
+
+BODY = {"kind": "moments", "moments": [1.0, 2.0, 3.0]}
+GOOD: dict[str, Any] = {
+    "body": BODY,
+    "angular_velocity": [0.1, 1.0, 0.1],
+    "times": {"start": 0.0, "stop": 1.0, "count": 3},
+}
+
+
+class Ask(Request):
+    body: ToyBody
+    angular_velocity: AngularVelocity
+    times: Times
+    behaviour: Literal["well", "nan", "fail", "unreachable", "sleep", "die", "warn"] = "well"
+
+
+class Told(Envelope):
+    time: list[float]
+    position: list[Vector]
+    nothing: None
+
+
+def handle(question: Ask, budget: Budget) -> dict[str, Any]:
+    behaviour = question.behaviour
+    if behaviour == "fail":
+        raise RuntimeError("secret of the house")
+    if behaviour == "unreachable":
+        raise AccuracyUnreachable(1e-30, 1e-15, "double precision")
+    if behaviour == "sleep":
+        time.sleep(question.angular_velocity[0])
+    if behaviour == "die":
+        os.kill(os.getpid(), signal.SIGKILL)
+    t = sample_times(question.times, budget)
+    position = np.stack([t * w for w in question.angular_velocity]).T
+    if behaviour == "nan":
+        position[-1, -1] = np.nan
+    warnings = (Notice("toy", "this is a toy", ("body", "moments", 0)),) if behaviour == "warn" else ()
+    return {"time": t, "position": position, "nothing": None, "warnings": warnings}
+
+
+def price(question: Ask) -> float:
+    if question.behaviour == "sleep":
+        return question.angular_velocity[0]
+    return 1.0 if question.behaviour == "die" else 1e-8 * sample_count(question.times)
+
+
+class Unlisted(MechanicsError):
+    """An error that the table of problems does not name."""
+
+
+TOY = Question(
+    "/v1/toy",
+    "ask_toy",
+    "A toy",
+    "toys",
+    Ask,
+    Told,
+    handle,
+    price,
+    examples={"small": Example("three samples", GOOD)},
+)
+
+
+def table() -> tuple[Question, ...]:
+    return (TOY,)
