@@ -11,7 +11,7 @@ from core.errors import Path
 from core.integration.budget import Budget
 from core.notices import Notice
 from service.problems import pointer_of
-from service.reading import Reader
+from service.reading import Limits, Reader
 from service.routing import Answer, Question
 from service.schemas import SIGNATURE
 
@@ -25,20 +25,22 @@ class Answering:
         What can be asked.
     budget : Budget
         What one question may cost.
-    deepest, most_keys : int
-        Limits on documents.
+    limits : Limits
+        On documents.
     """
 
-    def __init__(self, routes: Iterable[Question], budget: Budget, *, deepest: int, most_keys: int) -> None:
+    def __init__(self, routes: Iterable[Question], budget: Budget, limits: Limits) -> None:
         self._routes = tuple(routes)
         self._budget = budget
-        self._readers = {
-            route.path: Reader(route.question, deepest=deepest, most_keys=most_keys).read for route in self._routes
-        }
+        self._readers = {route.path: Reader(route.question, limits).read for route in self._routes}
 
     def read(self, route: Question, body: bytes) -> Any:
         """Return the question that a body asks; see `Reader.read`."""
         return self._readers[route.path](body)
+
+    def price(self, route: Question, question: Any) -> float:
+        """Return the predicted time of an answer (s), or raise `BudgetExceeded`."""
+        return route.price(question, self._budget)
 
     def answer(self, route: Question, question: Any) -> Answer:
         """Return the whole answer: signature, warnings, fields."""

@@ -44,7 +44,7 @@ class Service:
         asked: tuple[Question, ...] = resolve_name(table)()
         self.compute = Compute(settings, self.metrics, table)
         terms = self.compute.terms
-        self._answering = Answering(asked, terms.budget, deepest=terms.deepest, most_keys=terms.most_keys)
+        self._answering = Answering(asked, terms.budget, terms.limits)
         self.routes: tuple[Route, ...] = (
             *asked,
             *catalogues(),

@@ -25,6 +25,7 @@ from service.guards import ClientGone
 from service.logs import LOG
 from service.metrics import Metrics
 from service.problems import Problem, Refusal
+from service.reading import Limits
 from service.routing import Answer, Question
 from service.settings import Settings
 from service.worker import Terms, prepare, restored, work
@@ -46,8 +47,7 @@ class Compute:
         self.terms = Terms(
             table,
             Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
-            settings.max_nesting,
-            settings.max_keys,
+            Limits(settings.max_nesting, settings.max_keys, settings.max_arrays),
         )
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)

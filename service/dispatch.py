@@ -148,7 +148,7 @@ class Dispatcher:
     async def _answer(self, route: Question, body: bytes, exchange: Exchange) -> Any:
         if len(body) <= self._settings.inline_bytes:
             question = self._answering.read(route, body)
-            price = route.price(question)
+            price = self._answering.price(route, question)
             if price <= self._settings.inline_seconds:
                 return self._answering.answer(route, question)
         else:

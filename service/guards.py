@@ -14,10 +14,9 @@ from service.problems import Fault, Refusal, pointer_of
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Headers = Mapping[bytes, bytes]
 
-_STRING = re.compile(rb'"(?:[^"\\]|\\.)*"', re.DOTALL)
 _KEY_END = re.compile(rb'"[ \t\r\n]*:')
 _KEY = re.compile(rb'"([^"\\]*)"[ \t\r\n]*:')
-_NOT_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
+_OTHER = bytes(set(range(256)) - set(b'"[]{}'))
 _STEP = np.zeros(256, np.int8)
 _STEP[list(b"[{")], _STEP[list(b"]}")] = 1, -1
 
@@ -96,18 +95,24 @@ def _too_large(limit: int) -> Refusal:
     return Refusal("body-too-large", detail, headers=(("Connection", "close"),), extra={"limit": limit})
 
 
-def require_simple(body: bytes, deepest: int, most_keys: int) -> None:
-    """Refuse a document that is nested too deeply or has too many keys, without building it."""
+def require_simple(body: bytes, deepest: int, most_keys: int, most_arrays: int) -> None:
+    """Refuse a document that is nested too deeply or has too many keys or arrays, without building it."""
     if body.count(b'":') > most_keys or (b":" in body and len(_KEY_END.findall(body)) > most_keys):
         raise Refusal("too-complex", f"the body has more than {most_keys} keys, the limit max_keys")
-    if body.count(b"[") + body.count(b"{") > deepest and _depth(body) > deepest:
+    opened = body.count(b"[") + body.count(b"{")
+    if opened > most_arrays:
+        raise Refusal("too-complex", f"the body has more than {most_arrays} arrays and objects, the limit max_arrays")
+    if opened > deepest and _depth(body) > deepest:
         raise Refusal("too-complex", f"the body is nested deeper than {deepest} levels, the limit max_nesting")
 
 
 def _depth(body: bytes) -> int:
     """Return how deeply brackets nest outside of strings; meaningless for what is not JSON, yet never an error."""
-    brackets = _STRING.sub(b"", body).translate(None, _NOT_BRACKETS)
-    steps = _STEP[np.frombuffer(brackets, np.uint8)]
+    if b"\\" in body:
+        body = body.replace(b"\\\\", b"").replace(b'\\"', b"")
+    codes = np.frombuffer(body.translate(None, _OTHER), np.uint8)
+    inside = np.logical_xor.accumulate(codes == ord('"'))
+    steps = np.where(inside, np.int8(0), _STEP[codes])
     return int(np.cumsum(steps, dtype=np.int64).max(initial=0))
 
 

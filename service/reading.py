@@ -1,16 +1,17 @@
 """From the bytes of a request to a question: form is checked here, meaning by the objects of core that are built.
 
-A reader validates JSON bytes in one step (no intermediate Python document). Only when that fails is the document
-parsed a second time, to turn the validator's locations into JSON pointers into what the client sent.
+A reader validates JSON bytes in one step, without an intermediate Python document. The validator's locations of faults
+name members of unions as if they were steps; left out, they are JSON pointers into what the client sent.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
-from pydantic_core import SchemaValidator, from_json
+from pydantic_core import SchemaValidator
 
 from core.errors import InvalidParameter
 from service.guards import LONGEST_KEY_SHOWN, require_distinct_keys, require_simple
@@ -21,9 +22,6 @@ Step = str | int
 
 OBJECT, ARRAY = "<object>", "<array>"
 """Labels of the members of a union of an object and an array; a fault in the member not meant is dropped."""
-
-TAG = "kind"
-"""The field by which the members of every union of core are told apart."""
 
 _RULES: Mapping[str, str] = {
     "missing": "is required",
@@ -50,11 +48,22 @@ _RULES: Mapping[str, str] = {
     "less_than": "must be less than {lt:g}",
     "less_than_equal": "must be at most {le:g}",
     "literal_error": "must be {expected}",
+    "neither": "must be an object or an array",
     "union_tag_invalid": "must have one of these as {discriminator}: {expected_tags}",
     "union_tag_not_found": "must be an object with the key {discriminator}",
     "string_too_long": "must have at most {max_length} characters",
 }
+_TYPES = ("model_type", "model_attributes_type", "dataclass_type", "list_type", "tuple_type")
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a document may have: levels of nesting, keys, arrays and objects."""
+
+    nesting: int = 32
+    keys: int = 4000
+    arrays: int = 150_000
 
 
 class Reader(Generic[Q]):
@@ -64,15 +73,16 @@ class Reader(Generic[Q]):
     ----------
     question : type
         A pydantic model, which may hold dataclasses of core.
-    deepest, most_keys : int
-        Limits on the document.
+    limits : Limits
+        On the document.
     """
 
-    def __init__(self, question: type[Q], *, deepest: int, most_keys: int) -> None:
+    def __init__(self, question: type[Q], limits: Limits) -> None:
         schema = _failing_fast(TypeAdapter(question).core_schema)
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
-        self._deepest, self._most_keys = deepest, most_keys
+        self._tags = _tags_of(schema)
+        self._deepest, self._most_keys, self._most_arrays = limits.nesting, limits.keys, limits.arrays
 
     def read(self, body: bytes) -> Q:
         """Return the question that a request's body asks.
@@ -82,13 +92,49 @@ class Reader(Generic[Q]):
         Refusal
             With the pointers of what is wrong.
         """
-        require_simple(body, self._deepest, self._most_keys)
+        require_simple(body, self._deepest, self._most_keys, self._most_arrays)
         try:
             question: Q = self._validate(body, strict=True)
         except ValidationError as error:
-            raise _refusal(error, body) from None
+            raise self._refusal(error) from None
         require_distinct_keys(body)
         return question
+
+    def _refusal(self, error: ValidationError) -> Refusal:
+        found = error.errors(include_url=False, include_input=False)
+        if found[0]["type"] == "json_invalid":
+            # The parser's message gives line and column and quotes nothing.
+            return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
+        faults, codes = [], set()
+        for entry in _of_the_member_meant(_lengths_once(found)):
+            steps = self._steps(entry["loc"])
+            cause = entry.get("ctx", {}).get("error")
+            if isinstance(cause, InvalidParameter):
+                faults.append(Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy))
+                codes.add(code_of(cause))
+            else:
+                faults.append(_fault(entry, steps))
+                codes.add("invalid-parameter")
+            if len(faults) == MOST_FAULTS:
+                break
+        code = codes.pop() if len(codes) == 1 else "invalid-parameter"
+        more = f", and {len(faults) - 1} more" if len(faults) > 1 else ""
+        return Refusal(code, f"{faults[0].pointer or 'the document'} {faults[0].detail}{more}", faults=faults)
+
+    def _steps(self, location: Sequence[Step]) -> tuple[Step, ...]:
+        """Return a location without the names of members of unions."""
+        steps: list[Step] = []
+        tags = self._tags.get("", frozenset())
+        for step in location:
+            if step in (OBJECT, ARRAY):
+                continue
+            if isinstance(step, str):
+                if step in tags:
+                    tags = frozenset()
+                    continue
+                tags = self._tags.get(step, frozenset())
+            steps.append(step)
+        return tuple(steps)
 
 
 def _failing_fast(schema: Any) -> Any:
@@ -100,112 +146,111 @@ def _failing_fast(schema: Any) -> Any:
         walked = {key: _failing_fast(value) for key, value in schema.items() if key != "metadata"}
         free = schema.get("type") == "tuple" and "variadic_item_index" in schema
         return walked | {"fail_fast": True} if free or schema.get("type") == "list" else walked
-    if isinstance(schema, list):
-        return [_failing_fast(entry) for entry in schema]
-    if isinstance(schema, tuple):
-        return tuple(_failing_fast(entry) for entry in schema)
+    if isinstance(schema, (list, tuple)):
+        return type(schema)(_failing_fast(entry) for entry in schema)
     return schema
 
 
-def _refusal(error: ValidationError, body: bytes) -> Refusal:
-    found = error.errors(include_url=False, include_input=False)
-    if found[0]["type"] == "json_invalid":
-        # The parser's message gives line and column and quotes nothing.
-        return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
-    document = from_json(body, allow_inf_nan=True)
-    faults: list[Fault] = []
-    codes: list[str] = []
-    for entry in _without_repetition(found):
-        steps = _steps(entry["loc"], document)
-        if steps is None:
-            continue
-        cause = entry.get("ctx", {}).get("error")
-        if isinstance(cause, InvalidParameter):
-            faults.append(Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy))
-            codes.append(code_of(cause))
+def _tags_of(schema: Any) -> Mapping[str, frozenset[str]]:
+    """Return, for each name of a field that holds members of a union, the tags by which they are told apart."""
+    definitions: dict[str, Any] = {}
+    found: dict[str, set[str]] = {}
+    followed: set[tuple[str, str]] = set()
+
+    def gather(node: Any) -> None:
+        if isinstance(node, Mapping):
+            if "ref" in node:
+                definitions[node["ref"]] = node
+            for value in node.values():
+                gather(value)
+        elif isinstance(node, (list, tuple)):
+            for value in node:
+                gather(value)
+
+    def walk(node: Any, field: str) -> None:
+        if isinstance(node, (list, tuple)):
+            for value in node:
+                walk(value, field)
+        if not isinstance(node, Mapping):
+            return
+        kind = node.get("type")
+        if kind == "definition-ref":
+            reference = node["schema_ref"]
+            if (reference, field) not in followed and reference in definitions:
+                followed.add((reference, field))
+                walk(definitions[reference], field)
+        elif kind == "tagged-union":
+            found.setdefault(field, set()).update(node["choices"])
+            for member in node["choices"].values():
+                walk(member, "")
+        elif kind == "model-fields":
+            for name, value in node["fields"].items():
+                walk(value, name)
+        elif kind == "dataclass-field":
+            walk(node["schema"], node["name"])
         else:
-            faults.append(_fault(entry, steps, document))
-            codes.append("invalid-parameter")
-        if len(faults) == MOST_FAULTS:
-            break
-    if not faults:
-        # Every fault lay in a member of a union that the client did not mean.
-        steps = _resolved(found[0]["loc"], document)
-        faults, codes = [Fault(pointer_of(steps), "must be an object or an array")], ["invalid-parameter"]
-    code = codes[0] if len(set(codes)) == 1 else "invalid-parameter"
-    where = faults[0].pointer or "the document"
-    more = f", and {len(faults) - 1} more" if len(faults) > 1 else ""
-    return Refusal(code, f"{where} {faults[0].detail}{more}", faults=faults)
+            for key, value in node.items():
+                if key not in ("definitions", "metadata"):
+                    walk(value, field)
+
+    gather(schema)
+    walk(schema, "")
+    return {field: frozenset(tags) for field, tags in found.items()}
 
 
-def _without_repetition(found: Sequence[Any]) -> Iterator[Any]:
-    """Yield the errors, those of the missing entries of one array as a single one that names its length."""
-    length: dict[tuple[Step, ...], int] = {}
+def _lengths_once(found: Sequence[Any]) -> Iterator[Any]:
+    """Yield the faults, those of the missing entries of one array as a single one that tells its length."""
+    length: dict[tuple[Step, ...], tuple[int, int]] = {}
     for entry in found:
-        if entry["type"] == "missing" and isinstance(entry["loc"][-1], int):
-            parent = entry["loc"][:-1]
-            length[parent] = max(length.get(parent, 0), entry["loc"][-1] + 1)
+        if _missing_entry(entry):
+            parent, at = entry["loc"][:-1], entry["loc"][-1]
+            least, most = length.get(parent, (at, at))
+            length[parent] = min(least, at), max(most, at)
     for entry in found:
-        parent = entry["loc"][:-1]
-        if entry["type"] == "missing" and parent in length:
-            yield {"type": "short", "loc": parent, "ctx": {"length": length.pop(parent)}}
-        elif not (entry["type"] == "missing" and entry["loc"] and isinstance(entry["loc"][-1], int)):
+        if not _missing_entry(entry):
             yield entry
+        elif entry["loc"][:-1] in length:
+            has, last = length.pop(entry["loc"][:-1])
+            yield {"type": "short", "loc": entry["loc"][:-1], "ctx": {"has": has, "needs": last + 1}}
 
 
-def _fault(entry: Any, steps: tuple[Step, ...], document: Any) -> Fault:
+def _missing_entry(entry: Any) -> bool:
+    return entry["type"] == "missing" and bool(entry["loc"]) and isinstance(entry["loc"][-1], int)
+
+
+def _of_the_member_meant(found: Iterator[Any]) -> Iterator[Any]:
+    """Yield the faults without those of the member of an object-or-array union that the client did not mean.
+
+    That member has a single fault, its type, and stands first or second; if both members have it, neither was meant.
+    """
+    entries = list(found)
+    other = {OBJECT: ARRAY, ARRAY: OBJECT}
+    wrong = {
+        entry["loc"] for entry in entries if entry["type"] in _TYPES and entry["loc"] and entry["loc"][-1] in other
+    }
+    for entry in entries:
+        location = entry["loc"]
+        if location not in wrong:
+            yield entry
+        elif (*location[:-1], other[location[-1]]) in wrong and location[-1] == OBJECT:
+            yield {"type": "neither", "loc": location[:-1]}
+
+
+def _fault(entry: Any, steps: tuple[Step, ...]) -> Fault:
     kind, context = entry["type"], entry.get("ctx", {})
     if kind in _UNKNOWN and len(str(steps[-1])) > LONGEST_KEY_SHOWN:
         return Fault(pointer_of(steps[:-1]), "has a key that is not known here")
     if kind == "short":
-        return Fault(pointer_of(steps), f"must have {context['length']} entries, not {len(_at(document, steps))}")
-    if kind == "too_short" and context["min_length"] == 1:
-        return Fault(pointer_of(steps), "must not be empty")
-    if kind in ("too_long", "too_short"):
-        bound = f"at most {context['max_length']}" if kind == "too_long" else f"at least {context['min_length']}"
-        return Fault(pointer_of(steps), f"must have {bound} entries, not {len(_at(document, steps))}")
+        return Fault(pointer_of(steps), f"must have {context['needs']} entries, not {context['has']}")
+    if kind == "too_long":
+        return Fault(pointer_of(steps), f"must have at most {context['max_length']} entries")
+    if kind == "too_short":
+        least = context["min_length"]
+        return Fault(pointer_of(steps), f"must have at least {least} entries" if least > 1 else "must not be empty")
     rule = _RULES.get(kind)
     # A rule of our own is worded where it is stated; other messages of the validator quote no input.
     detail = rule.format_map(context) if rule else str(entry["msg"]).removeprefix("Value error, ")
     return Fault(pointer_of(steps), detail)
 
 
-def _steps(location: Sequence[Step], document: Any) -> tuple[Step, ...] | None:
-    """Return a location without the labels of unions, or None for a fault in the member that was not meant."""
-    node, steps, tagged = document, [], False
-    for step in location:
-        if step in (OBJECT, ARRAY):
-            if isinstance(node, dict) != (step == OBJECT) or not isinstance(node, (dict, list)):
-                return None
-            continue
-        if isinstance(node, dict) and not tagged and node.get(TAG) == step:
-            # The name of the member of a union; it stands once before the steps into that member.
-            tagged = True
-            continue
-        tagged = False
-        steps.append(step)
-        try:
-            node = node[step]
-        except (KeyError, IndexError, TypeError):
-            # What is missing or not known can only be the last step.
-            node = None
-    return tuple(steps)
-
-
-def _resolved(location: Sequence[Step], document: Any) -> tuple[Step, ...]:
-    """Return the part of a location before the first union label."""
-    steps: list[Step] = []
-    for step in location:
-        if step in (OBJECT, ARRAY):
-            break
-        steps.append(step)
-    return tuple(steps)
-
-
-def _at(document: Any, steps: Sequence[Step]) -> Any:
-    for step in steps:
-        document = document[step]
-    return document
-
-
-__all__ = ["ARRAY", "OBJECT", "Reader"]
+__all__ = ["ARRAY", "OBJECT", "Limits", "Reader"]

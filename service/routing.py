@@ -34,7 +34,7 @@ class Reply:
     status: int = 200
 
 
-def free(question: Any) -> float:
+def free(question: Any, budget: Budget) -> float:
     """Price of a question that costs less than reading it."""
     return 0.0
 
@@ -52,7 +52,7 @@ class Question:
     handle : callable
         From question and budget to the fields of the answer; warnings under ``"warnings"``.
     price : callable
-        Predicted time of `handle` in seconds.
+        Predicted time of `handle` in seconds; refuses what exceeds the budget.
     examples : mapping
         By a short name.
     """
@@ -64,7 +64,7 @@ class Question:
     question: type[BaseModel]
     answer: type[BaseModel]
     handle: Callable[[Any, Budget], Answer]
-    price: Callable[[Any], float] = free
+    price: Callable[[Any, Budget], float] = free
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     method: str = "POST"

@@ -98,24 +98,25 @@ Times = Annotated[Span | Annotated[list[Time], Field(min_length=1)], _ObjectOrAr
 """Times from the given state, which holds at t = 0; they may be negative and in any order."""
 
 
-def sample_count(times: Span | list[float]) -> int:
-    """Return the number of samples without making them."""
-    return times.count if isinstance(times, Span) else len(times)
-
-
-def sample_times(times: Span | list[float], budget: Budget) -> NDArray[np.float64]:
-    """Return the times, shape (n,).
+def sample_count(times: Span | list[float], budget: Budget) -> int:
+    """Return the number of samples without making them.
 
     Raises
     ------
     BudgetExceeded
         For more samples than one answer may have.
     """
-    count = sample_count(times)
+    count = times.count if isinstance(times, Span) else len(times)
     if count > budget.samples:
         remedy = "ask for fewer times, or in several questions"
         path = ("times", "count") if isinstance(times, Span) else ("times",)
         raise BudgetExceeded("samples", count, budget.samples, path=path, remedy=remedy)
+    return count
+
+
+def sample_times(times: Span | list[float], budget: Budget) -> NDArray[np.float64]:
+    """Return the times, shape (n,), or raise `BudgetExceeded`."""
+    sample_count(times, budget)
     return times.values() if isinstance(times, Span) else np.array(times, dtype=np.float64)
 
 

@@ -27,6 +27,9 @@ class Settings(BaseSettings):
     max_keys: int = Field(
         default=4000, ge=1, description="Largest number of keys in all objects of a request body (400)."
     )
+    max_arrays: int = Field(
+        default=150_000, ge=1, description="Largest number of arrays and objects in a request body (400)."
+    )
     max_samples: int = Field(default=1_000_000, ge=1, description="Largest number of samples in one answer (422).")
     max_evaluations: int = Field(
         default=20_000_000,

@@ -20,6 +20,7 @@ from core.errors import MechanicsError
 from core.integration.budget import Budget
 from service.answering import Answering
 from service.problems import Problem, Refusal, problem_of
+from service.reading import Limits
 from service.routing import Question
 from service.writing import array_size
 
@@ -39,8 +40,7 @@ class Terms:
 
     table: str
     budget: Budget
-    deepest: int
-    most_keys: int
+    limits: Limits
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Stored:
 @cache
 def answering(terms: Terms) -> Answering:
     """Return this process's answering of questions."""
-    return Answering(_routes(terms.table).values(), terms.budget, deepest=terms.deepest, most_keys=terms.most_keys)
+    return Answering(_routes(terms.table).values(), terms.budget, terms.limits)
 
 
 @cache

@@ -117,7 +117,6 @@ def rest_of(budget: Budget, spent: int) -> Budget:
         If nothing is left.
     """
     if spent >= budget.evaluations:
-        raise BudgetExceeded(
-            "evaluations", spent + 1, budget.evaluations, remedy="ask for earlier times or less accuracy"
-        )
+        remedy = "ask for earlier times or for less accuracy"
+        raise BudgetExceeded("evaluations", spent + 1, budget.evaluations, remedy=remedy)
     return replace(budget, evaluations=budget.evaluations - spent)

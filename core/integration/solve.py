@@ -92,13 +92,8 @@ def _checked(times: ArrayLike, budget: Budget) -> Floats:
     if instants.ndim != 1 or instants.size == 0:
         raise InvalidParameter("times", "be a list of at least one time")
     if instants.size > budget.samples:
-        raise BudgetExceeded(
-            "samples",
-            instants.size,
-            budget.samples,
-            path=("times",),
-            remedy="ask for fewer times, in several questions",
-        )
+        remedy = "ask for fewer times, or in several questions"
+        raise BudgetExceeded("samples", instants.size, budget.samples, path=("times",), remedy=remedy)
     finite = np.isfinite(instants)
     if not finite.all():
         raise InvalidParameter(("times", int(finite.argmin())), "be finite")
@@ -110,12 +105,8 @@ def _evaluated(
 ) -> Trajectory:
     error = exact.error(times)
     if not error <= accuracy:
-        raise AccuracyUnreachable(
-            accuracy,
-            error,
-            "the closed form's own bound is larger",
-            remedy="ask for earlier times or for less accuracy",
-        )
+        remedy = "ask for earlier times or for less accuracy"
+        raise AccuracyUnreachable(accuracy, error, "the closed form's own bound is larger", remedy=remedy)
     states = exact.sample(times)
     if not np.isfinite(states).all():
         raise NotApplicable("the motion leaves the range of double precision", remedy="choose other units")
@@ -185,9 +176,8 @@ def _refined(system: System, times: Floats, accuracy: float, budget: Budget) -> 
         run = run_to_accuracy(system, times, accuracy, budget)
     except InvalidParameter as fault:
         # The client chose no setting; what it can change is how far the motion goes.
-        raise InvalidParameter(
-            "times", f"be within reach of an integrator, whose {fault}", remedy=fault.remedy
-        ) from fault
+        rule = f"be within reach of an integrator, whose {fault}"
+        raise InvalidParameter("times", rule, remedy=fault.remedy) from fault
     except BudgetExceeded as fault:
         remedy = "ask for earlier times or for less accuracy"
         raise BudgetExceeded(fault.what, fault.needed, fault.limit, path=("times",), remedy=remedy) from fault
@@ -199,8 +189,8 @@ def _warnings(stated: Accuracy, method: AbstractMethod) -> tuple[Notice, ...]:
     if stated.error <= stated.requested:
         return ()
     detail = (
-        f"the error of {method.kind} with this setting is {stated.error:.3g}, and {stated.requested:.3g} was asked for; "
-        "leave out the method to have one chosen that reaches it"
+        f"the error of {method.kind} with this setting is {stated.error:.3g}, where {stated.requested:.3g} was asked "
+        "for; leave out the method to have one chosen that reaches it"
     )
     return (Notice("accuracy-not-reached", detail, ("method",)),)
 

@@ -131,7 +131,8 @@ class FreeRotation:
         return motion
 
     @property
-    def _exact_inputs(self) -> bool:
+    def exact_inputs(self) -> bool:
+        """Whether moments and components are the client's own doubles, not derived from them."""
         return self.frame.aligned and not np.any(self.inertia.moments_tail)
 
     @property
@@ -210,7 +211,7 @@ class FreeRotation:
         m, horizon = self.motion, self.horizon(times)
         if m.regime in (REST, STEADY):
             return 0.0
-        if self._exact_inputs:
+        if self.exact_inputs:
             return EVALUATION_ERROR + growth(m.computed, SET_UP_ROUNDING, horizon)
         turned = 0.0 if self.frame.aligned else TURNED_AXES_ERROR
         return EVALUATION_ERROR + turned + growth(m.inherited, DERIVED_ROUNDING, horizon)

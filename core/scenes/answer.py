@@ -13,7 +13,8 @@ import numpy as np
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
 from core.integration.trajectory import Accuracy, Work
-from core.scenes.enclosure import Ball, Caution, Rounding, precision
+from core.notices import Notice
+from core.scenes.enclosure import Ball, Rounding, precision
 
 HORIZON = "horizon"
 MOTION = ("events", "ended", "trajectory")
@@ -48,14 +49,14 @@ class Columns:
         Bound of the absolute error of each sample, broadcastable to the values.
     scales : mapping of str to float
         Largest magnitude of each column in the motion, the given state included.
-    cautions : tuple of Caution
+    notices : tuple of Notice
         Columns that could not be given, and why.
     """
 
     values: Mapping[str, Floats]
     errors: Mapping[str, Floats]
     scales: Mapping[str, float]
-    cautions: tuple[Caution, ...] = ()
+    notices: tuple[Notice, ...] = ()
 
     def error(self) -> float:
         """Return a bound of the error of any sample, relative to the largest norm of its column."""
@@ -111,7 +112,7 @@ class SceneAnswer:
         ``"horizon"``, or the event that ended the motion before it; None if nothing ends it or no motion was asked for.
     accuracy : Accuracy
         Bound of the error: of figures relative to themselves, of samples to the largest norm of their column.
-    cautions : tuple of Caution
+    warnings : tuple of Notice
         What the reader must know.
     work : Work
         Samples computed.
@@ -124,7 +125,7 @@ class SceneAnswer:
     trajectory: Mapping[str, Floats] | None
     ended: str | None
     accuracy: Accuracy
-    cautions: tuple[Caution, ...]
+    warnings: tuple[Notice, ...]
     work: Work
     requested_samples: int
 
@@ -183,7 +184,9 @@ class ConstrainedSystem(ABC):
             if wanted & {*MOTION, *self.of_motion}:
                 motion = self.motion(float(np.max(instants, initial=0.0)) if times is not None else math.inf)
                 table |= self.motion_figures(motion)
-            figures = {name: rounded(table[name](), (name,)) for name in self.outputs if name in wanted and name in table}
+            figures = {
+                name: rounded(table[name](), (name,)) for name in self.outputs if name in wanted and name in table
+            }
             ended, trajectory, columns = None, None, None
             if motion is not None:
                 end = math.inf if motion.end is None else float(motion.end.time)
@@ -205,6 +208,7 @@ class ConstrainedSystem(ABC):
                     instants = instants[instants <= end]
                     columns = motion.sample(instants)
                     trajectory = {"time": instants, **columns.values}
+            warnings = (*rounded.notices, *self.notices(wanted), *(columns.notices if columns else ()))
         error = rounded.error if columns is None else max(rounded.error, columns.error())
         if error > accuracy:
             raise AccuracyUnreachable(
@@ -216,12 +220,12 @@ class ConstrainedSystem(ABC):
             trajectory=trajectory,
             ended=ended,
             accuracy=Accuracy(requested=accuracy, error=error, how="closed form"),
-            cautions=(*rounded.cautions, *self.cautions(wanted), *(columns.cautions if columns else ())),
+            warnings=warnings,
             work=Work(samples=0 if trajectory is None else instants.size),
             requested_samples=0 if times is None else np.asarray(times).size,
         )
 
-    def cautions(self, wanted: frozenset[str]) -> tuple[Caution, ...]:
+    def notices(self, wanted: frozenset[str]) -> tuple[Notice, ...]:
         """Return what the reader of the wanted outputs must know."""
         return ()
 

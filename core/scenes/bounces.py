@@ -1,8 +1,8 @@
 """A string that is jerked again and again: arcs of free motion between jerks, each a fraction e of the one before.
 
-After a jerk the string opens at the rate w and closes again after d = 2w/Gamma, Gamma = u_1' + u_2' > 0, at the same rate; the
-next arc has e w and e d. With S_n = 1 + e + ... + e^(n-1), arc n begins at d S_n, and every velocity and position at the
-beginning of an arc is a polynomial in S_n:
+After a jerk the string opens at the rate w and closes again after d = 2w/Gamma, Gamma = u_1' + u_2' > 0, at the same
+rate; the next arc has e w and e d. With S_n = 1 + e + ... + e^(n-1), arc n begins at d S_n, and every velocity and
+position at the beginning of an arc is a polynomial in S_n:
 
     v_n = v_0 + nu S,    x_n = x_0 + d v_0 S + d nu S(S - 1)/(1 + e) + (a d^2/2) S(2 - (1 - e)S)/(1 + e),
 
@@ -83,10 +83,8 @@ class Sequence:
         gv, gr, gu = self.gains()
 
         def values(initial: Balls, rates: Balls, gains: Balls, accelerations: Balls) -> Balls:
-            first, second = (
-                self.coefficients(initial[i], rates[i], gains[i], accelerations[i]) for i in (0, 1)
-            )
-            return tuple(c0 + S * (c1 + S * c2) for c0, c1, c2 in (first, second))  # type: ignore[return-value]
+            first, second = (self.coefficients(initial[i], rates[i], gains[i], accelerations[i]) for i in (0, 1))
+            return tuple(c0 + S * (c1 + S * c2) for c0, c1, c2 in (first, second))
 
         def linear(initial: Balls, gains: Balls) -> Balls:
             return initial[0] + gains[0] * S, initial[1] + gains[1] * S
@@ -108,18 +106,16 @@ class Sequence:
         if limit is None:
             raise ValueError("jerks with restitution 1 do not accumulate")
         state = self.at(limit)
-        return State(
-            state.time, state.positions, state.velocities, state.unwound, state.rates, ZERO, ZERO, state.slips
-        )
+        return State(state.time, state.positions, state.velocities, state.unwound, state.rates, ZERO, ZERO, state.slips)
 
     def candidates(
         self, margins: list[tuple[Ball, Ball, Ball, Ball]], signs: list[tuple[Ball, Ball, Ball]]
     ) -> list[int]:
         """Return the arcs among which is the first that something ends.
 
-        A margin is (value, rate, acceleration, gain of the rate) of a quantity that must not turn negative, a sign is (value,
-        rate, gain) of one that must not change sign. Whether arc n breaks the rule is decided by signs of quadratics in
-        S, so it can change only next to one of their roots.
+        A margin is (value, rate, acceleration, gain of the rate) of a quantity that must not turn negative, a sign is
+        (value, rate, gain) of one that must not change sign. Whether arc n breaks the rule is decided by signs of
+        quadratics in S, so it can change only next to one of their roots.
         """
         d, e = self.first, self.restitution
         found = {0}

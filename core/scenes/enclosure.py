@@ -1,8 +1,8 @@
 """Numbers with a proven enclosure: the set-up of every scene runs in ball arithmetic and is rounded to doubles once.
 
-A scene has a dozen constants and a handful of instants at which something happens. Computed as balls of 320 bits they cost
-microseconds, neither overflow nor underflow, and cancel harmlessly; each decision (taut or slack? which event first?)
-is taken on a number whose error is known. Only samples of a trajectory are computed in doubles.
+A scene has a dozen constants and a handful of instants at which something happens. Computed as balls of 320 bits
+they cost microseconds, neither overflow nor underflow, and cancel harmlessly; each decision (taut or slack? which
+event first?) is taken on a number whose error is known. Only samples of a trajectory are computed in doubles.
 
 References
 ----------
@@ -15,13 +15,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from threading import RLock
 from typing import Any
 
 from flint import acb, arb, ctx
 
 from core.errors import Path
+from core.notices import Notice
 
 Ball = Any
 """A real number of `flint`, midpoint and radius; the package carries no types."""
@@ -79,29 +79,15 @@ def square_root(ball: Ball) -> Ball:
     return ball.sqrt() if ball > 0 else ZERO
 
 
+def angle_of(sine: Ball, cosine: Ball) -> Ball:
+    """Return the angle with this sine and cosine, up to a common factor."""
+    return arb.atan2(sine, cosine)
+
+
 def as_pair(ball: Ball) -> tuple[float, float]:
     """Return the number as an unevaluated sum of two doubles."""
     high = float(ball)
     return high, float(ball - arb(high))
-
-
-@dataclass(frozen=True)
-class Caution:
-    """Something that the reader of an answer must know, and that is not an error.
-
-    Attributes
-    ----------
-    code : str
-        Stable and machine-readable.
-    detail : str
-        One sentence.
-    path : tuple of str and int
-        The figure of the answer that it is about.
-    """
-
-    code: str
-    detail: str
-    path: Path = ()
 
 
 class Rounding:
@@ -111,13 +97,13 @@ class Rounding:
     ----------
     error : float
         Bound of the relative error of every number rounded so far.
-    cautions : list of Caution
+    notices : list of Notice
         One for every number that a double cannot hold.
     """
 
     def __init__(self) -> None:
         self.error = 0.0
-        self.cautions: list[Caution] = []
+        self.notices: list[Notice] = []
 
     def __call__(self, value: Any, path: Path = ()) -> Any:
         """Return `value` with every ball in it, however deep, as a double, or None where a double cannot hold it."""
@@ -134,8 +120,8 @@ class Rounding:
             return 0.0
         number = float(ball)
         if not math.isfinite(number) or abs(number) < SMALLEST_NORMAL:
-            self.cautions.append(
-                Caution("outside-double-range", "the number is too large or too small for double precision", path)
+            self.notices.append(
+                Notice("outside-double-range", f"{'/'.join(map(str, path))} is too large or too small for a double")
             )
             return None
         self.error = max(self.error, UNIT_ROUNDOFF + float(ball.rad() / abs(ball.mid())))

@@ -1,7 +1,7 @@
 """Dry friction between shafts and slopes, at the line along which string and slope touch the shaft.
 
-The force f_i up the slope and the tension T act along the same line, so mu_i u_i' = mu_i A_i - T - f_i. Sliding: f_i = k_i N_i
-sgn(u_i). Sticking: |f_i| <= s_i N_i. This file runs only where a scene has friction.
+The force f_i up the slope and the tension T act along the same line, so mu_i u_i' = mu_i A_i - T - f_i. Sliding:
+f_i = k_i N_i sgn(u_i). Sticking: |f_i| <= s_i N_i. This file runs only where a scene has friction.
 
 References
 ----------
@@ -70,9 +70,7 @@ def _taut(constants: Constants, state: State, holds: Balls, drags: Balls) -> Dri
     tension = e1 * (a - slip) - f1
     r1, r2 = (e1 * (a - slip), e2 * (b + slip))
     (m1, m2), (c1, c2) = constants.masses, constants.factors
-    return Drive(
-        "taut", tension, (a - r1 / m1, b - r2 / m2), (r1 / (c1 * m1), r2 / (c2 * m2)), (f1, f2)
-    )
+    return Drive("taut", tension, (a - r1 / m1, b - r2 / m2), (r1 / (c1 * m1), r2 / (c2 * m2)), (f1, f2))
 
 
 def _sticking(constants: Constants, holds: Balls) -> Drive:
@@ -92,9 +90,7 @@ def _sticking(constants: Constants, holds: Balls) -> Drive:
 def _slack(constants: Constants, state: State, holds: Balls, drags: Balls) -> Drive:
     first = _alone(constants, state, holds, drags, 0)
     second = _alone(constants, state, holds, drags, 1)
-    return Drive(
-        "slack", ZERO, (first[0], second[0]), (first[1], second[1]), (first[2], second[2])
-    )
+    return Drive("slack", ZERO, (first[0], second[0]), (first[1], second[1]), (first[2], second[2]))
 
 
 def _alone(constants: Constants, state: State, holds: Balls, drags: Balls, i: int) -> tuple[Ball, Ball, Ball]:

@@ -42,5 +42,3 @@ def exit_time(value: Ball, rate: Ball, acceleration: Ball) -> Ball | None:
 def advanced(value: Ball, rate: Ball, acceleration: Ball, time: Ball) -> Ball:
     """Return value + rate t + acceleration t^2/2."""
     return value + time * (rate + acceleration * time / 2)
-
-

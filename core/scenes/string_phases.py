@@ -51,8 +51,8 @@ class Phase:
     duration : ball or None
         None for ever.
     impulse, dissipated : ball
-        Of its jerks along the string (N s), and the energy that they cost (J); impulse None if there are infinitely many that
-        do not accumulate.
+        Of its jerks along the string (N s), and the energy that they cost (J); impulse None if there are infinitely
+        many that do not accumulate.
     jerks : int or None
         How many, the one that began it included; None for infinitely many.
     sequence : Sequence or None
@@ -96,7 +96,9 @@ class Phases:
 class _Follower:
     """Follows one motion; holds the state at the last event."""
 
-    def __init__(self, constants: Constants, restitution: Ball, limits: tuple[Limit, ...], law: Law, slip: bool) -> None:
+    def __init__(
+        self, constants: Constants, restitution: Ball, limits: tuple[Limit, ...], law: Law, slip: bool
+    ) -> None:
         self.constants, self.restitution, self.limits, self.law, self.slip = constants, restitution, limits, law, slip
         self.phases: list[Phase] = []
         self.events: list[Event] = []
@@ -105,7 +107,11 @@ class _Follower:
         while True:
             if len(self.phases) >= MOST_PHASES:
                 raise BudgetExceeded(
-                    "phases", MOST_PHASES + 1, MOST_PHASES, path=("times",), remedy="ask for times before the last phase"
+                    "phases",
+                    MOST_PHASES + 1,
+                    MOST_PHASES,
+                    path=("times",),
+                    remedy="ask for times before the last phase",
                 )
             impulse, loss, jerks = ZERO, ZERO, 0
             if state.tight and sign(state.opening) < 0:
@@ -114,7 +120,13 @@ class _Follower:
                 state = state.kicked(self.constants, closing, self.restitution)
                 self.events.append(Event("jerk", state.time))
             drive = self.law(self.constants, state)
-            if jerks and drive.kind == "slack" and sign(state.opening) > 0 and sign(drive.closing) > 0 and self._steady(state):
+            if (
+                jerks
+                and drive.kind == "slack"
+                and sign(state.opening) > 0
+                and sign(drive.closing) > 0
+                and self._steady(state)
+            ):
                 phase, state, end = self._bounce(state, drive, impulse, loss)
             else:
                 phase, state, end = self._glide(state, drive, impulse, loss, jerks)
@@ -224,9 +236,9 @@ class _Follower:
         _, arc, moment = found
         after = arc.after(drive, moment)
         phase = Phase(state, drive, after.time - state.time, impulse, loss, jerks, sequence, n)
-        time, limit = self._ending(arc, drive)
-        if limit is not None and time is not None and not time > moment:
-            return phase, after, Event(limit.kind, after.time)
+        time, which = self._ending(arc, drive)
+        if which is not None and time is not None and not time > moment:
+            return phase, after, Event(which.kind, after.time)
         resting = [i for at, i in self._reversals(arc, drive) if not at > moment]
         if not resting:
             # The end of the arc: the jerk that follows reverses a line of contact.

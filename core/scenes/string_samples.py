@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.integration.system import Floats, Model
+from core.notices import Notice
 from core.scenes.answer import Columns, Event, Motion, finite
 from core.scenes.bounces import Sequence
-from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Caution, as_pair
+from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, as_pair
 from core.scenes.string_phases import Phase, Phases
 
 WHY = {"taut": "the string is taut", "slack": "the string is slack", "stick": "both shafts roll on the string's track"}
@@ -20,7 +21,7 @@ SMALLEST = 2.0**-1074
 
 @dataclass(frozen=True)
 class Coordinate:
-    """One coordinate in one phase: value and rate at its start, acceleration, and the gain nu of the rate per unit of S."""
+    """One coordinate in one phase: value and rate at its start, acceleration, and the gain nu of the rate."""
 
     value: Ball
     rate: Ball
@@ -106,17 +107,17 @@ class ShaftMotion(Motion):
                 "spins": (dr + drift + UNIT_ROUNDOFF * np.abs(r)) / self._radii,
                 "unwound": ds + drift * elapsed,
             }
-        cautions: tuple[Caution, ...] = ()
+        notices: tuple[Notice, ...] = ()
         if determinate:
             values["tension"], errors["tension"] = tension, UNIT_ROUNDOFF * tension
         else:
-            cautions = (Caution("indeterminate", "nothing fixes the tension while both shafts stick", ("trajectory",)),)
+            notices = (Notice("indeterminate", "nothing fixes the tension while both shafts stick: no such column"),)
         finite(values)
         scales = {
             name: max(float(np.max(np.abs(column), initial=0.0)), self._given.get(name, 0.0))
             for name, column in values.items()
         }
-        return Columns(values, errors, scales, cautions)
+        return Columns(values, errors, scales, notices)
 
 
 class _Clock:

@@ -9,9 +9,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from core.errors import InvalidParameter, NotApplicable
 from core.integration.system import Model
+from core.notices import Notice
 from core.quantities import Acceleration, AngularRate, Length, Mass, Quantity, Velocity, check
 from core.scenes.answer import ConstrainedSystem, Motion
-from core.scenes.enclosure import ZERO, Ball, Caution, exact, exact_pair, sign
+from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.scenes.friction import Friction, with_friction
 from core.scenes.string_phases import Law, Limit, follow, settled
 from core.scenes.string_samples import ShaftMotion
@@ -93,9 +94,9 @@ class UnwindingShafts(ConstrainedSystem):
                     "be greater than 0 where there is friction",
                     remedy="a shaft without inertia about its axis cannot resist friction: leave friction out",
                 )
-            if self.positions is not None and self.slope_lengths is not None:
-                if self.positions[i] > self.slope_lengths[i]:
-                    raise InvalidParameter(("positions", i), f"be at most the length {self.slope_lengths[i]:g} m of its slope")
+            at, length = self.positions, self.slope_lengths
+            if at is not None and length is not None and at[i] > length[i]:
+                raise InvalidParameter(("positions", i), f"be at most the length {length[i]:g} m of its slope")
 
     def figures(self) -> Mapping[str, Callable[[], Any]]:
         """Return forces and accelerations right after t = 0 (after the jerk, if the string is jerked then)."""
@@ -158,21 +159,18 @@ class UnwindingShafts(ConstrainedSystem):
         """Return the model of a question about one instant."""
         return Model("two unwinding shafts on one string", "one instant", "no motion was asked for", 0)
 
-    def cautions(self, wanted: frozenset[str]) -> tuple[Caution, ...]:
+    def notices(self, wanted: frozenset[str]) -> tuple[Notice, ...]:
         """Return what is not determined."""
         found = []
         if "angular_accelerations" in wanted and not self._constants.determinate:
             found.append(
-                Caution(
+                Notice(
                     "indeterminate",
                     "with two shafts without inertia nothing fixes how fast each of them spins up",
-                    ("angular_accelerations",),
                 )
             )
         if "tension" in wanted and self._drive.tension is None:
-            found.append(
-                Caution("indeterminate", "both shafts stick: only tension plus friction is fixed", ("tension",))
-            )
+            found.append(Notice("indeterminate", "both shafts stick: only tension plus friction is fixed"))
         return tuple(found)
 
     @cached_property
@@ -238,7 +236,7 @@ class UnwindingShafts(ConstrainedSystem):
         return b1 / r1, b2 / r2
 
     def _string_acceleration(self) -> Ball | None:
-        """Return the acceleration of the string towards shaft 1, None while it is slack and moves differently on each side."""
+        """Return the acceleration of the string towards shaft 1, None while it is slack."""
         if self._drive.kind == "slack" or not self._constants.determinate:
             return None
         return self._drive.slips[0]
@@ -256,13 +254,9 @@ class UnwindingShafts(ConstrainedSystem):
     def _limits(self) -> tuple[Limit, ...]:
         limits = []
         for i in (0, 1):
-            limits.append(Limit(f"shaft-{i + 1}-at-apex", i, "positions", 1, ZERO))  # type: ignore[arg-type]
+            limits.append(Limit(f"shaft-{i + 1}-at-apex", i, "positions", 1, ZERO))
             if self.wound is not None:
-                limits.append(Limit(f"string-{i + 1}-unwound", i, "unwound", -1, exact(self.wound[i])))  # type: ignore[arg-type]
+                limits.append(Limit(f"string-{i + 1}-unwound", i, "unwound", -1, exact(self.wound[i])))
             if self.slope_lengths is not None:
-                limits.append(
-                    Limit(f"shaft-{i + 1}-at-slope-end", i, "positions", -1, exact(self.slope_lengths[i]))  # type: ignore[arg-type]
-                )
+                limits.append(Limit(f"shaft-{i + 1}-at-slope-end", i, "positions", -1, exact(self.slope_lengths[i])))
         return tuple(limits)
-
-

@@ -35,7 +35,7 @@ def depth(node: object) -> int:
 @settings(deadline=None, derandomize=True, max_examples=300)
 def test_depth_is_that_of_the_document(document: object, limit: int, spaced: bool) -> None:
     body = json.dumps(document, indent=1 if spaced else None).encode()
-    assert (code(require_simple, body, limit, 10**6) == "too-complex") == (depth(document) > limit)
+    assert (code(require_simple, body, limit, 10**6, 10**6) == "too-complex") == (depth(document) > limit)
 
 
 @given(documents)
@@ -65,8 +65,8 @@ def test_repeated_keys_are_found(body: bytes, pointer: str) -> None:
 
 def test_keys_are_counted_without_building_the_document() -> None:
     body = json.dumps({f"k{i}": 0 for i in range(50)}).encode()
-    assert code(require_simple, body, 9, 50) is None
-    assert code(require_simple, body, 9, 49) == "too-complex"
+    assert code(require_simple, body, 9, 50, 9) is None
+    assert code(require_simple, body, 9, 49, 9) == "too-complex"
 
 
 @pytest.mark.parametrize("accept", [b"*/*", b"application/json", b"text/html, application/*;q=0.2", b""])

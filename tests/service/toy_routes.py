@@ -86,10 +86,11 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
     return {"time": t, "position": position, "nothing": None, "warnings": warnings}
 
 
-def price(question: Ask) -> float:
+def price(question: Ask, budget: Budget) -> float:
+    samples = sample_count(question.times, budget)
     if question.behaviour == "sleep":
         return question.angular_velocity[0]
-    return 1.0 if question.behaviour == "die" else 1e-8 * sample_count(question.times)
+    return 1.0 if question.behaviour == "die" else 1e-8 * samples
 
 
 class Unlisted(MechanicsError):

@@ -1,0 +1,273 @@
+"""How a heavy chain slides over an apex: x'' = a_0 + k^2 (x - x_0), its tension there, and what ends it.
+
+The square of the velocity is quadratic in x (energy), so is the tension at the apex, and so is T - rho v^2, whose sign
+decides whether the chain stays on: the place where something ends the motion is a root of a quadratic, and the time
+until then the logarithm of a ratio of e^(kt).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from core.integration.system import Floats, Model
+from core.scenes.answer import Columns, Event, Motion, finite
+from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, sign, square_root
+from core.scenes.quadratics import real_roots
+
+SMALLEST = 2.0**-1074
+NAMES = ("position", "velocity", "apex_tension")
+
+
+@dataclass(frozen=True)
+class Slide:
+    """The chain in its given state, as balls.
+
+    Attributes
+    ----------
+    pulls : balls
+        g sin(slope) of the faces.
+    position, velocity : ball
+        Length of chain on face 1, and its rate.
+    """
+
+    masses: Balls
+    pulls: Balls
+    length: Ball
+    density: Ball
+    position: Ball
+    velocity: Ball
+
+    @property
+    def mass(self) -> Ball:
+        """All that moves."""
+        return self.masses[0] + self.masses[1] + self.density * self.length
+
+    @cached_property
+    def acceleration(self) -> Ball:
+        """x'' in the given state."""
+        return self.acceleration_at(self.position)
+
+    def acceleration_at(self, x: Ball) -> Ball:
+        """Return x'' with a length x on face 1."""
+        (m1, m2), (a, b), rho = self.masses, self.pulls, self.density
+        return ((m1 + rho * x) * a - (m2 + rho * (self.length - x)) * b) / self.mass
+
+    @cached_property
+    def square(self) -> Ball:
+        """k^2, zero for a massless chain or two level faces."""
+        return self.density * (self.pulls[0] + self.pulls[1]) / self.mass
+
+    @cached_property
+    def rate(self) -> Ball:
+        """Rate k at which deviations from equilibrium grow."""
+        return square_root(self.square)
+
+    @property
+    def equilibrium(self) -> Ball | None:
+        """Position at which the chain balances, inside or outside of its length; None if there is none, or any."""
+        return self.position - self.acceleration / self.square if sign(self.square) else None
+
+    def tension(self, x: Ball) -> Ball:
+        """Return the tension at the apex with a length x on face 1."""
+        (m1, m2), (a, b), rho = self.masses, self.pulls, self.density
+        return (a + b) * (m1 + rho * x) * (m2 + rho * (self.length - x)) / self.mass
+
+    def velocity_squared(self, x: Ball) -> Ball:
+        """Return x'^2 at x, negative where the motion does not come."""
+        gone = x - self.position
+        return self.velocity**2 + gone * (2 * self.acceleration + self.square * gone)
+
+    def grip(self) -> tuple[Ball, Ball, Ball]:
+        """Return T - rho x'^2 as a quadratic in the displacement from the given position: coefficients of 2, 1, 0."""
+        (m1, m2), (a, b), rho, x = self.masses, self.pulls, self.density, self.position
+        left, right = m1 + rho * x, m2 + rho * (self.length - x)
+        unit = (a + b) / self.mass
+        return (
+            -2 * rho * self.square,
+            unit * rho * (right - left) - 2 * rho * self.acceleration,
+            unit * left * right - rho * self.velocity**2,
+        )
+
+    def reversed(self) -> Slide:
+        """Return the chain with the opposite velocity: its future is this one's past."""
+        return replace(self, velocity=-self.velocity)
+
+    def time_to(self, x: Ball, way: int) -> Ball:
+        """Return the time until the chain is at x with a velocity of the sign `way`, given that it comes there."""
+        gone, k = x - self.position, self.rate
+        speed = way * square_root(self.velocity_squared(x))
+        # The difference of the velocities, by their squares where it would cancel.
+        total = speed + self.velocity
+        if sign(speed) * sign(self.velocity) > 0:
+            gained = gone * (2 * self.acceleration + self.square * gone) / total
+        else:
+            gained = speed - self.velocity
+        if sign(k) == 0:
+            return gained / self.acceleration if sign(self.acceleration) and sign(gained) else gone / self.velocity
+        # x' + k (x - x_eq) grows as e^(kt), x' - k (x - x_eq) decays: the larger of the two tells the time.
+        growing, decaying = self.acceleration + k * self.velocity, self.acceleration - k * self.velocity
+        if abs(growing) > abs(decaying) or sign(decaying) == 0:
+            return (k * (gained + k * gone) / growing).log1p() / k
+        return -(-k * (gained - k * gone) / decaying).log1p() / k
+
+    def leaves(self) -> Event | None:
+        """Return what ends the motion first, or None if nothing does."""
+        low: Ball = -self.position
+        high: Ball = self.length - self.position
+        below, above = "mass-1-at-apex", "mass-2-at-apex"
+        if sign(self.density) > 0:
+            c2, c1, c0 = self.grip()
+            if sign(c0) < 0:
+                return Event("lift-off", ZERO)
+            # A concave quadratic, not negative here: the chain stays on between its roots.
+            for root in real_roots(c2, c1, c0):
+                if root > low and (sign(root) < 0 or (sign(root) == 0 and sign(c1) > 0)):
+                    low, below = root, "lift-off"
+                elif root < high and (sign(root) > 0 or (sign(root) == 0 and sign(c1) < 0)):
+                    high, above = root, "lift-off"
+        way = sign(self.velocity) or sign(self.acceleration)
+        if way == 0:
+            return None
+        ahead, behind = (high, low) if way > 0 else (low, high)
+        kinds = (above, below) if way > 0 else (below, above)
+        goal = self.position + ahead
+        if self._reaches(goal, way):
+            return Event(kinds[0], self.time_to(goal, way))
+        if self._turns(way):
+            return Event(kinds[1], self.time_to(self.position + behind, -way))
+        return None
+
+    def _barrier(self) -> int:
+        """Return the sign of (k x')^2 - x''^2: negative for motions that turn, positive if they pass equilibrium."""
+        return sign(self.square * self.velocity**2 - self.acceleration**2)
+
+    def _reaches(self, goal: Ball, way: int) -> bool:
+        """Whether the chain comes to the goal, which lies the way it moves, without turning first."""
+        opposed = sign(self.acceleration) * way < 0
+        if sign(self.velocity_squared(goal)) < 0:
+            return False
+        beyond = sign(self.acceleration_at(goal)) * way
+        if opposed and sign(self.square) and beyond >= 0:
+            return self._barrier() > 0
+        return True
+
+    def _turns(self, way: int) -> bool:
+        return sign(self.acceleration) * way < 0 and self._barrier() < 0
+
+
+class ChainMotion(Motion):
+    """A hyperbola in time, or a parabola where the chain has no mass."""
+
+    def __init__(self, slide: Slide) -> None:
+        self.slide = slide
+        self._end = slide.leaves()
+        self._past: float | None = None
+
+    @property
+    def model(self) -> Model:
+        """The branch of the solution."""
+        if sign(self.slide.square) == 0:
+            why = "the pull does not depend on the position: no mass in the chain, or level faces"
+            return Model("heavy chain on a wedge", "constant acceleration", why, 1)
+        if sign(self.slide.acceleration) == 0 and sign(self.slide.velocity) == 0:
+            return Model("heavy chain on a wedge", "rest", "the chain balances", 0)
+        return Model("heavy chain on a wedge", "hyperbolic", "the pull grows in proportion to the deviation", 1)
+
+    @property
+    def began(self) -> float:
+        """When the reversed motion would end."""
+        if self._past is None:
+            first = self.slide.reversed().leaves()
+            self._past = -np.inf if first is None else -float(first.time)
+        return self._past
+
+    @property
+    def end(self) -> Event | None:
+        """An end of the chain at the apex, or the chain lifting off it."""
+        return self._end
+
+    def events(self) -> tuple[Event, ...]:
+        """Only the end."""
+        return () if self._end is None else (self._end,)
+
+    def sample(self, times: Floats) -> Columns:
+        """Evaluate by the form of the solution that cancels less at these times."""
+        slide = self.slide
+        with np.errstate(over="ignore", invalid="ignore"):
+            forms = [self._from_start(times)]
+            if sign(slide.square):
+                forms.append(self._from_equilibrium(times))
+            x, v, dx, dv = min(forms, key=lambda form: _largest(form[2]) + _largest(form[3]) * _span(times))
+            (m1, m2), rho = (float(m) for m in slide.masses), float(slide.density)
+            unit, length = float((slide.pulls[0] + slide.pulls[1]) / slide.mass), float(slide.length)
+            left, right = m1 + rho * x, m2 + rho * (length - x)
+            tension = unit * left * right
+            slope = unit * rho * (np.abs(left) + np.abs(right))
+            values = finite({"position": x, "velocity": v, "apex_tension": tension})
+            errors = {
+                "position": dx,
+                "velocity": dv,
+                "apex_tension": 8 * UNIT_ROUNDOFF * (np.abs(tension) + slope * length) + slope * dx,
+            }
+        given = (slide.position, slide.velocity, slide.tension(slide.position))
+        scales = {
+            name: max(float(np.max(np.abs(values[name]), initial=0.0)), abs(float(ball)))
+            for name, ball in zip(NAMES, given, strict=True)
+        }
+        return Columns(values, errors, scales)
+
+    def _from_start(self, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return x, x' and bounds of their errors from x_0 + x_0' sinh(kt)/k + x_0'' 2 sinh^2(kt/2)/k^2."""
+        slide = self.slide
+        x0, v0, a0, k = (float(ball) for ball in (slide.position, slide.velocity, slide.acceleration, slide.rate))
+        z = k * t
+        half = t * _sinhc(0.5 * z)
+        square = 0.5 * a0 * half * half
+        single = t * _sinhc(z)
+        cosh = np.cosh(z)
+        x = x0 + (v0 * single + square)
+        v = v0 * cosh + a0 * single
+        few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
+        tiny = SMALLEST * (1.0 + np.abs(t)) ** 2 * (1.0 + cosh)
+        dx = few * (np.abs(x0) + np.abs(v0 * single) + np.abs(square)) + tiny
+        return x, v, dx, few * (np.abs(v0) * cosh + np.abs(a0 * single)) + tiny
+
+    def _from_equilibrium(self, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return x, x' and bounds of their errors from x_eq + P e^(kt) + N e^(-kt)."""
+        slide = self.slide
+        k = slide.rate
+        away, drift = slide.acceleration / slide.square, slide.velocity / k
+        equilibrium, growing, decaying, rate = (
+            float(ball) for ball in (slide.position - away, (away + drift) / 2, (away - drift) / 2, k)
+        )
+        z = rate * t
+        # A coefficient of zero stays zero however large its exponential.
+        up = growing * np.exp(z) if growing else np.zeros_like(z)
+        down = decaying * np.exp(-z) if decaying else np.zeros_like(z)
+        few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
+        size = np.abs(up) + np.abs(down)
+        tiny = SMALLEST * (1.0 + rate)
+        return (
+            equilibrium + (up + down),
+            rate * (up - down),
+            few * size + 4 * UNIT_ROUNDOFF * (abs(equilibrium) + size) + tiny,
+            few * rate * size + tiny,
+        )
+
+
+def _sinhc(z: Floats) -> Floats:
+    """Return sinh(z)/z."""
+    safe = np.where(z == 0.0, 1.0, z)
+    return np.where(z == 0.0, 1.0, np.sinh(safe) / safe)
+
+
+def _largest(bound: Floats) -> float:
+    largest = float(np.max(bound, initial=0.0))
+    return largest if np.isfinite(largest) else np.inf
+
+
+def _span(times: Floats) -> float:
+    return float(np.max(np.abs(times), initial=0.0))

@@ -1,0 +1,124 @@
+"""A heavy chain with a mass at each end, over the apex of a smooth wedge."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Literal
+
+from core.errors import InvalidParameter
+from core.integration.system import Model
+from core.quantities import Acceleration, Length, Quantity, Velocity, check
+from core.scenes.answer import ConstrainedSystem, Motion
+from core.scenes.chain_motion import ChainMotion, Slide
+from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
+
+EndMass = Annotated[float, Quantity("kg", at_least=0)]
+LinearDensity = Annotated[float, Quantity("kg m^-1", at_least=0)]
+Slope = Annotated[float, Quantity("rad", at_least=0, at_most=1.5707963267948966)]
+Distance = Annotated[float, Quantity("m", at_least=0)]
+
+
+@dataclass(frozen=True)
+class ChainOnWedge(ConstrainedSystem):
+    """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end.
+
+    Attributes
+    ----------
+    masses : tuple of float
+        At the ends; zero for a bare end (kg).
+    slopes : tuple of float
+        Angles of the faces below the horizontal (rad).
+    gravity : float
+        (m/s^2).
+    length : float
+        Of the whole chain (m).
+    linear_density : float
+        Zero for a massless string, Atwood's machine (kg/m).
+    position : float
+        Length of chain on face 1, where mass 1 is (m).
+    velocity : float
+        Of mass 1 down its face (m/s).
+    """
+
+    masses: tuple[EndMass, EndMass]
+    slopes: tuple[Slope, Slope]
+    gravity: Acceleration
+    length: Length
+    linear_density: LinearDensity
+    position: Distance
+    velocity: Velocity = 0.0
+    kind: Literal["chain-on-wedge"] = "chain-on-wedge"
+
+    outputs: ClassVar[tuple[str, ...]] = (
+        "acceleration",
+        "apex_tension",
+        "growth_rate",
+        "equilibrium",
+        "energy",
+        "lift_off",
+        "events",
+        "ended",
+        "trajectory",
+    )
+    of_motion: ClassVar[tuple[str, ...]] = ("lift_off",)
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.position > self.length:
+            raise InvalidParameter("position", f"be at most the length {self.length:g} m of the chain")
+        if not any((*self.masses, self.linear_density)):
+            raise InvalidParameter("masses", "not all be 0 where the chain has no mass either")
+
+    def figures(self) -> Mapping[str, Callable[[], Any]]:
+        """Return acceleration, tension and energy of the given state, and the constants of the motion."""
+        return {
+            "acceleration": lambda: self._slide.acceleration,
+            "apex_tension": lambda: self._slide.tension(self._slide.position),
+            "growth_rate": lambda: self._slide.rate,
+            "equilibrium": lambda: self._slide.equilibrium,
+            "energy": self._energy,
+        }
+
+    def motion(self, horizon: float) -> ChainMotion:
+        """Return the motion until the chain runs out or lifts off the apex."""
+        return ChainMotion(self._slide)
+
+    def motion_figures(self, motion: Motion) -> Mapping[str, Callable[[], Any]]:
+        """Return whether and when the chain lifts off."""
+        assert isinstance(motion, ChainMotion)
+
+        def lift_off() -> Mapping[str, Any]:
+            lifts = motion.end is not None and motion.end.kind == "lift-off"
+            return {"occurs": lifts, "time": motion.end.time if lifts and motion.end else None}
+
+        return {"lift_off": lift_off}
+
+    def still(self) -> Model:
+        """Return the model of a question about one instant."""
+        return Model("heavy chain on a wedge", "one instant", "no motion was asked for", 0)
+
+    @cached_property
+    def _slide(self) -> Slide:
+        g, (a, b) = exact(self.gravity), exact_pair(self.slopes)
+        return Slide(
+            exact_pair(self.masses),
+            (g * a.sin(), g * b.sin()),
+            exact(self.length),
+            exact(self.linear_density),
+            exact(self.position),
+            exact(self.velocity),
+        )
+
+    def _energy(self) -> Mapping[str, Ball]:
+        """Return the energies of the given state, heights from the apex."""
+        slide, (m1, m2), (a, b) = self._slide, self._slide.masses, self._slide.pulls
+        x, y = slide.position, slide.length - slide.position
+        kinetic = slide.mass * slide.velocity**2 / 2
+        potential = -(m1 + slide.density * x / 2) * a * x - (m2 + slide.density * y / 2) * b * y
+        return {
+            "kinetic": kinetic if sign(kinetic) else ZERO,
+            "potential": potential,
+            "total": kinetic + potential,
+        }

@@ -1,0 +1,167 @@
+"""A heavy rod that slides inside a smooth cylindrical hole, both ends on the wall."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Literal
+
+from core.errors import InvalidParameter
+from core.integration.system import Model
+from core.quantities import Acceleration, AngularRate, Length, Mass, Quantity, check
+from core.scenes.answer import ConstrainedSystem, Motion
+from core.scenes.enclosure import Ball, Balls, angle_of, exact, precision, sign
+from core.scenes.pendulum import Pendulum
+from core.scenes.rod_motion import Rod, RodMotion, contact_limits
+
+InertiaFactor = Annotated[float, Quantity("1", at_least=0)]
+HalfTurn = Annotated[float, Quantity("rad", at_least=-math.pi, at_most=math.pi)]
+
+RIM_ROUNDING = 2.0**-50
+"""Part of the rim's angle within which an angle means the rim, which no double hits."""
+
+
+@dataclass(frozen=True)
+class RodInHole(ConstrainedSystem):
+    """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall.
+
+    Angles are those of the line from the axis to the rod's centre, from the downward vertical; positive has end B
+    higher.
+
+    Attributes
+    ----------
+    hole_radius, length : float
+        The rod is shorter than the diameter (m).
+    mass : float
+        (kg).
+    gravity : float
+        (m/s^2).
+    angle : float, optional
+        By default end A is at the left rim, which is a negative angle (rad).
+    angular_velocity : float
+        (rad/s).
+    inertia_factor : float
+        Moment about the centre over mass times length squared: 1/12 for a uniform rod, 1/4 with all mass at the ends.
+    hole : {"half-cylinder", "cylinder"}
+        Whether the wall ends at a rim at the height of the axis, or goes all the way round.
+    """
+
+    hole_radius: Length
+    length: Length
+    mass: Mass
+    gravity: Acceleration
+    angle: HalfTurn | None = None
+    angular_velocity: AngularRate = 0.0
+    inertia_factor: InertiaFactor = 1 / 12
+    hole: Literal["half-cylinder", "cylinder"] = "half-cylinder"
+    kind: Literal["rod-in-hole"] = "rod-in-hole"
+
+    outputs: ClassVar[tuple[str, ...]] = (
+        "angular_velocity_at_horizontal",
+        "equivalent_length",
+        "period",
+        "release_angle",
+        "forces_at_release",
+        "energy",
+        "contact",
+        "events",
+        "ended",
+        "trajectory",
+    )
+    of_motion: ClassVar[tuple[str, ...]] = ("angular_velocity_at_horizontal", "period", "contact")
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.hole not in ("half-cylinder", "cylinder"):
+            raise InvalidParameter("hole", "be 'half-cylinder' or 'cylinder'")
+        if self.length >= 2 * self.hole_radius:
+            raise InvalidParameter("length", f"be less than the diameter {2 * self.hole_radius:g} m of the hole")
+        if self.angle is not None and self.hole == "half-cylinder":
+            with precision():
+                rim = self._rim_angle
+                if abs(exact(self.angle)) > rim * (1 + exact(RIM_ROUNDING)):
+                    raise InvalidParameter(
+                        "angle",
+                        f"lie within {float(rim):.17g} rad of the vertical, where an end reaches the rim",
+                        remedy="or let the hole be a whole cylinder",
+                    )
+
+    def figures(self) -> Mapping[str, Callable[[], Any]]:
+        """Return the figures of the given state."""
+        return {
+            "equivalent_length": lambda: self._rod.inertia / self._rod.depth,
+            "release_angle": self._release_angle,
+            "forces_at_release": lambda: self._rod.forces(*self._half, exact(self.angular_velocity)),
+            "energy": self._energy,
+        }
+
+    def motion(self, horizon: float) -> RodMotion:
+        """Return the motion until an end passes the rim or leaves the wall."""
+        return RodMotion(self._rod, self._pendulum, self._rim if self.hole == "half-cylinder" else None)
+
+    def motion_figures(self, motion: Motion) -> Mapping[str, Callable[[], Any]]:
+        """Return the rate at the horizontal, the period and the contact with the wall."""
+        assert isinstance(motion, RodMotion)
+        return {
+            "angular_velocity_at_horizontal": motion.rate_at_horizontal,
+            "period": lambda: motion.pendulum.period if motion.end is None else None,
+            "contact": lambda: self._contact(motion),
+        }
+
+    def still(self) -> Model:
+        """Return the model of a question about one instant."""
+        return Model("rod in a cylindrical hole", "one instant", "no motion was asked for", 0)
+
+    @cached_property
+    def _rod(self) -> Rod:
+        radius, length = exact(self.hole_radius), exact(self.length)
+        depth = ((2 * radius - length) * (2 * radius + length)).sqrt() / 2
+        return Rod(radius, length, exact(self.mass), exact(self.gravity), exact(self.inertia_factor), depth)
+
+    @property
+    def _rim(self) -> Balls:
+        """Sine and cosine of half the angle at which an end is at the rim: the cosine of the whole is l/2a."""
+        diameter, length = 2 * exact(self.hole_radius), exact(self.length)
+        return ((diameter - length) / (2 * diameter)).sqrt(), ((diameter + length) / (2 * diameter)).sqrt()
+
+    @property
+    def _rim_angle(self) -> Ball:
+        s, c = self._rim
+        return 2 * angle_of(s, c)
+
+    @cached_property
+    def _half(self) -> Balls:
+        """Sine and cosine of half the given angle."""
+        s, c = self._rim
+        if self.angle is None:
+            return -s, c
+        angle, rim = exact(self.angle), self._rim_angle
+        if abs(abs(angle) - rim) <= rim * exact(RIM_ROUNDING):
+            return sign(angle) * s, c
+        return (angle / 2).sin(), (angle / 2).cos()
+
+    @cached_property
+    def _pendulum(self) -> Pendulum:
+        return Pendulum(self._rod.frequency, *self._half, exact(self.angular_velocity))
+
+    def _release_angle(self) -> Ball:
+        return -self._rim_angle if self.angle is None else exact(self.angle)
+
+    def _energy(self) -> Mapping[str, Ball]:
+        """Return the energies of the given state, heights from the axis."""
+        rod, (s, c) = self._rod, self._half
+        kinetic = rod.mass * rod.inertia * exact(self.angular_velocity) ** 2 / 2
+        potential = -rod.mass * rod.gravity * rod.depth * (c - s) * (c + s)
+        return {"kinetic": kinetic, "potential": potential, "total": kinetic + potential}
+
+    def _contact(self, motion: RodMotion) -> Mapping[str, Any]:
+        """Return whether both ends stay on the wall, and the limits of doing so.
+
+        `limit_angle` is the largest angle from which a rod released at rest keeps contact, `full_turn_rate` the least
+        rate at the bottom with which it goes round a whole cylinder without losing it.
+        """
+        limit, rate = contact_limits(self._rod)
+        kept = motion.end is None or not motion.end.kind.endswith("leaves-wall")
+        return {"kept": kept, "limit_angle": limit, "full_turn_rate": rate}

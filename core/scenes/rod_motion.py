@@ -1,0 +1,197 @@
+"""How the rod swings, what the wall does to it, and what ends its contact with the wall.
+
+With k the depth of the centre below the axis, rho^2 = k^2 + kappa l^2 (moment about the axis over mass) and
+w0^2 = g k/rho^2,
+
+    N_A + N_B = M a (g cos psi/k + psi'^2),    N_A - N_B = (2 kappa M g a l/rho^2) sin psi,
+
+and by energy the smaller force has the sign of (1 + q) cos psi - p |sin psi| + q (2m - 1), q = 2k^2/rho^2,
+p = 2 kappa k l/rho^2: a single cosine of a shifted angle, so where contact is lost is an arc cosine and when an
+elliptic integral.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from core.integration.system import Floats, Model
+from core.scenes.answer import Columns, Event, Motion, finite
+from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, angle_of, exact, sign
+from core.scenes.pendulum import Pendulum
+
+WHY = {
+    "rest": "the rod lies at the bottom",
+    "libration": "the energy is less than that of standing upright: elliptic functions of modulus sin(amplitude/2)",
+    "separatrix": "the energy is that of standing upright: hyperbolic functions",
+    "rotation": "the energy exceeds that of standing upright: elliptic functions",
+}
+
+
+@dataclass(frozen=True)
+class Rod:
+    """The constants, as balls; `depth` is k and `inertia` rho^2."""
+
+    radius: Ball
+    length: Ball
+    mass: Ball
+    gravity: Ball
+    factor: Ball
+    depth: Ball
+
+    @cached_property
+    def inertia(self) -> Ball:
+        """Moment of inertia about the axis over the mass."""
+        return self.depth**2 + self.factor * self.length**2
+
+    @property
+    def frequency(self) -> Ball:
+        """w0, the rate of small oscillations."""
+        return (self.gravity * self.depth / self.inertia).sqrt()
+
+    @property
+    def parameters(self) -> Balls:
+        """q and p."""
+        k = self.depth
+        return 2 * k * k / self.inertia, 2 * self.factor * k * self.length / self.inertia
+
+    @property
+    def coefficients(self) -> tuple[Ball, Ball, Ball]:
+        """Coefficients of cos psi and psi'^2 in the sum of the wall's forces and of sin psi in their difference."""
+        weight = self.mass * self.gravity * self.radius
+        return weight / self.depth, self.mass * self.radius, 2 * self.factor * weight * self.length / self.inertia
+
+    def forces(self, sine: Ball, cosine: Ball, rate: Ball) -> Balls:
+        """Return the wall's forces on A and B, given sine and cosine of half the angle."""
+        c1, c2, c3 = self.coefficients
+        total = c1 * (cosine - sine) * (cosine + sine) + c2 * rate**2
+        difference = 2 * c3 * sine * cosine
+        return (total + difference) / 2, (total - difference) / 2
+
+
+def contact_limits(rod: Rod) -> Balls:
+    """Return the largest angle of release and the least rate at the bottom of full turns that keep contact."""
+    q, p = rod.parameters
+    limit = angle_of(rod.inertia, 2 * rod.factor * rod.depth * rod.length)
+    return limit, (rod.gravity / rod.depth * (q + ((1 + q) ** 2 + p**2).sqrt())).sqrt()
+
+
+class RodMotion(Motion):
+    """A pendulum, as long as both ends are on the wall.
+
+    Parameters
+    ----------
+    rim : balls or None
+        Sine and cosine of half the angle at which an end is at the rim; None without a rim.
+    """
+
+    def __init__(self, rod: Rod, pendulum: Pendulum, rim: Balls | None) -> None:
+        self.rod, self.pendulum, self._rim = rod, pendulum, rim
+        self._end = self._leaves(pendulum)
+        self._past: float | None = None
+
+    @property
+    def model(self) -> Model:
+        """The branch of the pendulum."""
+        regime = self.pendulum.regime
+        return Model("rod in a cylindrical hole", regime, WHY[regime], 0 if regime == "rest" else 1)
+
+    @property
+    def began(self) -> float:
+        """When the reversed motion would end."""
+        if self._past is None:
+            first = self._leaves(replace(self.pendulum, rate=-self.pendulum.rate))
+            self._past = -np.inf if first is None else -float(first.time)
+        return self._past
+
+    @property
+    def end(self) -> Event | None:
+        """An end passing the rim, or leaving the wall."""
+        return self._end
+
+    def events(self) -> tuple[Event, ...]:
+        """Only the end."""
+        return () if self._end is None else (self._end,)
+
+    def rate_at_horizontal(self) -> Ball | None:
+        """Return psi' when the rod is horizontal for the first time, None if it never is."""
+        swing = self.pendulum
+        if swing.regime == "rest":
+            return ZERO
+        ways = (1, -1) if swing.regime == "libration" else (swing.direction,)
+        arrivals = [(time, way) for way in ways if (time := swing.passes(ZERO, exact(1), way)) is not None]
+        if not arrivals:
+            return None
+        time, way = min(arrivals, key=lambda arrival: float(arrival[0]))
+        if self._end is not None and time > self._end.time:
+            return None
+        return way * 2 * swing.frequency * swing.m.sqrt()
+
+    def _leaves(self, swing: Pendulum) -> Event | None:
+        """Return what ends the motion first; there is none for a rod that only touches a bound."""
+        candidates = []
+        if self._rim is not None and sign(swing.m - self._rim[0] ** 2) > 0:
+            candidates += [(swing.passes(*self._rim, 1), "end-b-passes-rim")]
+            candidates += [(swing.passes(-self._rim[0], self._rim[1], -1), "end-a-passes-rim")]
+        candidates += self._losses(swing)
+        events = [Event(kind, time) for time, kind in candidates if time is not None]
+        return min(events, key=lambda event: float(event.time)) if events else None
+
+    def _losses(self, swing: Pendulum) -> list[tuple[Ball | None, str]]:
+        """Return when the upper end leaves the wall, on either side."""
+        q, p = self.rod.parameters
+        size, level = ((1 + q) ** 2 + p**2).sqrt(), q * (swing.m - swing.m1)
+        if not level < size:
+            return []
+        shift = angle_of(p, 1 + q)
+        lower = (-level / size).acos() - shift
+        upper = 2 * lower.pi() - lower - 2 * shift
+        s, c = (lower / 2).sin(), (lower / 2).cos()
+        if sign(swing.m - s**2) <= 0:
+            return []
+        here = 2 * angle_of(abs(swing.sine), swing.cosine)
+        side = "b" if sign(swing.sine) > 0 else "a"
+        if here > lower and here < upper:
+            return [(ZERO, f"end-{side}-leaves-wall")]
+        if not here < upper:
+            # Above, held to the wall by its speed: it comes down on the other side of the top, or on this one.
+            s, c = (upper / 2).sin(), (upper / 2).cos()
+            way = swing.direction
+            return [(swing.passes(-way * s, c, way), f"end-{'a' if way > 0 else 'b'}-leaves-wall")]
+        return [
+            (swing.passes(s, c, 1), "end-b-leaves-wall"),
+            (swing.passes(-s, c, -1), "end-a-leaves-wall"),
+        ]
+
+    def sample(self, times: Floats) -> Columns:
+        """Evaluate angle, rate and the wall's forces on A and B."""
+        s, c, rate, angle = self.pendulum.sample(times)
+        c1, _, c3 = (float(ball) for ball in self.rod.coefficients)
+        speed = 2 * self.pendulum.frequency
+        # c2 psi'^2 as a product that leaves the range of doubles only where the force itself does.
+        unit = float(self.rod.coefficients[1] * speed**2)
+        with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+            quick = rate / float(speed)
+            level, spin = c1 * (c - s) * (c + s), unit * quick * quick
+            total, difference = level + spin, 2.0 * c3 * s * c
+            forces = 0.5 * np.stack((total + difference, total - difference), axis=1)
+            values = finite({"angle": angle, "angular_velocity": rate, "forces": forces})
+        few = 32.0 * UNIT_ROUNDOFF
+        size = np.abs(c1) * (c * c + s * s) + np.abs(spin) + np.abs(c3 * s * c)
+        errors = {
+            "angle": few * np.abs(angle),
+            "angular_velocity": few * np.abs(rate),
+            "forces": 2.0 * few * size[:, None],
+        }
+        given = {
+            "angle": float(2 * angle_of(abs(self.pendulum.sine), self.pendulum.cosine)),
+            "angular_velocity": abs(float(self.pendulum.rate)),
+            "forces": max(
+                abs(float(force))
+                for force in self.rod.forces(self.pendulum.sine, self.pendulum.cosine, self.pendulum.rate)
+            ),
+        }
+        scales = {name: max(float(np.max(np.abs(column), initial=0.0)), given[name]) for name, column in values.items()}
+        return Columns(values, errors, scales)

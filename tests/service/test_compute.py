@@ -1,0 +1,146 @@
+"""Questions in processes of their own: results, kills, deadlines, disconnects, overload."""
+
+import asyncio
+import os
+import time
+from collections.abc import AsyncIterator
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from service.app import Service
+from tests.service.conftest import client_of, toy_service
+from tests.service.test_dispatch import JSON, scope, sending
+from tests.service.toy_routes import GOOD
+
+pytestmark = pytest.mark.anyio
+
+LARGE = GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 500_000}}
+
+
+def sleeping(seconds: float) -> dict[str, Any]:
+    return GOOD | {"behaviour": "sleep", "angular_velocity": [seconds, 1.0, 1.0]}
+
+
+@pytest.fixture(scope="module")
+async def service() -> AsyncIterator[Service]:
+    running = toy_service(compute_workers=2, deadline_seconds=1.0, max_backlog_seconds=1.0)
+    async with running.lifespan():
+        async with asyncio.timeout(120):
+            while not running.ready:
+                await asyncio.sleep(0.02)
+        yield running
+
+
+@pytest.fixture
+async def client(service: Service) -> AsyncIterator[httpx.AsyncClient]:
+    async with client_of(service) as open_client:
+        yield open_client
+
+
+async def test_ready_once_the_processes_are_up(client: httpx.AsyncClient) -> None:
+    assert (await client.get("/readyz")).json() == {"status": "ready"}
+
+
+async def test_large_results_come_back_whole_and_leave_nothing(client: httpx.AsyncClient, service: Service) -> None:
+    answer = (await client.post("/v1/toy", json=LARGE)).json()
+    np.testing.assert_array_equal(answer["time"], np.linspace(0, 1, 500_000))
+    np.testing.assert_array_equal(np.array(answer["position"])[:, 0], 0.1 * np.linspace(0, 1, 500_000))
+    assert service.compute._scratch is not None
+    assert os.listdir(service.compute._scratch.name) == []
+
+
+async def test_the_same_bytes_from_another_process(client: httpx.AsyncClient) -> None:
+    elsewhere = await client.post("/v1/toy", json=sleeping(0.1))
+    inline = toy_service(inline_seconds=1e9)
+    async with client_of(inline) as here:
+        assert (await here.post("/v1/toy", json=sleeping(0.1))).content == elsewhere.content
+
+
+async def test_large_bodies_are_read_elsewhere(client: httpx.AsyncClient) -> None:
+    question = GOOD | {"times": [float(i) for i in range(50_000)]}
+    assert (await client.post("/v1/toy", json=question)).json()["time"] == question["times"]
+    bad = await client.post("/v1/toy", json=question | {"times": [*question["times"], None]})
+    assert bad.json()["errors"] == [{"pointer": "/times/50000", "detail": "must be a number"}]
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "status", "code"), [("unreachable", 422, "accuracy-unreachable"), ("fail", 500, "internal-error")]
+)
+async def test_what_is_raised_elsewhere_is_answered_the_same(
+    client: httpx.AsyncClient, behaviour: str, status: int, code: str
+) -> None:
+    question = {**LARGE, "behaviour": behaviour}
+    response = await client.post("/v1/toy", json=question)
+    assert (response.status_code, response.json()["code"]) == (status, code)
+    assert "secret" not in response.text
+
+
+async def test_a_killed_process_fails_its_own_question_only(client: httpx.AsyncClient) -> None:
+    bystander = asyncio.create_task(client.post("/v1/toy", json=sleeping(0.4)))
+    await asyncio.sleep(0.1)
+    killed = await client.post("/v1/toy", json=GOOD | {"behaviour": "die"})
+    assert (killed.status_code, killed.json()["code"]) == (503, "worker-lost")
+    assert (await bystander).status_code == 200
+    since = time.perf_counter()
+    after = await asyncio.gather(*(client.post("/v1/toy", json=sleeping(0.05)) for _ in range(4)))
+    assert [response.status_code for response in after] == [200] * 4
+    assert time.perf_counter() - since < 10
+    assert "polhode_workers_lost_total 1.0" in (await client.get("/metrics")).text
+
+
+async def test_a_computation_past_its_deadline_is_stopped(client: httpx.AsyncClient) -> None:
+    response = await client.post("/v1/toy", json=sleeping(3.0))
+    assert (response.status_code, response.json()["code"]) == (503, "deadline-exceeded")
+
+
+async def test_a_client_that_leaves_stops_its_computation(service: Service, client: httpx.AsyncClient) -> None:
+    import orjson
+
+    messages: list[dict[str, Any]] = []
+    parts = iter([{"type": "http.request", "body": orjson.dumps(sleeping(0.9)), "more_body": False}])
+
+    async def receive() -> dict[str, Any]:
+        for message in parts:
+            return message
+        await asyncio.sleep(0.1)
+        return {"type": "http.disconnect"}
+
+    since = time.perf_counter()
+    await service(scope("POST", "/v1/toy", JSON), receive, sending(messages))
+    assert time.perf_counter() - since < 0.6
+    assert messages == []
+    assert service.compute.backlog == pytest.approx(0.0)
+
+
+async def test_more_work_than_can_be_done_in_time_is_refused_at_once(
+    client: httpx.AsyncClient, service: Service
+) -> None:
+    tasks = [asyncio.create_task(client.post("/v1/toy", json=sleeping(0.6))) for _ in range(5)]
+    await asyncio.sleep(0.2)
+    since = time.perf_counter()
+    refused = await client.post("/v1/toy", json=sleeping(0.6))
+    assert time.perf_counter() - since < 0.1
+    assert (refused.status_code, refused.json()["code"]) == (429, "too-busy")
+    assert int(refused.headers["retry-after"]) >= 1
+    # Small questions do not queue behind large ones.
+    assert (await client.post("/v1/toy", json=GOOD)).status_code == 200
+    statuses = [response.status_code for response in await asyncio.gather(*tasks)]
+    assert statuses.count(200) >= 3
+    assert set(statuses) <= {200, 429}
+    assert service.compute.backlog == pytest.approx(0.0)
+
+
+async def test_stopping_answers_what_is_in_flight() -> None:
+    running = toy_service(compute_workers=1)
+    async with client_of(running) as client:
+        async with running.lifespan():
+            while not running.ready:
+                await asyncio.sleep(0.02)
+            waiting = asyncio.create_task(client.post("/v1/toy", json=sleeping(5.0)))
+            await asyncio.sleep(0.2)
+        response = await waiting
+        assert (response.status_code, response.json()["code"]) == (503, "shutting-down")
+        assert (await client.post("/v1/toy", json=sleeping(0.1))).json()["code"] in ("shutting-down", "not-ready")
