@@ -150,6 +150,11 @@ class ConstrainedSystem(ABC):
     def still(self) -> Model:
         """Return the model of a question that needs no motion."""
 
+    @property
+    def moves(self) -> bool:
+        """Whether the parameters suffice for a motion; if not, what needs one is left out unless it is asked for."""
+        return True
+
     def motion_figures(self, motion: Motion) -> Mapping[str, Callable[[], Any]]:
         """Return figures of the motion beside its events, by name."""
         return {}
@@ -177,52 +182,39 @@ class ConstrainedSystem(ABC):
         """
         wanted = self._wanted(times, outputs)
         instants = _checked(times)
+        horizon = math.inf if times is None else float(np.max(instants, initial=0.0))
         with precision():
             rounded = Rounding()
             table = dict(self.figures())
-            motion = None
+            motion, ended, trajectory, columns = None, None, None, None
             if wanted & {*MOTION, *self.of_motion}:
-                motion = self.motion(float(np.max(instants, initial=0.0)) if times is not None else math.inf)
+                motion = self.motion(horizon)
+                ended = _ended(motion, horizon)
                 table |= self.motion_figures(motion)
+                table["events"] = lambda: _events(motion, horizon)
             figures = {
                 name: rounded(table[name](), (name,)) for name in self.outputs if name in wanted and name in table
             }
-            ended, trajectory, columns = None, None, None
-            if motion is not None:
-                end = math.inf if motion.end is None else float(motion.end.time)
-                horizon = float(np.max(instants, initial=0.0)) if times is not None else math.inf
-                if motion.end is not None and end <= horizon:
-                    ended = motion.end.kind
-                elif times is not None:
-                    ended = HORIZON
-                if "events" in wanted:
-                    happened = [event for event in motion.events() if float(event.time) <= horizon]
-                    figures["events"] = rounded([{"kind": e.kind, "time": e.time} for e in happened], ("events",))
-                if "trajectory" in wanted:
-                    if float(np.min(instants, initial=0.0)) < motion.began:
-                        raise InvalidParameter(
-                            "times",
-                            f"be at least {motion.began:.17g} s",
-                            remedy="the model does not hold earlier; start from an earlier state",
-                        )
-                    instants = instants[instants <= end]
-                    columns = motion.sample(instants)
-                    trajectory = {"time": instants, **columns.values}
+            if motion is not None and "trajectory" in wanted:
+                existing = _existing(motion, instants)
+                columns = motion.sample(existing)
+                trajectory = {"time": existing, **columns.values}
             warnings = (*rounded.notices, *self.notices(wanted), *(columns.notices if columns else ()))
+            model = self.still() if motion is None else motion.model
         error = rounded.error if columns is None else max(rounded.error, columns.error())
         if error > accuracy:
             raise AccuracyUnreachable(
                 accuracy, error, "the samples are differences of far larger numbers", remedy="ask for fewer digits"
             )
         return SceneAnswer(
-            model=self.still() if motion is None else motion.model,
+            model=model,
             figures=figures,
             trajectory=trajectory,
             ended=ended,
             accuracy=Accuracy(requested=accuracy, error=error, how="closed form"),
             warnings=warnings,
-            work=Work(samples=0 if trajectory is None else instants.size),
-            requested_samples=0 if times is None else np.asarray(times).size,
+            work=Work(samples=0 if trajectory is None else trajectory["time"].size),
+            requested_samples=instants.size,
         )
 
     def notices(self, wanted: frozenset[str]) -> tuple[Notice, ...]:
@@ -231,12 +223,35 @@ class ConstrainedSystem(ABC):
 
     def _wanted(self, times: Floats | None, outputs: frozenset[str] | None) -> frozenset[str]:
         if outputs is None:
-            return frozenset(self.outputs) - (frozenset({"trajectory"}) if times is None else frozenset())
+            names = frozenset(self.outputs) - (frozenset({"trajectory"}) if times is None else frozenset())
+            return names if times is not None or self.moves else names - {*MOTION, *self.of_motion}
         for name in sorted(outputs - set(self.outputs)):
             raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {self.outputs}")
         if "trajectory" in outputs and times is None:
             raise InvalidParameter("times", "be given when a trajectory is asked for")
         return outputs
+
+
+def _ended(motion: Motion, horizon: float) -> str | None:
+    if motion.end is not None and float(motion.end.time) <= horizon:
+        return motion.end.kind
+    return HORIZON if math.isfinite(horizon) else None
+
+
+def _events(motion: Motion, horizon: float) -> list[Mapping[str, Any]]:
+    happened = [event for event in motion.events() if float(event.time) <= horizon]
+    return [{"kind": event.kind, "time": event.time} for event in happened]
+
+
+def _existing(motion: Motion, instants: Floats) -> Floats:
+    """Return the instants at which there is a motion; samples past its end are not invented."""
+    if float(np.min(instants, initial=0.0)) < motion.began:
+        raise InvalidParameter(
+            "times",
+            f"be at least {motion.began:.17g} s",
+            remedy="the model does not hold earlier; start from an earlier state",
+        )
+    return instants if motion.end is None else instants[instants <= float(motion.end.time)]
 
 
 def _checked(times: Floats | None) -> Floats:

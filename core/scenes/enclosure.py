@@ -48,13 +48,13 @@ def precision(bits: int = BITS) -> Iterator[None]:
 
 def exact(number: float) -> Ball:
     """Return a double as a ball of radius zero."""
-    return arb(number)
+    return arb(float(number))
 
 
 def exact_pair(numbers: Iterable[float]) -> Balls:
     """Return two doubles as balls of radius zero."""
     first, second = numbers
-    return arb(first), arb(second)
+    return arb(float(first)), arb(float(second))
 
 
 def sign(ball: Ball) -> int:

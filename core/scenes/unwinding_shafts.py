@@ -112,6 +112,11 @@ class UnwindingShafts(ConstrainedSystem):
             "energy": self._energy,
         }
 
+    @property
+    def moves(self) -> bool:
+        """Whether positions are given and the spins determined."""
+        return self.positions is not None and self._constants.determinate
+
     def motion(self, horizon: float) -> ShaftMotion:
         """Return the motion from the given state to the event that ends it, or past the horizon (s)."""
         if self.positions is None:

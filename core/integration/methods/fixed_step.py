@@ -41,7 +41,7 @@ OVERFLOW, NO_CONVERGENCE, OUT_OF_BUDGET = 1, 2, 3
 
 @kernel(types.float64(_doubles, types.float64, _doubles, _doubles, _integers))
 def plan(targets: Floats, step: float, begin: Floats, length: Floats, count: Integers) -> float:
-    """Lay out the steps to `targets` and return their number; the count of an interval stops at 2**62."""
+    """Lay out the steps to `targets` and return their number; stop at an interval that needs more than 2**53."""
     now, tail, total = 0.0, 0.0, 0.0
     for i in range(targets.size):
         distance = (targets[i] - now) - tail
@@ -51,11 +51,13 @@ def plan(targets: Floats, step: float, begin: Floats, length: Floats, count: Int
         if abs(distance) <= slack:
             length[i], count[i] = 0.0, 0
             continue
-        needed = max(1.0, math.ceil((abs(distance) - slack) / step))
+        needed = max(1.0, np.ceil((abs(distance) - slack) / step))
+        if not needed <= 9007199254740992.0:
+            return needed
         whole = abs(abs(distance) - needed * step) <= slack
         size = math.copysign(step if whole else abs(distance) / needed, distance)
         length[i] = size
-        count[i] = int(needed) if needed < 4.6e18 else 4600000000000000000
+        count[i] = int(needed)
         total += needed
         covered, rest = two_prod(size, needed)
         now, tail = dd_add(now, tail, covered, rest)

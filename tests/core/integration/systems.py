@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -113,6 +113,16 @@ def rigid_body(moments: tuple[float, float, float], rates: tuple[float, float, f
         lambda w: {"energy": (w**2 @ inertia) / 2, "momentum": np.sqrt((w * inertia) ** 2 @ np.ones(3))},
         Structure(splitting=Splitting(3, _axis_rotations)),
     )
+
+
+def rigid_body_with_solution() -> Given:
+    """Moments (1, 2, 3), start (1, 0, 1): the amplitudes and the rate are 1, the motion is (cn, sn, dn) with m = 1/3."""
+
+    def solution(times: Floats) -> Floats:
+        sn, cn, dn, _ = ellipj(times, 1 / 3)
+        return np.column_stack((cn, sn, dn))
+
+    return replace(rigid_body((1, 2, 3), (1, 0, 1)), exact=Exact(solution, bound=4e-15))
 
 
 @kernel(VECTOR_FIELD)
@@ -235,7 +245,18 @@ def _kepler(time, y, parameters, slope):
 def kepler(eccentricity: float) -> Given:
     """One planet, period 2 pi, from its perihelion: the natural step varies along the orbit."""
     e = eccentricity
-    return Given(_kepler, np.array([1 - e, 0.0, 0.0, np.sqrt((1 + e) / (1 - e))]))
+    ratio = np.sqrt(1 - e * e)
+
+    def solution(times: Floats) -> Floats:
+        anomaly = times + e * np.sin(times)
+        for _ in range(50):
+            anomaly = anomaly - (anomaly - e * np.sin(anomaly) - times) / (1 - e * np.cos(anomaly))
+        c, s = np.cos(anomaly), np.sin(anomaly)
+        rate = 1 / (1 - e * c)
+        return np.column_stack((c - e, ratio * s, -s * rate, ratio * c * rate))
+
+    start = np.array([1 - e, 0.0, 0.0, np.sqrt((1 + e) / (1 - e))])
+    return Given(_kepler, start, exact=Exact(solution, bound=1e-13, period=2 * np.pi))
 
 
 @kernel(VECTOR_FIELD)

@@ -1,0 +1,195 @@
+"""The free rigid body as a system: Euler's equations in body axes, their conserved quantities, their closed form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.bodies.mass_properties import MassProperties
+from core.compiled import kernel
+from core.errors import InvalidParameter
+from core.integration.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Splitting, Structure
+from core.notices import Notice
+from core.rotation.closed_form import FreeRotation
+
+PARTS = 3
+
+
+@kernel(VECTOR_FIELD)
+def _euler_principal(
+    time: float, state: NDArray[np.float64], parameters: NDArray[np.float64], derivative: NDArray[np.float64]
+) -> None:
+    """I1 w1' = (I2 - I3) w2 w3 and cyclic; the parameters begin with the three moments."""
+    a, b, c = parameters[0], parameters[1], parameters[2]
+    x, y, z = state[0], state[1], state[2]
+    derivative[0] = (b - c) / a * y * z
+    derivative[1] = (c - a) / b * z * x
+    derivative[2] = (a - b) / c * x * y
+
+
+@kernel(VECTOR_FIELD)
+def _euler_tensor(
+    time: float, state: NDArray[np.float64], parameters: NDArray[np.float64], derivative: NDArray[np.float64]
+) -> None:
+    """I w' = (I w) x w; the parameters are three moments, nine axes, the tensor and its inverse, row by row."""
+    x, y, z = state[0], state[1], state[2]
+    p = parameters
+    mx = p[12] * x + p[13] * y + p[14] * z
+    my = p[15] * x + p[16] * y + p[17] * z
+    mz = p[18] * x + p[19] * y + p[20] * z
+    tx, ty, tz = my * z - mz * y, mz * x - mx * z, mx * y - my * x
+    derivative[0] = p[21] * tx + p[22] * ty + p[23] * tz
+    derivative[1] = p[24] * tx + p[25] * ty + p[26] * tz
+    derivative[2] = p[27] * tx + p[28] * ty + p[29] * tz
+
+
+@kernel(PART_FLOW)
+def _turn_momentum(part: int, duration: float, state: NDArray[np.float64], parameters: NDArray[np.float64]) -> None:
+    """Flow of the energy M_k^2/2I_k alone: the angular momentum turns about the principal axis k at a constant rate."""
+    w = np.empty(3)
+    for k in range(3):
+        w[k] = parameters[3 + k] * state[0] + parameters[6 + k] * state[1] + parameters[9 + k] * state[2]
+    i, j = (part + 1) % 3, (part + 2) % 3
+    angle = w[part] * duration
+    s, c = math.sin(angle), math.cos(angle)
+    mi, mj = parameters[i] * w[i], parameters[j] * w[j]
+    w[i], w[j] = (c * mi + s * mj) / parameters[i], (c * mj - s * mi) / parameters[j]
+    for k in range(3):
+        state[k] = parameters[3 + 3 * k] * w[0] + parameters[4 + 3 * k] * w[1] + parameters[5 + 3 * k] * w[2]
+
+
+@kernel()
+def _invariants(tensor: NDArray[np.float64], states: NDArray[np.float64], unit: float, out: NDArray[np.float64]) -> None:
+    a, b, c = tensor[0, 0], tensor[1, 1], tensor[2, 2]
+    d, e, f = tensor[0, 1], tensor[0, 2], tensor[1, 2]
+    for n in range(states.shape[0]):
+        x, y, z = unit * states[n, 0], unit * states[n, 1], unit * states[n, 2]
+        mx, my, mz = a * x + d * y + e * z, d * x + b * y + f * z, e * x + f * y + c * z
+        out[0, n] = 0.5 * (x * mx + y * my + z * mz)
+        out[1, n] = math.sqrt(mx * mx + my * my + mz * mz)
+
+
+@dataclass(frozen=True, eq=False)
+class TorqueFree:
+    """A body that turns freely, its state the angular velocity in body axes (rad/s).
+
+    Attributes
+    ----------
+    body : MassProperties
+    angular_velocity : ndarray, shape (3,)
+        At t = 0, in body axes.
+    """
+
+    body: MassProperties
+    angular_velocity: Floats
+
+    def __post_init__(self) -> None:
+        if not self.inertia_is_positive:
+            raise InvalidParameter(
+                "body",
+                "have three moments of inertia greater than 0 to rotate freely",
+                remedy="give a body with extent in at least two directions",
+            )
+
+    @property
+    def inertia_is_positive(self) -> bool:
+        """Whether every principal moment is positive: a point or a line of matter has no free rotation."""
+        return bool(self.body.principal_of_motion.moments[0] > 0.0)
+
+    @property
+    def initial_state(self) -> Floats:
+        """Angular velocity at t = 0, shape (3,)."""
+        return self.angular_velocity
+
+    @cached_property
+    def tensor(self) -> Floats:
+        """Tensor of inertia in body axes about the point of rotation, times the power of two that brings it near one."""
+        if self.body.about == "origin" and self.body.inertia_about_origin is not None:
+            inertia = self.body.inertia_about_origin
+        else:
+            inertia = self.body.inertia
+        scaled: Floats = np.ldexp(inertia, -self._exponent)
+        return scaled
+
+    @property
+    def _exponent(self) -> int:
+        return math.frexp(float(self.body.principal_of_motion.moments[2]))[1]
+
+    @cached_property
+    def _diagonal(self) -> bool:
+        return bool(self.tensor[0, 1] == self.tensor[0, 2] == self.tensor[1, 2] == 0.0)
+
+    @cached_property
+    def parameters(self) -> Floats:
+        """Three moments, nine components of the axes and, unless the tensor is diagonal, tensor and inverse."""
+        if self._diagonal:
+            return np.concatenate([np.diag(self.tensor), np.eye(3).ravel()])
+        principal = self.body.principal_of_motion
+        moments = np.ldexp(principal.moments, -self._exponent)
+        inverse = (principal.axes / moments) @ principal.axes.T
+        return np.concatenate([moments, principal.axes.ravel(), self.tensor.ravel(), inverse.ravel()])
+
+    @property
+    def equation(self) -> Any:
+        """Euler's equations, component by component where the tensor is diagonal."""
+        return _euler_principal if self._diagonal else _euler_tensor
+
+    @property
+    def structure(self) -> Structure:
+        """The energy as a sum of three, one for each principal axis."""
+        return Structure(Splitting(PARTS, _turn_momentum))
+
+    @property
+    def model(self) -> Model:
+        """The model as an integrator sees it."""
+        return Model("torque-free rigid body", "Euler's equations", "an integrator was asked for", 3)
+
+    def closed_form(self) -> FreeRotation:
+        """Return the exact solution."""
+        return self._exact
+
+    @cached_property
+    def _exact(self) -> FreeRotation:
+        return FreeRotation(self.body.principal_of_motion, self.angular_velocity)
+
+    def invariants(self, states: Floats) -> Mapping[str, Floats]:
+        """Return energy and |L| in units in which the largest moment and the largest initial rate are of order one."""
+        largest = float(np.max(np.abs(self.angular_velocity)))
+        unit = math.ldexp(1.0, max(-1000, min(1000, -math.frexp(largest)[1])))
+        out = np.empty((2, len(states)))
+        _invariants(self.tensor, states, unit, out)
+        return {"energy": out[0], "angular_momentum": out[1]}
+
+    @property
+    def energy(self) -> float | None:
+        """Kinetic energy (J); None where it leaves the range of normal doubles."""
+        return self._in_range(lambda i, w: 0.5 * float(w @ i @ w), 2)
+
+    @property
+    def angular_momentum(self) -> float | None:
+        """Magnitude of the angular momentum (kg m^2/s); None where it leaves the range of normal doubles."""
+        return self._in_range(lambda i, w: float(np.linalg.norm(i @ w)), 1)
+
+    def _in_range(self, figure: Any, power: int) -> float | None:
+        largest = float(np.max(np.abs(self.angular_velocity)))
+        if largest == 0.0:
+            return 0.0
+        rate = math.frexp(largest)[1]
+        mantissa, exponent = math.frexp(figure(self.tensor, np.ldexp(self.angular_velocity, -rate)))
+        exponent += self._exponent + power * rate
+        return math.ldexp(mantissa, exponent) if -1021 <= exponent <= 1024 else None
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """What an answer about this motion has to say beside its figures; paths lead from the question."""
+        notices = [notice.inside("body") for notice in self.body.warnings]
+        for name, value in (("energy", self.energy), ("angular_momentum", self.angular_momentum)):
+            if value is None:
+                notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
+        return tuple(notices)
