@@ -1,7 +1,7 @@
 """Numbers of 106 bits as unevaluated sums of two doubles, compiled.
 
-A number is a pair (h, l) with h = fl(h + l). Every operation takes and returns such pairs, flattened, and has a relative
-error of a few 2^-106 as long as no low part falls below the normal range (so |h| between about 1e-290 and 1e290).
+A number is a pair (h, l) with h = fl(h + l). Every operation takes and returns such pairs, flattened, and has a
+relative error of a few 2^-106 unless a low part falls below the normal range (so |h| between about 1e-290 and 1e290).
 
 References
 ----------
@@ -116,7 +116,7 @@ def dd_sqrt(ah: float, al: float) -> Pair:
 
 @kernel()
 def dd_exp(ah: float, al: float) -> Pair:
-    """Return exp(a) for |a| < 700.
+    """Return exp(a) for |a| < 700, to 8 + |a| units of 2^-106.
 
     The argument is reduced to |r| < ln(2)/512 and the Taylor series summed to the twelfth power.
     """

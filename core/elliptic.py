@@ -1,7 +1,8 @@
-"""Elliptic integrals and Jacobian elliptic functions to full precision, compiled: the ground floor of every closed form.
+"""Elliptic integrals and Jacobian functions to full precision, compiled: the ground floor of every closed form.
 
-The parameter m and its complement m1 = 1 - m are both arguments everywhere, because near m = 1 the complement carries all
-the information and cannot be had from m. Set-ups run in double-double; evaluation is by quotients of theta functions:
+The parameter m and its complement m1 = 1 - m are both arguments everywhere, because near m = 1 the complement carries
+all the information and cannot be had from m. Set-ups run in double-double; evaluation is by quotients of theta
+functions:
 
 * m1 >= 1/2 ("circular"): nome q = exp(-pi K'/K) <= 0.0433, argument z = pi u/2K, trigonometric theta series;
 * m1 < 1/2 ("hyperbolic"): Jacobi's imaginary transformation, nome q' = exp(-pi K/K'), argument x = pi u/2K'.
@@ -33,11 +34,9 @@ from core.double_double import (
     dd_div,
     dd_exp,
     dd_mul,
-    dd_mul_d,
     dd_sqr,
     dd_sqrt,
     dd_sub,
-    fast_two_sum,
     two_prod,
     two_sum,
 )

@@ -144,10 +144,9 @@ def _check(path: Path, hint: Any, value: Any) -> None:
     elif origin is tuple:
         _check_tuple(path, get_args(hint), value)
     elif origin in (Union, UnionType) and NoneType in get_args(hint):
-        if value is not None:
-            inner = [arg for arg in get_args(hint) if arg is not NoneType]
-            if len(inner) == 1:
-                _check(path, inner[0], value)
+        inner = [arg for arg in get_args(hint) if arg is not NoneType]
+        if value is not None and len(inner) == 1:
+            _check(path, inner[0], value)
 
 
 def _check_tuple(path: Path, args: tuple[Any, ...], value: Any) -> None:

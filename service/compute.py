@@ -11,14 +11,14 @@ import multiprocessing
 import os
 import tempfile
 from collections.abc import Awaitable, Callable
-from concurrent.futures import CancelledError, TimeoutError
+from concurrent.futures import TimeoutError
 from itertools import count
 from math import ceil
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from core.integration.budget import Budget
 from service.guards import ClientGone
@@ -55,7 +55,8 @@ class Compute:
         self._scratch: tempfile.TemporaryDirectory[str] | None = None
         self._numbers = count()
         self._promised = 0.0
-        self._pace = 1.0
+        self._tasks: set[ProcessFuture[Any]] = set()
+        self._stopping = False
 
     async def start(self) -> None:
         """Start the processes and return when each has answered something."""
@@ -71,7 +72,11 @@ class Compute:
         await asyncio.gather(*map(asyncio.wrap_future, greetings))
 
     async def stop(self) -> None:
-        """Kill what still runs and release the memory."""
+        """Refuse and kill what still runs, and release the memory."""
+        self._stopping = True
+        # The pool by itself would leave the questions in flight waiting for ever.
+        for task in tuple(self._tasks):
+            task.cancel()  # type: ignore[no-untyped-call]
         if self._pool is not None:
             self._pool.stop()  # type: ignore[no-untyped-call]
             await asyncio.to_thread(self._pool.join)
@@ -81,7 +86,7 @@ class Compute:
     @property
     def backlog(self) -> float:
         """Predicted time until a question that is accepted now would have its turn (s)."""
-        return self._pace * self._promised / self.size
+        return self._promised / self.size
 
     async def answer(self, route: Question, body: bytes, price: float, gone: Callable[[], Awaitable[None]]) -> Answer:
         """Return the answer to a question, computed in another process.
@@ -99,6 +104,8 @@ class Compute:
             The question's own problem, 429 for too long a queue, or 503 for a computation that was killed.
         ClientGone
         """
+        if self._stopping:
+            raise _stopped()
         if self._pool is None or self._scratch is None:
             raise Refusal("not-ready", "the compute processes are not up yet", headers=(("Retry-After", "1"),))
         self._admit()
@@ -109,16 +116,18 @@ class Compute:
         task = self._pool.schedule(
             work, (self.terms, route.path, body, str(file)), timeout=self._settings.deadline_seconds
         )
+        self._tasks.add(task)
         future = asyncio.wrap_future(task)
         watch = asyncio.ensure_future(gone())
         try:
             await asyncio.wait((future, watch), return_when=asyncio.FIRST_COMPLETED)
             if not future.done():
                 raise ClientGone
-            result = restored(await self._outcome(future), file)
+            result = restored(self._outcome(future), file)
         finally:
             watch.cancel()
             task.cancel()  # type: ignore[no-untyped-call]
+            self._tasks.discard(task)
             file.unlink(missing_ok=True)
             self._promised -= price
             self._metrics.backlog.set(self.backlog)
@@ -138,9 +147,11 @@ class Compute:
                 headers=(("Retry-After", str(max(1, ceil(self.backlog - limit)))),),
             )
 
-    async def _outcome(self, future: asyncio.Future[Any]) -> Any:
+    def _outcome(self, future: asyncio.Future[Any]) -> Any:
         try:
-            return await future
+            if future.cancelled():
+                raise _stopped()
+            return future.result()
         except TimeoutError:
             limit = self._settings.deadline_seconds
             detail = f"the computation took longer than {limit:g} s, the limit deadline_seconds, and was stopped"
@@ -150,8 +161,10 @@ class Compute:
             LOG.error("a compute process died", extra={"exit_code": error.exitcode})
             detail = "the process that computed this answer died; other questions are not affected"
             raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
-        except (CancelledError, asyncio.CancelledError):
-            raise Refusal("shutting-down", "the service is being stopped") from None
+
+
+def _stopped() -> Refusal:
+    return Refusal("shutting-down", "the service is being stopped", headers=(("Retry-After", "1"),))
 
 
 def _greet(seconds: float) -> None:

@@ -108,6 +108,11 @@ class Dispatcher:
             await exchange.problem(problem_of(error))
         except ClientGone:
             exchange.close(499)
+        except asyncio.CancelledError:
+            # The server is being stopped and will not wait any longer.
+            if not exchange.started:
+                detail = "the service is being stopped"
+                await exchange.problem(Problem(REGISTRY["shutting-down"], detail, headers=(("Retry-After", "1"),)))
         except Exception:
             if exchange.started:
                 # The answer is cut short, which the transfer coding shows the client.

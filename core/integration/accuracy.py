@@ -13,9 +13,9 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
-from core.errors import AccuracyUnreachable, BudgetExceeded
+from core.errors import AccuracyUnreachable
 from core.integration.budget import Budget
-from core.integration.error_statements import Errors, estimated
+from core.integration.error_statements import Errors, estimated, rest_of
 from core.integration.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Radau
 from core.integration.methods.method import AbstractMethod
 from core.integration.system import Floats, System
@@ -59,12 +59,12 @@ def record() -> tuple[RecordEntry, ...]:
 
 
 def choose(system: System, accuracy: float) -> AbstractMethod:
-    """Return the cheapest method whose record meets `accuracy`, the closed form where there is one.
+    """Return the cheapest method whose record meets `accuracy`: the closed form where there is one."""
+    return integrator(accuracy) if system.closed_form() is None else ClosedFormEvaluation()
 
-    Where no record meets it, the method with the most accurate record is returned, to see what it reaches.
-    """
-    if system.closed_form() is not None:
-        return ClosedFormEvaluation()
+
+def integrator(accuracy: float) -> AbstractMethod:
+    """Return the cheapest integrator whose record meets `accuracy`, the most accurate one where none does."""
     entries = record()
     entry = next((entry for entry in entries if entry.error <= accuracy), min(entries, key=lambda entry: entry.error))
     return CANDIDATES[entry.kind](entry.tolerance)
@@ -79,8 +79,11 @@ class Run(NamedTuple):
     work: Work
 
 
-def run_to_accuracy(system: System, times: Floats, accuracy: float, budget: Budget) -> Run:
-    """Return the samples of the cheapest method that reaches `accuracy` on this question.
+def run_to_accuracy(system: System, times: Floats, accuracy: float, budget: Budget, spent: int = 0) -> Run:
+    """Return the samples of the cheapest integrator that reaches `accuracy` on this question.
+
+    It begins with the setting whose record meets the accuracy, and takes finer ones until its own estimate does; each
+    finer run serves first as the estimate of the one before. `spent` evaluations have gone from the budget already.
 
     Raises
     ------
@@ -89,14 +92,14 @@ def run_to_accuracy(system: System, times: Floats, accuracy: float, budget: Budg
     BudgetExceeded
         If reaching it takes more evaluations than the budget has.
     """
-    method = choose(system, accuracy)
-    run = method.integrate(system, times, budget)
-    spent = run.work.evaluations
+    method, before = integrator(accuracy), spent
+    run = method.integrate(system, times, rest_of(budget, spent))
+    spent += run.work.evaluations
     while True:
-        estimate = estimated(method, system, times, run, rest_of(budget, spent))
+        estimate = estimated(method, system, times, run, budget, spent)
         spent += estimate.integration.work.evaluations
         if estimate.errors.largest <= accuracy:
-            for_error = spent - run.work.evaluations
+            for_error = spent - before - run.work.evaluations
             return Run(method, run.states, estimate.errors, replace(run.work, evaluations_for_error=for_error))
         if estimate.finer is None:
             raise AccuracyUnreachable(
@@ -106,17 +109,3 @@ def run_to_accuracy(system: System, times: Floats, accuracy: float, budget: Budg
                 remedy="ask for earlier times or for less accuracy",
             )
         method, run = estimate.finer, estimate.integration
-
-
-def rest_of(budget: Budget, spent: int) -> Budget:
-    """Return what is left of a budget.
-
-    Raises
-    ------
-    BudgetExceeded
-        If nothing is left.
-    """
-    if spent >= budget.evaluations:
-        remedy = "ask for earlier times or for less accuracy"
-        raise BudgetExceeded("evaluations", spent + 1, budget.evaluations, remedy=remedy)
-    return replace(budget, evaluations=budget.evaluations - spent)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from core.errors import NotApplicable
+from core.errors import BudgetExceeded, NotApplicable
 from core.integration.budget import Budget
 from core.integration.methods.method import AbstractMethod, Integration
 from core.integration.system import Floats, System
@@ -15,9 +16,9 @@ from core.integration.system import Floats, System
 SAFETY = 4.0
 """Factor between the estimate from a finer run and the error that is stated.
 
-A finer run shows the coarser run's error less its own. Halving the step of a first-order method, or asking a sixteenth
-of the tolerance, takes away at least half of the error where the method converges at all, so a factor 2 is owed; the
-other factor 2 is for methods that converge less evenly than their order says.
+A finer run shows the coarser run's error less its own. Halving the steps of a first-order method takes away half of the
+error, so a factor 2 is owed, and so is it where a sixteenth of the tolerance does no better than that; the other factor
+2 is for methods that converge less evenly than their order says.
 """
 
 ROUNDOFF = 8 * 2.0**-53
@@ -99,25 +100,72 @@ class Estimate(NamedTuple):
     integration: Integration
 
 
-def estimated(method: AbstractMethod, system: System, times: Floats, run: Integration, budget: Budget) -> Estimate:
+def estimated(
+    method: AbstractMethod, system: System, times: Floats, run: Integration, budget: Budget, spent: int
+) -> Estimate:
     """Return the error of a run as a finer run of the same method shows it.
 
     At the end of what a method offers the comparison is with a coarser run, whose error is the larger of the two.
 
+    Parameters
+    ----------
+    method, system, times : AbstractMethod, System, ndarray
+        Of the run.
+    run : Integration
+    budget : Budget
+        For all that is done to answer the question.
+    spent : int
+        Evaluations that were spent so far.
+
     Raises
     ------
     BudgetExceeded, InvalidParameter
-        As `AbstractMethod.integrate`, for the finer run.
+        As `AbstractMethod.integrate`, for the other run.
     """
     finer = method.finer()
     neighbour = finer or method.coarser()
     if neighbour is None:
         raise NotApplicable(f"{method.kind} has no setting to compare with", path=("kind",))
-    other = neighbour.integrate(system, times, budget)
-    found = measured(run.states, other.states, times)
+    rest = rest_of(budget, spent)
+    try:
+        other = neighbour.integrate(system, times, rest)
+    except BudgetExceeded as fault:
+        raise BudgetExceeded(
+            fault.what, spent + fault.needed, budget.evaluations, path=fault.path, remedy=fault.remedy
+        ) from None
+    difference = measured(run.states, other.states, times)
+    scale = _certain_scale(system, other.states, difference)
     errors = Errors(
-        SAFETY * found.largest + ROUNDOFF,
-        SAFETY * found.final + ROUNDOFF,
-        tuple(SAFETY * component + ROUNDOFF for component in found.components),
+        SAFETY * scale * difference.largest + ROUNDOFF,
+        SAFETY * scale * difference.final + ROUNDOFF,
+        tuple(SAFETY * scale * component + ROUNDOFF for component in difference.components),
     )
     return Estimate(errors, finer, other)
+
+
+def _certain_scale(system: System, states: Floats, difference: Errors) -> float:
+    """Return by how much the motion's largest norm may be smaller than that of `states`, as a factor of at least 1.
+
+    A run that blows up has a norm that the motion never had, and errors relative to it would look small. The motion's
+    largest norm is certain only as far as the error leaves it, and to be no smaller than the norm at the start.
+    """
+    unit = float(np.abs(states).max()) or 1.0
+    norms = np.sqrt(((states / unit) ** 2).sum(axis=1))
+    start = float(np.sqrt(((system.initial_state / unit) ** 2).sum()))
+    largest = max(float(norms.max()), start)
+    left = max(largest * (1 - difference.largest), start)
+    return largest / left if left > 0.0 else 1.0
+
+
+def rest_of(budget: Budget, spent: int) -> Budget:
+    """Return what is left of a budget.
+
+    Raises
+    ------
+    BudgetExceeded
+        If nothing is left.
+    """
+    if spent >= budget.evaluations:
+        remedy = "ask for earlier times or for less accuracy"
+        raise BudgetExceeded("evaluations", spent + 1, budget.evaluations, remedy=remedy)
+    return replace(budget, evaluations=budget.evaluations - spent)

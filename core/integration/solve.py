@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError, NotApplicable
-from core.integration.accuracy import rest_of, run_to_accuracy
+from core.integration.accuracy import run_to_accuracy
 from core.integration.budget import Budget
 from core.integration.error_statements import drifts, estimated, measured
 from core.integration.methods import ClosedFormEvaluation
@@ -21,6 +21,12 @@ from core.notices import Notice
 from core.quantities import Quantity
 
 HALF_ULP = 2.0**-53
+
+UNCONVERGED = 0.25
+"""A finer run that states a larger error than this is not near enough to the motion to state any."""
+
+JUDGE = 1e-4
+"""Accuracy of the run that then does."""
 
 _tolerated = Quantity("1", above=0, below=1)
 _uncertainty = Quantity("1", at_least=0, below=1)
@@ -82,9 +88,11 @@ def solve(
         return _refined(system, instants, accuracy, budget)
     with _inside("method"):
         run = method.integrate(system, instants, budget)
-    if exact is None:
-        return _compared_with_finer_run(system, method, run, instants, accuracy, budget)
-    return _compared_with_closed_form(system, exact, method, run, instants, accuracy, input_uncertainty)
+    if exact is not None:
+        # A closed form that cannot be evaluated this far cannot judge either, and leaves it to the finer run.
+        with suppress(AccuracyUnreachable):
+            return _compared_with_closed_form(system, exact, method, run, instants, accuracy, input_uncertainty)
+    return _compared_with_finer_run(system, method, run, instants, accuracy, budget)
 
 
 def _checked(times: ArrayLike, budget: Budget) -> Floats:
@@ -164,11 +172,27 @@ def _compared_with_finer_run(
     system: System, method: AbstractMethod, run: Integration, times: Floats, accuracy: float, budget: Budget
 ) -> Trajectory:
     with _inside("method"):
-        estimate = estimated(method, system, times, run, rest_of(budget, run.work.evaluations))
-    errors = estimate.errors
+        estimate = estimated(method, system, times, run, budget, run.work.evaluations)
+    errors, spent = estimate.errors, estimate.integration.work.evaluations
+    uncertain: tuple[Notice, ...] = ()
+    if errors.largest > UNCONVERGED:
+        # Two runs as far apart as the motion is wide show nothing of a third; a run that does converge has to judge.
+        try:
+            judge = run_to_accuracy(system, times, JUDGE, budget, run.work.evaluations + spent)
+        except MechanicsError as fault:
+            detail = f"the error is so large that it is only known to be of this order: {fault.detail}"
+            uncertain = (Notice("error-uncertain", detail, ("method",)),)
+        else:
+            found = measured(run.states, judge.states, times)
+            errors = found._replace(
+                largest=found.largest * (1 + JUDGE) + judge.errors.largest,
+                final=found.final * (1 + JUDGE) + judge.errors.largest,
+            )
+            spent += judge.work.evaluations + judge.work.evaluations_for_error
     stated = Accuracy(accuracy, errors.largest, "finer run", errors.final, None, drifts(system, run.states))
-    work = replace(run.work, evaluations_for_error=estimate.integration.work.evaluations)
-    return Trajectory(times, run.states, system.model, method.kind, stated, work, warnings=_warnings(stated, method))
+    work = replace(run.work, evaluations_for_error=spent)
+    warnings = _warnings(stated, method) + uncertain
+    return Trajectory(times, run.states, system.model, method.kind, stated, work, warnings=warnings)
 
 
 def _refined(system: System, times: Floats, accuracy: float, budget: Budget) -> Trajectory:

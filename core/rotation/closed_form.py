@@ -33,8 +33,8 @@ UNIT_ROUNDOFF = 2.0**-53
 EVALUATION_ERROR = 6.0 * UNIT_ROUNDOFF
 """Bound of the error of one sample along principal axes, relative to the largest angular velocity.
 
-Each component is constant * numerator / denominator: two roundings in the constant, at most 1.5 units in each theta function,
-four in the quotient; the components' errors add as squares and their weights are amplitudes below one.
+Each component is constant * numerator / denominator: two roundings in the constant, at most 1.5 units in each theta
+function, four in the quotient; the components' errors add as squares and their weights are amplitudes below one.
 """
 
 TURNED_AXES_ERROR = 3.0 * UNIT_ROUNDOFF
@@ -250,7 +250,7 @@ def _model(motion: Motion, inertia: PrincipalInertia) -> Model:
     return Model(
         name,
         f"circulation about the axis of {axis} moment",
-        f"three moments differ and L^2 {'>' if motion.circled == 2 else '<'} 2 E I_middle: Jacobian elliptic functions, "
-        f"parameter m = {motion.m:.6g}",
+        f"three moments differ and L^2 {'>' if motion.circled == 2 else '<'} 2 E I_middle: Jacobian elliptic "
+        f"functions, parameter m = {motion.m:.6g}",
         1,
     )

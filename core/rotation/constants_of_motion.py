@@ -4,15 +4,16 @@ In principal axes with moments A <= B <= C the motion is
 
     w_c = A_c cn u,   w_b = s A_b sn u,   w_d = s A_d dn u,   u = u0 + p t,
 
-where d is the extreme axis that the motion circles, c the other extreme, b the middle and s the sign of w_d. All constants
-are sums and products of positive terms, except the one difference D_B = C(C-B) w_C^2 - A(B-A) w_A^2 that decides which axis is
-circled; they are formed in double-double with separate exponents, so that neither cancellation nor the range of doubles
-enters. Right for ascending moments in a right-handed frame, in which time never runs backwards.
+where d is the extreme axis that the motion circles, c the other extreme, b the middle and s the sign of w_d. All
+constants are sums and products of positive terms, except the one difference D_B = C(C-B) w_C^2 - A(B-A) w_A^2 that
+decides which axis is circled; they are formed in double-double with separate exponents, so that neither cancellation
+nor the range of doubles enters. Right for ascending moments in a right-handed frame, in which time never runs
+backwards.
 
 References
 ----------
-L. D. Landau, E. M. Lifshitz, "Mechanics", section 37. E. T. Whittaker, "A Treatise on the Analytical Dynamics of Particles and
-Rigid Bodies", section 69.
+L. D. Landau, E. M. Lifshitz, "Mechanics", section 37. E. T. Whittaker, "A Treatise on the Analytical Dynamics
+of Particles and Rigid Bodies", section 69.
 """
 
 from __future__ import annotations
@@ -26,10 +27,8 @@ from numpy.typing import NDArray
 from core.compiled import kernel
 from core.double_double import (
     Scaled,
-    dd_add_d,
     dd_div,
     dd_mul,
-    dd_sqrt,
     dd_sub,
     sc_abs,
     sc_add,
@@ -45,7 +44,7 @@ from core.elliptic import Lattice, lattice, rf_of_roots
 REST, STEADY, PERIODIC, SEPARATRIX, UNDECIDED, UNREACHABLE = range(6)
 
 UNDECIDED_CANCELLATION = 2.0**6
-"""Where D_B has cancelled by more than this, exact arithmetic forms it, so that near the separatrix the flips are as right as elsewhere."""
+"""Where D_B has cancelled by more than this, exact arithmetic forms it: flips near the separatrix hang on it."""
 
 
 class Sensitivity(NamedTuple):
@@ -143,12 +142,14 @@ def _e_minus_m1_k(m: float, m1: float, K: float) -> float:
 @kernel()
 def _sensitivity(
     A: float, B: float, C: float, wa: float, wb: float, wc: float, am: float, bm: float, cm: float,
-    m: float, m1: float, p: float, K: float, sn: float, cn: float, dn: float, difference: float, missed: float, largest: float,
+    m: float, m1: float, p: float, K: float, sn: float, cn: float, dn: float,
+    difference: float, missed: float, largest: float,
 ) -> Sensitivity:  # fmt: skip
     """First-order growth of relative input errors; here c is the circled axis, a the other extreme, b the middle.
 
     Each term is the sum of the absolute relative sensitivities of one constant: p, the modulus, u0, the amplitudes.
-    `difference` is the relative uncertainty of D_B per unit uncertainty of the inputs, `missed` that of m1 where it is 0.
+    `difference` is the relative uncertainty of D_B per unit uncertainty of the inputs, `missed` that of m1 where
+    it is 0.
     """
     g_cb, g_ca = (C + B) / abs(C - B), (C + A) / abs(C - A)
     d_c = 2 * (wc / cm) ** 2 + (wb / cm) ** 2 * (B * abs(B - A) * (4 + g_ca) + B * (A + B)) / (C * abs(C - A))
@@ -165,7 +166,7 @@ def _sensitivity(
     rate = p * d_p + (p / K * shift if m1 > 0.0 else 0.0)
     growth = 0.0
     if m1 == 0.0:
-        # cn(u|1 - m1) = sech u - (m1/4)(sinh u cosh u - u) tanh u sech u + ...: a separatrix missed by m1 is left as exp u.
+        # cn(u|1 - m1) = sech u - (m1/4)(sinh u cosh u - u) tanh u sech u + ...: missed by m1, it is left as exp u.
         growth = 0.25 * missed * math.exp(math.asinh(abs(sn) / cn)) * slope / largest
     return Sensitivity((slope * start + amplitudes) / largest, slope * rate / largest, 0.0, growth, p)
 
@@ -203,13 +204,13 @@ def constants_of_motion(
     turning_c = AB.high != 0.0 and w[0] != 0.0 and w[1] != 0.0
     if not (turning_a or turning_b or turning_c):
         if int(w[0] != 0.0) + int(w[1] != 0.0) + int(w[2] != 0.0) == 1:
-            return _motionless(STEADY, 1.0, 0.0, 0.0)
+            return _motionless(STEADY, 2.0, 0.0, 0.0)
         # Were the equal moments not quite equal, the spin would drift out of their plane in proportion to t (the Jordan
         # block of this equilibrium) and, once out, turn in the plane in proportion to t^2.
         pair, single = (i[0], i[2]) if AB.high == 0.0 else (i[2], i[0])
         drift = 4.0 * largest * max(1.0, pair / single)
         turn = 4.0 * largest * abs(1.0 - single / pair)
-        return _motionless(STEADY, 1.0, drift + turn, drift * turn)
+        return _motionless(STEADY, 2.0, drift + turn, drift * turn)
 
     IA, IB, IC = scaled(i[0], it[0], 0), scaled(i[1], it[1], 0), scaled(i[2], it[2], 0)
     WA, WB, WC = scaled(w[0], wt[0], 0), scaled(w[1], wt[1], 0), scaled(w[2], wt[2], 0)

@@ -65,7 +65,9 @@ def _turn_momentum(part: int, duration: float, state: NDArray[np.float64], param
 
 
 @kernel()
-def _invariants(tensor: NDArray[np.float64], states: NDArray[np.float64], unit: float, out: NDArray[np.float64]) -> None:
+def _invariants(
+    tensor: NDArray[np.float64], states: NDArray[np.float64], unit: float, out: NDArray[np.float64]
+) -> None:
     a, b, c = tensor[0, 0], tensor[1, 1], tensor[2, 2]
     d, e, f = tensor[0, 1], tensor[0, 2], tensor[1, 2]
     for n in range(states.shape[0]):
@@ -109,7 +111,7 @@ class TorqueFree:
 
     @cached_property
     def tensor(self) -> Floats:
-        """Tensor of inertia in body axes about the point of rotation, times the power of two that brings it near one."""
+        """Tensor of inertia in body axes about the point of rotation, times a power of two that brings it near one."""
         if self.body.about == "origin" and self.body.inertia_about_origin is not None:
             inertia = self.body.inertia_about_origin
         else:

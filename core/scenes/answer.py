@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,7 +14,7 @@ from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
 from core.integration.trajectory import Accuracy, Work
 from core.notices import Notice
-from core.scenes.enclosure import Ball, Rounding, precision
+from core.scenes.enclosure import MORE_BITS, Ball, Rounding, precision
 
 HORIZON = "horizon"
 MOTION = ("events", "ended", "trajectory")
@@ -130,6 +130,7 @@ class SceneAnswer:
     requested_samples: int
 
 
+@dataclass(frozen=True)
 class ConstrainedSystem(ABC):
     """A scene: parameters, figures that follow from them, and a motion."""
 
@@ -182,40 +183,52 @@ class ConstrainedSystem(ABC):
         """
         wanted = self._wanted(times, outputs)
         instants = _checked(times)
-        horizon = math.inf if times is None else float(np.max(instants, initial=0.0))
         with precision():
-            rounded = Rounding()
-            table = dict(self.figures())
-            motion, ended, trajectory, columns = None, None, None, None
-            if wanted & {*MOTION, *self.of_motion}:
-                motion = self.motion(horizon)
-                ended = _ended(motion, horizon)
-                table |= self.motion_figures(motion)
-                table["events"] = lambda: _events(motion, horizon)
-            figures = {
-                name: rounded(table[name](), (name,)) for name in self.outputs if name in wanted and name in table
-            }
-            if motion is not None and "trajectory" in wanted:
-                existing = _existing(motion, instants)
-                columns = motion.sample(existing)
-                trajectory = {"time": existing, **columns.values}
-            warnings = (*rounded.notices, *self.notices(wanted), *(columns.notices if columns else ()))
-            model = self.still() if motion is None else motion.model
-        error = rounded.error if columns is None else max(rounded.error, columns.error())
-        if error > accuracy:
+            found, sharp = self._compute(instants if times is not None else None, wanted, accuracy)
+        if not sharp:
+            # What was computed so far is kept with the object, so a new one starts again.
+            with precision(MORE_BITS):
+                found, _ = replace(self)._compute(instants if times is not None else None, wanted, accuracy)
+        if found.accuracy.error > accuracy:
             raise AccuracyUnreachable(
-                accuracy, error, "the samples are differences of far larger numbers", remedy="ask for fewer digits"
+                accuracy,
+                found.accuracy.error,
+                "the samples are differences of far larger numbers",
+                remedy="ask for fewer digits",
             )
-        return SceneAnswer(
-            model=model,
+        return found
+
+    def _compute(self, times: Floats | None, wanted: frozenset[str], accuracy: float) -> tuple[SceneAnswer, bool]:
+        """Return the answer at the present precision, and whether that precision was enough."""
+        horizon = math.inf if times is None else float(np.max(times, initial=0.0))
+        rounded = Rounding()
+        table = dict(self.figures())
+        motion, ended, trajectory, columns = None, None, None, None
+        if wanted & {*MOTION, *self.of_motion}:
+            motion = self.motion(horizon)
+            ended = _ended(motion, horizon)
+            table |= self.motion_figures(motion)
+            table["events"] = lambda: _events(motion, horizon)
+        figures = {name: rounded(table[name](), (name,)) for name in self.outputs if name in wanted and name in table}
+        if motion is not None and times is not None and "trajectory" in wanted:
+            existing = _existing(motion, times)
+            columns = motion.sample(existing)
+            trajectory = {"time": existing, **columns.values}
+        answer = SceneAnswer(
+            model=self.still() if motion is None else motion.model,
             figures=figures,
             trajectory=trajectory,
             ended=ended,
-            accuracy=Accuracy(requested=accuracy, error=error, how="closed form"),
-            warnings=warnings,
+            accuracy=Accuracy(
+                requested=accuracy,
+                error=rounded.error if columns is None else max(rounded.error, columns.error()),
+                how="closed form",
+            ),
+            warnings=(*rounded.notices, *self.notices(wanted), *(columns.notices if columns else ())),
             work=Work(samples=0 if trajectory is None else trajectory["time"].size),
-            requested_samples=instants.size,
+            requested_samples=0 if times is None else times.size,
         )
+        return answer, rounded.sharp
 
     def notices(self, wanted: frozenset[str]) -> tuple[Notice, ...]:
         """Return what the reader of the wanted outputs must know."""

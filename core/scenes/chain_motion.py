@@ -231,7 +231,7 @@ class ChainMotion(Motion):
         x = x0 + (v0 * single + square)
         v = v0 * cosh + a0 * single
         few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
-        tiny = SMALLEST * (1.0 + np.abs(t)) ** 2 * (1.0 + cosh)
+        tiny = SMALLEST * (1.0 + np.abs(t)) ** 2 * (1.0 + cosh) * (v0 != 0.0 or a0 != 0.0)
         dx = few * (np.abs(x0) + np.abs(v0 * single) + np.abs(square)) + tiny
         return x, v, dx, few * (np.abs(v0) * cosh + np.abs(a0 * single)) + tiny
 
@@ -249,7 +249,7 @@ class ChainMotion(Motion):
         down = decaying * np.exp(-z) if decaying else np.zeros_like(z)
         few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
         size = np.abs(up) + np.abs(down)
-        tiny = SMALLEST * (1.0 + rate)
+        tiny = SMALLEST * (1.0 + rate) * (size != 0.0)
         return (
             equilibrium + (up + down),
             rate * (up - down),

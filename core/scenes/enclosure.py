@@ -30,6 +30,8 @@ Balls = tuple[Ball, Ball]
 """The same for the first and the second of two bodies."""
 
 BITS = 320
+MORE_BITS = 2048
+"""Where 320 bits cancel: ratios of lengths or masses of 1e-90 and beyond that are subtracted from one."""
 ZERO: Ball = arb(0)
 ONE: Ball = arb(1)
 UNIT_ROUNDOFF = 2.0**-53
@@ -99,11 +101,19 @@ class Rounding:
         Bound of the relative error of every number rounded so far.
     notices : list of Notice
         One for every number that a double cannot hold.
+    vague : bool
+        Whether a number could not be told from zero though it may not be zero.
     """
 
     def __init__(self) -> None:
         self.error = 0.0
         self.notices: list[Notice] = []
+        self.vague = False
+
+    @property
+    def sharp(self) -> bool:
+        """Whether the balls were narrow enough for the error to be that of the doubles."""
+        return self.error <= 2 * UNIT_ROUNDOFF and not self.vague
 
     def __call__(self, value: Any, path: Path = ()) -> Any:
         """Return `value` with every ball in it, however deep, as a double, or None where a double cannot hold it."""
@@ -117,6 +127,7 @@ class Rounding:
 
     def _number(self, ball: Ball, path: Path) -> float | None:
         if sign(ball) == 0:
+            self.vague = self.vague or not ball.is_zero()
             return 0.0
         number = float(ball)
         if not math.isfinite(number) or abs(number) < SMALLEST_NORMAL:

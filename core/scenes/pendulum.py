@@ -83,6 +83,11 @@ class Pendulum:
         return self.cosine**2 - self._r**2
 
     @property
+    def whole(self) -> tuple[Ball, Ball]:
+        """Sine and cosine of the angle itself."""
+        return 2 * self.sine * self.cosine, (self.cosine - self.sine) * (self.cosine + self.sine)
+
+    @property
     def direction(self) -> int:
         """Sign of the rate."""
         return sign(self.rate)

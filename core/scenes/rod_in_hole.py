@@ -12,7 +12,7 @@ from core.errors import InvalidParameter
 from core.integration.system import Model
 from core.quantities import Acceleration, AngularRate, Length, Mass, Quantity, check
 from core.scenes.answer import ConstrainedSystem, Motion
-from core.scenes.enclosure import Ball, Balls, angle_of, exact, precision, sign
+from core.scenes.enclosure import Ball, Balls, angle_of, exact, precision
 from core.scenes.pendulum import Pendulum
 from core.scenes.rod_motion import Rod, RodMotion, contact_limits
 
@@ -93,7 +93,7 @@ class RodInHole(ConstrainedSystem):
         return {
             "equivalent_length": lambda: self._rod.inertia / self._rod.depth,
             "release_angle": self._release_angle,
-            "forces_at_release": lambda: self._rod.forces(*self._half, exact(self.angular_velocity)),
+            "forces_at_release": lambda: self._rod.forces(*self._whole, exact(self.angular_velocity)),
             "energy": self._energy,
         }
 
@@ -137,10 +137,24 @@ class RodInHole(ConstrainedSystem):
         s, c = self._rim
         if self.angle is None:
             return -s, c
-        angle, rim = exact(self.angle), self._rim_angle
-        if abs(abs(angle) - rim) <= rim * exact(RIM_ROUNDING):
-            return sign(angle) * s, c
-        return (angle / 2).sin(), (angle / 2).cos()
+        if self._at_rim:
+            return (s if self.angle > 0 else -s), c
+        half = exact(self.angle) / 2
+        return half.sin(), half.cos()
+
+    @property
+    def _at_rim(self) -> bool:
+        rim = self._rim_angle
+        return self.angle is None or bool(abs(abs(exact(self.angle)) - rim) <= rim * exact(RIM_ROUNDING))
+
+    @property
+    def _whole(self) -> Balls:
+        """Sine and cosine of the given angle; at the rim k/a and l/2a, without the cancellation of short rods."""
+        if self._at_rim:
+            way = 1 if self.angle is not None and self.angle > 0 else -1
+            return way * self._rod.depth / self._rod.radius, self._rod.length / (2 * self._rod.radius)
+        angle = exact(self.angle or 0.0)
+        return angle.sin(), angle.cos()
 
     @cached_property
     def _pendulum(self) -> Pendulum:
@@ -151,9 +165,9 @@ class RodInHole(ConstrainedSystem):
 
     def _energy(self) -> Mapping[str, Ball]:
         """Return the energies of the given state, heights from the axis."""
-        rod, (s, c) = self._rod, self._half
+        rod = self._rod
         kinetic = rod.mass * rod.inertia * exact(self.angular_velocity) ** 2 / 2
-        potential = -rod.mass * rod.gravity * rod.depth * (c - s) * (c + s)
+        potential = -rod.mass * rod.gravity * rod.depth * self._whole[1]
         return {"kinetic": kinetic, "potential": potential, "total": kinetic + potential}
 
     def _contact(self, motion: RodMotion) -> Mapping[str, Any]:

@@ -64,10 +64,10 @@ class Rod:
         return weight / self.depth, self.mass * self.radius, 2 * self.factor * weight * self.length / self.inertia
 
     def forces(self, sine: Ball, cosine: Ball, rate: Ball) -> Balls:
-        """Return the wall's forces on A and B, given sine and cosine of half the angle."""
+        """Return the wall's forces on A and B at an angle of this sine and cosine."""
         c1, c2, c3 = self.coefficients
-        total = c1 * (cosine - sine) * (cosine + sine) + c2 * rate**2
-        difference = 2 * c3 * sine * cosine
+        total = c1 * cosine + c2 * rate**2
+        difference = c3 * sine
         return (total + difference) / 2, (total - difference) / 2
 
 
@@ -188,10 +188,7 @@ class RodMotion(Motion):
         given = {
             "angle": float(2 * angle_of(abs(self.pendulum.sine), self.pendulum.cosine)),
             "angular_velocity": abs(float(self.pendulum.rate)),
-            "forces": max(
-                abs(float(force))
-                for force in self.rod.forces(self.pendulum.sine, self.pendulum.cosine, self.pendulum.rate)
-            ),
+            "forces": max(abs(float(force)) for force in self.rod.forces(*self.pendulum.whole, self.pendulum.rate)),
         }
         scales = {name: max(float(np.max(np.abs(column), initial=0.0)), given[name]) for name, column in values.items()}
         return Columns(values, errors, scales)

@@ -170,11 +170,13 @@ class _Clock:
         later = rate + a * t
         whole = self.elapsed
         pace = np.abs(v) + np.abs(nu) * S + np.abs(a) * t
+        # What coefficients lose below the normal range; zeros lose nothing.
         tiny = SMALLEST * (1.0 + whole) * (1.0 + whole)
+        moves = any((v, a, nu))
         few = 32.0 * UNIT_ROUNDOFF
         return (
             value,
             later,
-            few * (size + pace * whole) + tiny,
-            few * (pace + np.abs(a) * (t if d == 0.0 else whole)) + tiny,
+            few * (size + pace * whole) + tiny * (moves or y != 0.0),
+            few * (pace + np.abs(a) * (t if d == 0.0 else whole)) + tiny * moves,
         )

@@ -2,7 +2,8 @@
 
 Notation: x_i is the distance of shaft i down its slope, s_i = R_i theta_i the string that has left it,
 u_i = x_i' - s_i' the velocity of its line of contact down the slope (of the string on that side, if taut),
-c_i = I_i / M_i R_i^2, mu_i = M_i c_i/(1 + c_i). The string is slack by sigma = s_1 + s_2 - x_1 - x_2 + const >= 0, sigma' = -(u_1 + u_2).
+c_i = I_i / M_i R_i^2, mu_i = M_i c_i/(1 + c_i). The string is slack by sigma = s_1 + s_2 - x_1 - x_2 + const >= 0,
+sigma' = -(u_1 + u_2).
 """
 
 from __future__ import annotations

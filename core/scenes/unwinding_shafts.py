@@ -115,7 +115,7 @@ class UnwindingShafts(ConstrainedSystem):
     @property
     def moves(self) -> bool:
         """Whether positions are given and the spins determined."""
-        return self.positions is not None and self._constants.determinate
+        return self.positions is not None and any(self.inertia_factors)
 
     def motion(self, horizon: float) -> ShaftMotion:
         """Return the motion from the given state to the event that ends it, or past the horizon (s)."""

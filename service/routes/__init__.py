@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from service.routes.bodies import BODIES
+from service.routes.rotation import ROTATION
 from service.routing import Question
 
 
 def questions() -> tuple[Question, ...]:
     """Return every question that can be asked, in the order of the documentation."""
-    return ()
+    return (*BODIES, *ROTATION)

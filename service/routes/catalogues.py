@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from functools import cache
-from typing import Any
+from typing import Any, cast
 
 import orjson
+from pydantic import Field
 
+from core.integration.accuracy import record
+from core.integration.methods import Method
+from core.integration.methods.method import AbstractMethod, Family, Invariance
+from core.quantities import members_of
 from service.problems import registry
 from service.routing import Page, Reply
 from service.schemas import SIGNATURE, View
@@ -30,6 +36,54 @@ class Errors(View):
     errors: list[ProblemEntry]
 
 
+class RecordView(View):
+    """What a method with one setting was measured to do on problems with known solutions."""
+
+    tolerance: float
+    error: float = Field(description="Largest, relative to the largest norm of the motion.")
+    evaluations: int
+
+
+class MethodEntry(View):
+    """One member of the catalogue of methods."""
+
+    kind: str
+    setting: str | None = Field(description="Name of the field that sets it: step (s) or tolerance.")
+    order: int | None = Field(description="The error falls with this power of the step; null: no fixed order.")
+    family: Family
+    preserves: list[Invariance]
+    when_to_use: str
+    record: list[RecordView]
+
+
+class Methods(View):
+    """The catalogue of methods."""
+
+    signature: dict[str, str]
+    methods: list[MethodEntry]
+
+
+def methods() -> list[dict[str, Any]]:
+    """Return the catalogue of methods as it is published."""
+    measured: dict[str, list[dict[str, Any]]] = {}
+    for entry in record():
+        shown = {"tolerance": entry.tolerance, "error": entry.error, "evaluations": entry.evaluations}
+        measured.setdefault(entry.kind, []).append(shown)
+    members = cast(tuple[type[AbstractMethod], ...], members_of(Method))
+    return [
+        {
+            "kind": member.kind,
+            "setting": next((field.name for field in fields(cast(Any, member)) if field.name != "kind"), None),
+            "order": member.order,
+            "family": member.family,
+            "preserves": member.preserves,
+            "when_to_use": member.when_to_use,
+            "record": measured.get(member.kind, []),
+        }
+        for member in members
+    ]
+
+
 def constant(build: Callable[[], Any]) -> Callable[[], Reply]:
     """Return a page's content that is built when it is first asked for."""
 
@@ -50,5 +104,13 @@ def catalogues() -> tuple[Page, ...]:
             "catalogues",
             constant(lambda: {"errors": registry()}),
             Errors,
+        ),
+        Page(
+            "/v1/methods",
+            "list_methods",
+            "Every method that can be asked for, and when to use it",
+            "catalogues",
+            constant(lambda: {"methods": methods()}),
+            Methods,
         ),
     )

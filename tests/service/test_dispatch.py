@@ -1,5 +1,6 @@
 """Requests and responses beside what a question means: paths, methods, headers, streams, failures."""
 
+import itertools
 import json
 import logging
 from typing import Any
@@ -246,7 +247,7 @@ async def test_a_client_that_leaves_while_it_sends_is_let_go(service: Service) -
 def test_any_bytes_in_any_parts_get_a_problem(cuts: list[int], body: bytes) -> None:
     messages: list[dict[str, Any]] = []
     edges = [0, *sorted(min(cut, len(body)) for cut in cuts), len(body)]
-    parts = [body[a:b] for a, b in zip(edges, edges[1:], strict=False)]
+    parts = [body[a:b] for a, b in itertools.pairwise(edges)]
 
     async def run() -> None:
         await FUZZED(scope("POST", "/v1/toy", JSON), receiving(*parts), sending(messages))

@@ -43,7 +43,3 @@ class ClosedFormEvaluation(AbstractMethod):
     def finer(self) -> None:
         """Return None: there is nothing more accurate in double precision."""
         return None
-
-    def coarser(self) -> None:
-        """Return None: there is nothing to set."""
-        return None

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numba import types
@@ -53,7 +52,7 @@ def plan(targets: Floats, step: float, begin: Floats, length: Floats, count: Int
             continue
         needed = max(1.0, np.ceil((abs(distance) - slack) / step))
         if not needed <= 9007199254740992.0:
-            return needed
+            return float(needed)
         whole = abs(abs(distance) - needed * step) <= slack
         size = math.copysign(step if whole else abs(distance) / needed, distance)
         length[i] = size
@@ -84,13 +83,12 @@ class FixedStep(Marching):
     step: Duration
     setting: ClassVar[str] = "step"
 
-    def finer(self) -> Self:
-        """Return the same method with half the step."""
-        return replace(self, step=self.step / 2)  # type: ignore[type-var]
+    def finer(self) -> Halved:
+        """Return the same method with every step halved.
 
-    def coarser(self) -> Self:
-        """Return the same method with twice the step."""
-        return replace(self, step=self.step * 2)  # type: ignore[type-var]
+        That is not half the `step`: where samples lie closer than the step, they rule, and halving it changes nothing.
+        """
+        return Halved(self)
 
     @abstractmethod
     def _evaluations_per_step(self, system: System) -> int:
@@ -104,12 +102,18 @@ class FixedStep(Marching):
         return system.equation
 
     def _march(self, system: System, start: Floats, targets: Floats, limit: int) -> Leg:
+        return self._march_divided(system, start, targets, limit, 1)
+
+    def _march_divided(self, system: System, start: Floats, targets: Floats, limit: int, parts: int) -> Leg:
+        """March as `_march` does, with every planned step divided into `parts`."""
         begin, length = np.empty_like(targets), np.empty_like(targets)
         count = np.empty(targets.size, np.int64)
-        steps = plan(targets, self.step, begin, length, count)
+        steps = parts * plan(targets, self.step, begin, length, count)
         each = self._evaluations_per_step(system)
         if steps * each > limit:
             raise self._over_budget(steps * each, limit)
+        length /= parts
+        count *= parts
         declared = int(steps) * each
         samples = np.empty((targets.size, start.size))
         tally = np.array([limit - declared, 0, each])
@@ -128,3 +132,19 @@ class FixedStep(Marching):
             rule = f"be small enough that the implicit step can be iterated; it could not before t = {time:.6g} s"
             return InvalidParameter(self.setting, rule, remedy="use a smaller step, or radau")
         return self._out_of_budget(limit, limit, fraction)
+
+
+class Halved(Marching):
+    """A method with a fixed step, each of whose steps is taken as two."""
+
+    setting: ClassVar[str] = "step"
+
+    def __init__(self, method: FixedStep) -> None:
+        self.method, self.kind = method, method.kind
+
+    def finer(self) -> None:
+        """Return None: it is there to compare with, not to go on from."""
+        return None
+
+    def _march(self, system: System, start: Floats, targets: Floats, limit: int) -> Leg:
+        return self.method._march_divided(system, start, targets, limit, 2)

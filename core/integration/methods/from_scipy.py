@@ -57,10 +57,10 @@ class FromSciPy(Marching):
     setting: ClassVar[str] = "tolerance"
 
     def finer(self) -> Self | None:
-        """Return the same method with a sixteenth of the tolerance, None at the end of what SciPy offers."""
-        if self.tolerance < 16 * SMALLEST_TOLERANCE:
+        """Return the same method with a sixteenth of the tolerance, None where a quarter cannot be had."""
+        if self.tolerance < 4 * SMALLEST_TOLERANCE:
             return None
-        return replace(self, tolerance=self.tolerance / 16)  # type: ignore[type-var]
+        return replace(self, tolerance=max(self.tolerance / 16, SMALLEST_TOLERANCE))  # type: ignore[type-var]
 
     def coarser(self) -> Self | None:
         """Return the same method with sixteen times the tolerance, None where that says nothing any more."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Literal, NamedTuple, Self
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -85,12 +85,12 @@ class AbstractMethod(ABC):
         """
 
     @abstractmethod
-    def finer(self) -> Self | None:
-        """Return the same method with a setting that is clearly more accurate, None if there is none."""
+    def finer(self) -> AbstractMethod | None:
+        """Return the same method made clearly more accurate at every place, None if it cannot be."""
 
-    @abstractmethod
-    def coarser(self) -> Self | None:
-        """Return the same method with a setting that is clearly less accurate, None if there is none."""
+    def coarser(self) -> AbstractMethod | None:
+        """Return the same method made clearly less accurate, None if it cannot be; asked where `finer` has none."""
+        return None
 
 
 class Leg(NamedTuple):

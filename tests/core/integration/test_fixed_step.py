@@ -23,9 +23,7 @@ def laid_out(targets: np.ndarray, step: float) -> tuple[float, np.ndarray, np.nd
 
 @pytest.mark.parametrize("n", [2, 11, 2000, 10_000, 1_000_000])
 @pytest.mark.parametrize("stop", [15.0, 20.0, 1e-30, 1e30, 0.1, 7 / 3])
-def test_a_grid_whose_spacing_is_the_step_gets_one_step_of_exactly_that_length_per_interval(
-    stop: float, n: int
-) -> None:
+def test_a_grid_whose_spacing_is_the_step_gets_one_exact_step_per_interval(stop: float, n: int) -> None:
     times = np.linspace(0, stop, n)
     total, _, length, count = laid_out(times[1:], times[1] - times[0])
     assert total == n - 1
@@ -79,7 +77,7 @@ def test_a_count_beyond_the_budget_is_refused_before_running_with_the_count_need
 @pytest.mark.parametrize("method", FIXED)
 def test_counts_that_no_integer_holds_are_refused_too(method: type) -> None:
     with pytest.raises(BudgetExceeded) as refused:
-        method(1e-300).integrate(oscillator(), np.array([1e300]))
+        method(1e-300).integrate(oscillator(), np.array([1e-300, 1e299, 1e300]))
     assert refused.value.needed == 10**18
 
 
@@ -99,10 +97,7 @@ def test_an_implicit_method_is_stopped_when_its_iterations_use_up_the_budget() -
 
 @pytest.mark.parametrize("method", FIXED)
 def test_states_that_overflow_are_refused_and_no_sample_is_handed_on(method: type) -> None:
-    if method is SymmetricSplitting:
-        system = oscillator(rate=100.0)
-    else:
-        system = explosion()
+    system = oscillator(rate=100.0) if method is SymmetricSplitting else explosion()
     with pytest.raises(InvalidParameter, match="step must be small enough") as refused:
         method(0.4).integrate(system, np.linspace(0, 1000, 101))
     assert "smaller step" in (refused.value.remedy or "")

@@ -10,7 +10,15 @@ import pytest
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError, NotApplicable
 from core.integration.budget import Budget
 from core.integration.error_statements import measured
-from core.integration.methods import ClosedFormEvaluation, DormandPrince853, ExplicitEuler, Lsoda, SymmetricSplitting
+from core.integration.methods import (
+    ClosedFormEvaluation,
+    DormandPrince853,
+    ExplicitEuler,
+    ImplicitMidpoint,
+    Lsoda,
+    RungeKutta4,
+    SymmetricSplitting,
+)
 from core.integration.solve import solve
 from tests.core.integration.systems import (
     Exact,
@@ -74,6 +82,28 @@ def test_without_a_closed_form_a_named_method_is_compared_with_a_finer_run() -> 
         assert true.final <= trajectory.accuracy.final_error
         assert trajectory.accuracy.inherited is None
         assert trajectory.work.evaluations_for_error > trajectory.work.evaluations
+
+
+@pytest.mark.parametrize("step", [0.6, 0.3, 0.2, 0.1, 0.05])
+@pytest.mark.parametrize("method", [ExplicitEuler, RungeKutta4, ImplicitMidpoint])
+@pytest.mark.parametrize("eccentricity", [0.3, 0.8])
+def test_a_run_that_has_not_converged_is_judged_by_one_that_has(method, step: float, eccentricity: float) -> None:
+    problem = kepler(eccentricity)
+    system, times = replace(problem, exact=None), np.linspace(0, 15, 31)
+    try:
+        trajectory = solve(system, times, method=method(step))
+    except InvalidParameter:
+        return  # The iteration does not converge at the perihelion.
+    true = measured(trajectory.state, problem.exact.sample(times), times)
+    assert true.largest <= trajectory.accuracy.error
+    assert true.final <= trajectory.accuracy.final_error
+    assert all(notice.code == "accuracy-not-reached" for notice in trajectory.warnings)
+
+
+def test_where_nothing_converges_the_statement_says_that_it_is_uncertain() -> None:
+    trajectory = solve(lorenz(), np.linspace(0, 60, 601), method=RungeKutta4(0.01))
+    assert trajectory.accuracy.error > 0.5
+    assert [notice.code for notice in trajectory.warnings] == ["accuracy-not-reached", "error-uncertain"]
 
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-6, 1e-9, 1e-11, 1e-12])

@@ -1,0 +1,127 @@
+"""Questions about bodies at rest."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from core.bodies import Body
+from core.bodies.mass_properties import MassProperties
+from core.bodies.principal_inertia import PrincipalInertia, Symmetry
+from core.bodies.validity import Condition
+from core.errors import InvalidParameter
+from core.integration.budget import Budget
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Matrix, Request, Vector, View
+
+
+class MassPropertiesRequest(Request):
+    """A body."""
+
+    body: Body
+
+
+class Principal(View):
+    """Principal moments and axes."""
+
+    moments: Vector = Field(description="Ascending (kg m^2).")
+    axes: Matrix = Field(description="Columns are the principal axes in body axes, right-handed; written row by row.")
+
+
+class Tensors(View):
+    """Tensors of inertia in body axes; I_xy = -(integral of x y dm)."""
+
+    about_center_of_mass: Matrix
+    about_origin: Matrix | None
+
+
+class ValidityView(View):
+    """Whether matter can have these mass properties, condition by condition."""
+
+    physical: bool
+    report: list[Condition]
+
+
+class MassPropertiesAnswer(Envelope):
+    """Mass properties of a body."""
+
+    mass: float | None = Field(description="kg; null where the body was given by its moments alone.")
+    center_of_mass: Vector | None = Field(description="m, in the frame in which the body was given.")
+    inertia: Tensors
+    principal: Principal
+    principal_about_origin: Principal | None
+    symmetry: Symmetry
+    about: Literal["center-of-mass", "origin"] = Field(description="The point about which the body turns.")
+    validity: ValidityView
+
+
+def properties_of(body: Any) -> MassProperties:
+    """Return the mass properties of a question's body; faults are told as seen from the question."""
+    try:
+        properties: MassProperties = body.mass_properties()
+    except InvalidParameter as fault:
+        raise fault.inside("body") from None
+    return properties
+
+
+def mass_properties(question: MassPropertiesRequest, budget: Budget) -> Answer:
+    """Answer with everything that is known of a body at rest."""
+    body = properties_of(question.body)
+    return {
+        "mass": body.mass,
+        "center_of_mass": body.center_of_mass,
+        "inertia": {"about_center_of_mass": body.inertia, "about_origin": body.inertia_about_origin},
+        "principal": principal(body.principal),
+        "principal_about_origin": principal(body.principal_about_origin),
+        "symmetry": body.symmetry,
+        "about": body.about,
+        "validity": body.validity,
+        "warnings": tuple(notice.inside("body") for notice in body.warnings),
+    }
+
+
+def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
+    """Return principal moments and axes as they are written."""
+    return None if inertia is None else {"moments": inertia.moments, "axes": inertia.axes}
+
+
+def reading_price(question: Any, budget: Budget) -> float:
+    """Return the predicted time to find the mass properties of a question's body (s)."""
+    return 2e-4 + 2e-5 * _parts(question.body)
+
+
+def _parts(body: Any) -> int:
+    points = getattr(body, "positions", None) or getattr(body, "faces", None) or ()
+    parts = getattr(body, "parts", ())
+    return len(points) + sum(10 + _parts(part.body) for part in parts)
+
+
+BODIES = (
+    Question(
+        "/v1/bodies/mass-properties",
+        "mass_properties",
+        "Mass, centre of mass, inertia, principal axes, symmetry and validity of a body",
+        "bodies",
+        MassPropertiesRequest,
+        MassPropertiesAnswer,
+        mass_properties,
+        reading_price,
+        examples={
+            "principal-moments": Example(
+                "a body known by its principal moments",
+                {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}},
+            ),
+            "point-masses": Example(
+                "four point masses",
+                {
+                    "body": {
+                        "kind": "point-masses",
+                        "masses": [1.0, 2.0, 1.0, 0.5],
+                        "positions": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]],
+                    }
+                },
+            ),
+        },
+    ),
+)

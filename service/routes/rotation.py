@@ -1,0 +1,235 @@
+"""Questions about bodies that turn freely."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from core.bodies import Body
+from core.errors import AccuracyUnreachable, NotApplicable
+from core.integration.budget import Budget
+from core.integration.methods import ClosedFormEvaluation, Method
+from core.integration.solve import solve
+from core.integration.system import Floats
+from core.integration.trajectory import How
+from core.notices import Notice
+from core.quantities import AngularVelocity, Quaternion, Tolerance
+from core.rotation.attitude import FreeAttitude
+from core.rotation.torque_free import TorqueFree
+from service.routes.bodies import properties_of, reading_price
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, QuaternionRow, Request, Times, Vector, View, sample_count, sample_times
+
+Output = Literal["time", "angular_velocity", "attitude"]
+
+
+class TrajectoryRequest(Request):
+    """A body, how it turns at t = 0, and the times at which its motion is wanted."""
+
+    body: Body
+    angular_velocity: AngularVelocity = Field(description="At t = 0, in body axes (rad/s).")
+    attitude: Quaternion | None = Field(
+        default=None,
+        description="Body to space at t = 0, [w, x, y, z]; of any length but zero. If it is given, the attitude at "
+        "every time is answered.",
+    )
+    times: Times = Field(description="Measured from the given state, of either sign, in any order (s).")
+    accuracy: Tolerance = Field(
+        default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the motion."
+    )
+    method: Method | None = Field(
+        default=None, description="Leave it out to have the most accurate one chosen; it overrides the accuracy."
+    )
+    outputs: list[Output] | None = Field(
+        default=None,
+        min_length=1,
+        description="What to answer; default: time, angular_velocity, and attitude if one was given.",
+    )
+
+
+class ModelView(View):
+    """The smallest model that suffices, and why."""
+
+    name: str
+    regime: str
+    why: str
+    degrees_of_freedom: int
+
+
+class AccuracyView(View):
+    """How right the answer is; errors are relative to the largest norm of the motion."""
+
+    requested: float
+    error: float = Field(description="Largest error of any sample, inputs taken as exact; never below the true one.")
+    final_error: float | None = Field(description="The same at the time farthest from the start.")
+    how: How
+    inherited: float | None = Field(description="What half an ulp in every input would move.")
+    drifts: dict[str, float] = Field(description="Largest relative change of conserved quantities: not an error.")
+    attitude_error: float | None = Field(default=None, description="Largest error of the attitude, as a turn (rad).")
+
+
+class WorkView(View):
+    """What the answer cost, the same on every machine."""
+
+    samples: int
+    evaluations: int
+    steps: int
+    rejected_steps: int
+    evaluations_for_error: int
+
+
+class TrajectoryAnswer(Envelope):
+    """Samples of a free rotation."""
+
+    model: ModelView
+    method: str
+    period: float | None = Field(description="Of the angular velocity in the body (s); null where there is none.")
+    flip_interval: float | None = Field(description="Between sign changes along the middle axis (s).")
+    energy: float | None = Field(description="J")
+    angular_momentum: float | None = Field(description="Magnitude (kg m^2/s).")
+    accuracy: AccuracyView
+    work: WorkView
+    ended: str = Field(description="horizon, or the event that ended the motion before it.")
+    time: list[float] | None = Field(default=None, description="s")
+    angular_velocity: list[Vector] | None = Field(default=None, description="One row per time, in body axes (rad/s).")
+    attitude: list[QuaternionRow] | None = Field(
+        default=None, description="One row per time, [w, x, y, z], body to space."
+    )
+
+
+def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
+    """Answer with samples of the motion."""
+    wanted = _outputs(question)
+    times = sample_times(question.times, budget)
+    system = TorqueFree(properties_of(question.body), np.array(question.angular_velocity))
+    solved = solve(system, times, accuracy=question.accuracy, method=question.method, budget=budget)
+    exact = system.closed_form()
+    notices = [*system.warnings, *solved.warnings]
+    stated = solved.accuracy
+    accuracy: dict[str, Any] = {
+        "requested": stated.requested,
+        "error": stated.error,
+        "final_error": stated.final_error,
+        "how": stated.how,
+        "inherited": stated.inherited,
+        "drifts": dict(stated.drifts),
+    }
+    fields: Answer = {
+        "model": solved.model,
+        "method": solved.method,
+        "period": _in_range("period", solved.period, notices),
+        "flip_interval": _in_range("flip_interval", exact.flip_interval, notices),
+        "energy": system.energy,
+        "angular_momentum": system.angular_momentum,
+        "accuracy": accuracy,
+        "work": solved.work,
+        "ended": solved.ended,
+        "warnings": notices,
+    }
+    if "time" in wanted:
+        fields["time"] = solved.time
+    if "angular_velocity" in wanted:
+        fields["angular_velocity"] = solved.state
+    if "attitude" in wanted:
+        fields["attitude"], accuracy["attitude_error"] = _attitude(question, system, times)
+    return fields
+
+
+def _outputs(question: TrajectoryRequest) -> tuple[Output, ...]:
+    if question.outputs is not None:
+        return tuple(question.outputs)
+    return ("time", "angular_velocity") if question.attitude is None else ("time", "angular_velocity", "attitude")
+
+
+def _attitude(question: TrajectoryRequest, system: TorqueFree, times: Floats) -> tuple[Floats, float]:
+    if question.method is not None and not isinstance(question.method, ClosedFormEvaluation):
+        raise NotApplicable(
+            "the attitude is computed in closed form only",
+            path=("method",),
+            remedy="leave out the method, or the attitude",
+        )
+    free = FreeAttitude(system.closed_form(), np.array(question.attitude or (1.0, 0.0, 0.0, 0.0)))
+    error = free.error(times)
+    if not error <= question.accuracy:
+        raise AccuracyUnreachable(
+            question.accuracy,
+            error,
+            "the bound of the attitude's closed form is larger",
+            remedy="ask for earlier times or for less accuracy",
+        )
+    return free.sample(times), error
+
+
+def _in_range(name: str, value: float | None, notices: list[Notice]) -> float | None:
+    if value is None or isfinite(value):
+        return value
+    notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
+    return None
+
+
+def trajectory_price(question: TrajectoryRequest, budget: Budget) -> float:
+    """Return the predicted time of a trajectory (s)."""
+    samples = sample_count(question.times, budget)
+    price = reading_price(question, budget) + 2e-8 * samples
+    if "attitude" in _outputs(question):
+        price += 1e-3 + 1e-7 * samples
+    method = question.method
+    if method is None or isinstance(method, ClosedFormEvaluation):
+        return price
+    step = getattr(method, "step", None)
+    # Methods that choose their own steps cannot be priced without taking them, so they never run in the server.
+    return price + (0.02 if step is None else 1e-7 * _span(question) / step)
+
+
+def _span(question: TrajectoryRequest) -> float:
+    times = question.times
+    ends = times if isinstance(times, list) else [times.start, times.stop]
+    return max(ends) - min(ends) + max(map(abs, ends))
+
+
+T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
+
+ROTATION = (
+    Question(
+        "/v1/rotation/trajectory",
+        "rotation_trajectory",
+        "The free rotation of a body: angular velocity and, if asked, attitude at given times",
+        "rotation",
+        TrajectoryRequest,
+        TrajectoryAnswer,
+        trajectory,
+        trajectory_price,
+        examples={
+            "t-handle": Example(
+                "a T-handle that tumbles",
+                {
+                    "body": T_HANDLE,
+                    "angular_velocity": [1.0, 10.0, 1.0],
+                    "times": {"start": 0.0, "stop": 20.0, "count": 101},
+                },
+            ),
+            "attitude": Example(
+                "the same with its attitude in space",
+                {
+                    "body": T_HANDLE,
+                    "angular_velocity": [1.0, 10.0, 1.0],
+                    "attitude": [1.0, 0.0, 0.0, 0.0],
+                    "times": [0.0, 1.0, 2.453763074],
+                    "accuracy": 1e-12,
+                },
+            ),
+            "explicit-euler": Example(
+                "the same by explicit Euler, to see what that does",
+                {
+                    "body": T_HANDLE,
+                    "angular_velocity": [1.0, 10.0, 1.0],
+                    "times": {"start": 0.0, "stop": 5.0, "count": 51},
+                    "method": {"kind": "explicit-euler", "step": 0.002},
+                },
+            ),
+        },
+    ),
+)

@@ -1,0 +1,138 @@
+"""Who may import whom, read from the source of every file; docs/architecture.md says why."""
+
+from __future__ import annotations
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+CORE = sorted((ROOT / "core").rglob("*.py"))
+SERVICE = sorted((ROOT / "service").rglob("*.py"))
+
+LEDGER: dict[str, set[str]] = {
+    "errors": set(),
+    "compiled": set(),
+    "notices": {"errors"},
+    "quantities": {"errors"},
+    "double_double": {"compiled"},
+    "elliptic": {"double_double", "compiled", "errors"},
+    "bodies": {"double_double", "compiled", "quantities", "notices", "errors"},
+    "integration": {"double_double", "compiled", "quantities", "notices", "errors"},
+}
+LEDGER["rotation"] = {"integration", "bodies", "elliptic"} | LEDGER["bodies"] | LEDGER["elliptic"]
+LEDGER["scenes"] = {"integration", "elliptic"} | LEDGER["integration"] | LEDGER["elliptic"]
+LEDGER["certified"] = {"rotation", "scenes"} | LEDGER["rotation"] | LEDGER["scenes"]
+"""What each room of core may import beside itself; a file that is not named here may import all of core."""
+
+WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson", "pebble",
+       "prometheus_client", "service"}  # fmt: skip
+OUTER = ("assessment", "work_precision", "plan")
+"""Files directly in core that compare and price what the rooms do, and may therefore see all of it."""
+
+SERVICE_LAYERS = (
+    {"__init__"},
+    {"settings", "problems", "logs", "metrics", "writing", "routing", "client"},
+    {"guards"},
+    {"reading"},
+    {"schemas"},
+    {"routes", "answering", "documentation"},
+    {"worker", "prepared"},
+    {"compute"},
+    {"dispatch"},
+    {"app"},
+    {"server", "__main__"},
+)
+"""The service's files from the ground upwards; each imports from its own storey or from below."""
+
+
+def imports(path: Path) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            assert node.level == 0, f"{path}: imports are absolute"
+            found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
+def name(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+def room(path: Path, top: str) -> str:
+    return path.relative_to(ROOT / top).parts[0].removesuffix(".py")
+
+
+@pytest.mark.parametrize("path", CORE, ids=name)
+def test_core_knows_nothing_of_the_web(path: Path) -> None:
+    assert not {entry.split(".")[0] for entry in imports(path)} & WEB
+
+
+@pytest.mark.parametrize("path", CORE, ids=name)
+def test_core_imports_downwards(path: Path) -> None:
+    own = room(path, "core")
+    seen = {entry.split(".")[1] for entry in imports(path) if entry.startswith("core.")} - {own}
+    if own in LEDGER:
+        assert seen <= LEDGER[own]
+    else:
+        assert own in (*OUTER, "__init__"), f"core/{own} has no line in the ledger of imports"
+
+
+@pytest.mark.parametrize("path", CORE, ids=name)
+def test_core_neither_prints_nor_reads_the_environment_nor_logs(path: Path) -> None:
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            assert node.func.id not in ("print", "input", "breakpoint")
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            assert (node.value.id, node.attr) not in {("os", "environ"), ("os", "getenv"), ("sys", "stdout")}
+    assert not {"logging", "argparse", "dotenv"} & imports(path)
+
+
+@cache
+def storey(own: str) -> int:
+    return next(i for i, layer in enumerate(SERVICE_LAYERS) if own in layer)
+
+
+@pytest.mark.parametrize("path", SERVICE, ids=name)
+def test_service_imports_downwards(path: Path) -> None:
+    own = room(path, "service")
+    for entry in imports(path):
+        if entry.startswith("service."):
+            other = entry.split(".")[1]
+            if (ROOT / "service" / f"{other}.py").exists() or other == "routes":
+                assert storey(other) <= storey(own), f"{own} imports {other}"
+
+
+@pytest.mark.parametrize("path", SERVICE, ids=name)
+def test_the_service_has_no_mechanics(path: Path) -> None:
+    """Routes call core; they use no mathematics of their own."""
+    assert not {"scipy", "numba", "mpmath", "flint"} & {entry.split(".")[0] for entry in imports(path)}
+
+
+@pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
+def test_no_module_level_state_is_changed(path: Path) -> None:
+    for node in ast.walk(ast.parse(path.read_text())):
+        assert not isinstance(node, ast.Global), "no global mutable state"
+
+
+@pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
+def test_modules_are_named_by_content_and_are_readable_in_one_sitting(path: Path) -> None:
+    assert path.stem not in ("utils", "util", "helpers", "helper", "common", "models", "misc", "base", "types")
+    assert len(path.read_text().splitlines()) <= 700
+
+
+@pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
+def test_every_module_says_what_it_is(path: Path) -> None:
+    text = ast.get_docstring(ast.parse(path.read_text()))
+    assert text or path.name == "__init__.py"
+
+
+def test_the_page_about_the_house_names_every_room() -> None:
+    page = (ROOT / "docs" / "architecture.md").read_text()
+    for own in {room(path, "core") for path in CORE} - {"__init__", "notices"}:
+        assert re.search(rf"`core/{own}(\.py|/)`", page), f"docs/architecture.md does not name core/{own}"
