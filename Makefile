@@ -1,5 +1,5 @@
 # Everything runs in an environment that this file makes: Python 3.11 and a compiler are all it needs.
-PYTHON ?= python3.11
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
 ENV := .venv
 BIN := $(ENV)/bin
 

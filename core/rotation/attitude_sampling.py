@@ -143,7 +143,7 @@ def sample_steady(
     turn: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """Fill `out` with `turn` applied to the quaternions of a rotation about `axis`, `rate` in quarter turns of half angle."""
+    """Fill `out` with `turn` applied to a rotation about `axis`; `rate` counts quarter turns of the half angle."""
     for i in range(times.size):
         n, r, r_tail = split_phase(rate, tail, scale * times[i], 0.0, 0.0)
         s, c = sin_cos_quarter(r, r_tail)

@@ -23,7 +23,8 @@ def right(q: Extended) -> Extended:
 def unit(q: Extended) -> Extended:
     """Return q/|q|."""
     shortened = q / np.max(np.abs(q))
-    return shortened / np.sqrt(np.sum(shortened * shortened))
+    normalised: Extended = shortened / np.sqrt(np.sum(shortened * shortened))
+    return normalised
 
 
 def quaternion_of(m: Extended) -> Extended:

@@ -88,7 +88,11 @@ class FromSciPy(Marching):
                     equation, 0.0, start / size, float(scaled[-1]), rtol=self.tolerance, atol=self.tolerance
                 )
                 while sample < targets.size:
-                    solver.step()
+                    try:
+                        solver.step()
+                    except (ValueError, ArithmeticError, np.linalg.LinAlgError):
+                        # SciPy's linear algebra refuses what has overflowed.
+                        raise self._failed(now) from None
                     if solver.status == "failed":
                         raise self._failed(now)
                     steps += 1
