@@ -10,10 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
+from itertools import chain
 from math import inf, isfinite
 from numbers import Real
 from types import NoneType, UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
 
 from core.errors import InvalidParameter, Path
 
@@ -74,6 +78,93 @@ class Quantity:
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         return {"type": "number", **self.limits, "x-unit": self.unit}
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Rows of numbers kept as one array, read without a Python object per check.
+
+    Parameters
+    ----------
+    width : int
+        Numbers in a row; 0 for a plain list of numbers.
+    quantity : Quantity
+        What each number is.
+    at_least, at_most : int
+        Admissible numbers of rows.
+    whole : bool
+        Whether the numbers are indices: whole, and kept as such.
+    """
+
+    width: int
+    quantity: Quantity
+    at_least: int = 1
+    at_most: int = 1_000_000
+    whole: bool = False
+
+    def read(self, path: Path, value: object) -> NDArray[Any]:
+        """Return `value` as an array that cannot be written, shape (n, width) or (n,).
+
+        Raises
+        ------
+        InvalidParameter
+            Naming the first entry that is no finite number of the right kind.
+        """
+        rows = value.tolist() if isinstance(value, np.ndarray) else value
+        if not isinstance(rows, (list, tuple)):
+            raise InvalidParameter(path, "be a list")
+        if not self.at_least <= len(rows) <= self.at_most:
+            raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(rows)}")
+        if self.width and any(type(row) not in (list, tuple) or len(row) != self.width for row in rows):
+            i = next(i for i, row in enumerate(rows) if type(row) not in (list, tuple) or len(row) != self.width)
+            raise InvalidParameter((*path, i), f"be a list of {self.width} numbers")
+        flat = list(chain.from_iterable(rows)) if self.width else rows
+        kinds = set(map(type, flat))
+        allowed = {int} if self.whole else {int, float}
+        if not kinds <= allowed:
+            i = next(i for i, entry in enumerate(flat) if type(entry) not in allowed)
+            raise InvalidParameter((*path, *self._place(i)), "be a whole number" if self.whole else "be a number")
+        try:
+            array = np.array(flat, dtype=np.int64 if self.whole else np.float64)
+        except OverflowError:
+            i = next(i for i, entry in enumerate(flat) if abs(entry) > 1e308)
+            raise InvalidParameter((*path, *self._place(i)), "be within the range of doubles") from None
+        if not self._inside(array):
+            for i, entry in enumerate(flat):
+                self.quantity.check((*path, *self._place(i)), entry)
+        array = array.reshape(-1, self.width) if self.width else array
+        array.setflags(write=False)
+        return array
+
+    def _place(self, i: int) -> Path:
+        return (i // self.width, i % self.width) if self.width else (i,)
+
+    def _inside(self, array: NDArray[Any]) -> bool:
+        q = self.quantity
+        low, high = float(array.min(initial=inf)), float(array.max(initial=-inf))
+        return (
+            isfinite(low)
+            and isfinite(high)
+            and low > q.above
+            and low >= q.at_least
+            and high <= q.at_most
+            and high < q.below
+        )
+
+    def check(self, path: Path, value: object) -> None:
+        """Raise `InvalidParameter` unless `value` is such an array or can be read as one."""
+        if not isinstance(value, np.ndarray):
+            self.read(path, value)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
+        return {"type": "any"}
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        number = {"type": "integer" if self.whole else "number", **self.quantity.limits, "x-unit": self.quantity.unit}
+        row = (
+            {"type": "array", "items": number, "minItems": self.width, "maxItems": self.width} if self.width else number
+        )
+        return {"type": "array", "items": row, "minItems": self.at_least, "maxItems": self.at_most}
 
 
 @dataclass(frozen=True)

@@ -69,8 +69,7 @@ def parallel_axis(mass: Fraction, offset: Vector, inertia: Matrix) -> list[list[
     """Return the tensor about a point at `offset` from the centre of mass: I + m (d.d 1 - d d^T)."""
     square = sum(x * x for x in offset)
     return [
-        [inertia[i][j] + mass * ((square if i == j else 0) - offset[i] * offset[j]) for j in range(3)]
-        for i in range(3)
+        [inertia[i][j] + mass * ((square if i == j else 0) - offset[i] * offset[j]) for j in range(3)] for i in range(3)
     ]
 
 

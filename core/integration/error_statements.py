@@ -7,7 +7,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numba import types
 
+from core.compiled import kernel
 from core.errors import BudgetExceeded, NotApplicable
 from core.integration.budget import Budget
 from core.integration.methods.method import AbstractMethod, Integration
@@ -23,6 +25,10 @@ error, so a factor 2 is owed, and so is it where a sixteenth of the tolerance do
 
 ROUNDOFF = 8 * 2.0**-53
 """Added to every estimate: two runs of one method may round alike."""
+
+
+_row = types.float64[::1]
+_rows = types.float64[:, ::1]
 
 
 class Errors(NamedTuple):
@@ -43,25 +49,60 @@ class Errors(NamedTuple):
     components: tuple[float, ...]
 
 
+@kernel(types.float64(_rows, _rows, types.float64, _row, _row, _row))
+def _differences(
+    states: Floats, reference: Floats, unit: float, errors: Floats, wrong: Floats, magnitudes: Floats
+) -> float:
+    """Fill in the norm of every row's error and the extremes of every column; return the largest norm of `reference`.
+
+    All in units of `unit`, a power of two that keeps the squares in range and rounds nothing.
+    """
+    largest = 0.0
+    for i in range(states.shape[0]):
+        norm, error = 0.0, 0.0
+        for k in range(states.shape[1]):
+            exact = reference[i, k] / unit
+            difference = states[i, k] / unit - exact
+            norm += exact * exact
+            error += difference * difference
+            magnitudes[k] = max(magnitudes[k], abs(exact))
+            wrong[k] = max(wrong[k], abs(difference))
+        largest = max(largest, norm)
+        errors[i] = math.sqrt(error)
+    return math.sqrt(largest)
+
+
 def measured(states: Floats, reference: Floats, times: Floats) -> Errors:
     """Return the errors of `states` against `reference`, both of shape (n, k) at `times` of shape (n,).
 
     A motion that is at rest has no scale of its own; its errors are then relative to the largest of `states`.
     """
-    largest = max(float(np.abs(reference).max()), 0.0) or float(np.abs(states).max())
+    largest = _magnitude(reference) or _magnitude(states)
     if largest == 0.0:
         return Errors(0.0, 0.0, (0.0,) * states.shape[1])
-    # In units of a power of two the squares stay in range, and nothing is rounded.
     unit = math.ldexp(1.0, max(math.frexp(largest)[1] - 1, -1022))
-    exact = reference / unit
-    wrong = states / unit - exact
-    error = np.sqrt((wrong * wrong).sum(axis=1))
-    norm = float(np.sqrt((exact * exact).sum(axis=1)).max()) or largest / unit
-    magnitudes = np.abs(exact).max(axis=0)
+    errors = np.empty(len(states))
+    wrong, magnitudes = np.zeros(states.shape[1]), np.zeros(states.shape[1])
+    norm = _differences(states, reference, unit, errors, wrong, magnitudes) or largest / unit
     magnitudes[magnitudes == 0.0] = norm
-    components = np.abs(wrong).max(axis=0) / magnitudes
     final = int(np.abs(times).argmax())
-    return Errors(float(error.max()) / norm, float(error[final]) / norm, tuple(map(float, components)))
+    return Errors(float(errors.max()) / norm, float(errors[final]) / norm, tuple(map(float, wrong / magnitudes)))
+
+
+def _magnitude(rows: Floats) -> float:
+    return max(float(rows.max()), -float(rows.min()))
+
+
+@kernel(types.UniTuple(types.float64, 2)(_row, types.float64))
+def _strayed(values: Floats, first: float) -> tuple[float, float]:
+    """Return the largest change from `first` and the largest magnitude, both NaN if any value is."""
+    change, largest = 0.0, 0.0
+    for value in values:
+        if not abs(value - first) <= change:
+            change = abs(value - first)
+        if not abs(value) <= largest:
+            largest = abs(value)
+    return change, largest
 
 
 def drifts(system: System, states: Floats) -> dict[str, float]:
@@ -74,8 +115,8 @@ def drifts(system: System, states: Floats) -> dict[str, float]:
     start = system.invariants(np.ascontiguousarray(system.initial_state)[None, :])
     for name, values in system.invariants(states).items():
         first = float(start[name][0])
-        change = float(np.abs(values - first).max())
-        scale = abs(first) or float(np.abs(values).max())
+        change, largest = _strayed(np.ascontiguousarray(values), first)
+        scale = abs(first) or largest
         drift = 0.0 if change == 0.0 else change / scale if scale > 0.0 else math.inf
         if math.isfinite(drift):
             found[name] = drift

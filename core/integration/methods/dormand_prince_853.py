@@ -96,20 +96,16 @@ def _fill_stages(
     stage: Floats,
     slope: Floats,
 ) -> None:
-    """Evaluate the stages from `first` to before `end`."""
+    """Evaluate the stages from `first` to before `end`; `stages` holds one row per component of the state."""
     for i in range(first, end):
         for k in range(state.size):
-            stage[k] = 0.0
-        for j in range(i):
-            a = A[i, j]
-            if a != 0.0:
-                for k in range(state.size):
-                    stage[k] += a * stages[j, k]
-        for k in range(state.size):
-            stage[k] = state[k] + step * stage[k]
+            total = 0.0
+            for j in range(i):
+                total += A[i, j] * stages[k, j]
+            stage[k] = state[k] + step * total
         field(now + C[i] * step, stage, parameters, slope)
         for k in range(state.size):
-            stages[i, k] = slope[k]
+            stages[k, i] = slope[k]
 
 
 @kernel(types.float64(types.float64, _row, _row, _rows, _row, _row))
@@ -119,9 +115,9 @@ def _advance(step: float, state: Floats, tail: Floats, stages: Floats, new: Floa
     for k in range(state.size):
         total, e5, e3 = 0.0, 0.0, 0.0
         for i in range(STAGES):
-            total += B[i] * stages[i, k]
-            e5 += E5[i] * stages[i, k]
-            e3 += E3[i] * stages[i, k]
+            total += B[i] * stages[k, i]
+            e5 += E5[i] * stages[k, i]
+            e3 += E3[i] * stages[k, i]
         new[k], new_tail[k] = two_sum(state[k], step * total + tail[k])
         if not (math.isfinite(new[k]) and math.isfinite(e5) and math.isfinite(e3)):
             return math.inf
@@ -139,14 +135,14 @@ def _fit(step: float, state: Floats, new: Floats, stages: Floats, fitted: Floats
     """Fill in the coefficients of the interpolant of a step whose sixteen stages are known."""
     for k in range(state.size):
         change = new[k] - state[k]
-        fitted[0, k] = change
-        fitted[1, k] = step * stages[0, k] - change
-        fitted[2, k] = 2 * change - step * (stages[12, k] + stages[0, k])
+        fitted[k, 0] = change
+        fitted[k, 1] = step * stages[k, 0] - change
+        fitted[k, 2] = 2 * change - step * (stages[k, 12] + stages[k, 0])
         for i in range(4):
             total = 0.0
             for j in range(16):
-                total += INTERPOLANT[i, j] * stages[j, k]
-            fitted[3 + i, k] = step * total
+                total += INTERPOLANT[i, j] * stages[k, j]
+            fitted[k, 3 + i] = step * total
 
 
 @kernel(
@@ -165,12 +161,12 @@ def _march(
 ) -> int:
     n = start.size
     state, tail, new, new_tail = start.copy(), np.zeros(n), np.empty(n), np.empty(n)
-    slope, stage, stages, fitted = np.empty(n), np.empty(n), np.empty((16, n)), np.empty((7, n))
+    slope, stage, stages, fitted = np.empty(n), np.empty(n), np.empty((n, 16)), np.empty((n, 7))
     horizon = targets[targets.size - 1]
     now, rest, sample, largest_factor = 0.0, 0.0, 0, 6.0
     field(now, state, parameters, slope)
     for k in range(n):
-        stages[0, k] = slope[k]
+        stages[k, 0] = slope[k]
     step = _first_step(field, state, parameters, tolerance, horizon, slope, stage, new)
     tally[0] = 2
     while sample < targets.size:
@@ -203,7 +199,7 @@ def _march(
             continue
         tally[1] += 1
         for k in range(n):
-            stages[12, k] = slope[k]
+            stages[k, 12] = slope[k]
         known = False
         while sample < targets.size:
             x = ((targets[sample] - now) - rest) / step
@@ -219,18 +215,18 @@ def _march(
                     tally[0] += 3
                     known = True
                 for k in range(n):
-                    y = fitted[6, k] * x
-                    y = (y + fitted[5, k]) * (1 - x)
-                    y = (y + fitted[4, k]) * x
-                    y = (y + fitted[3, k]) * (1 - x)
-                    y = (y + fitted[2, k]) * x
-                    y = (y + fitted[1, k]) * (1 - x)
-                    samples[sample, k] = state[k] + (y + fitted[0, k]) * x
+                    y = fitted[k, 6] * x
+                    y = (y + fitted[k, 5]) * (1 - x)
+                    y = (y + fitted[k, 4]) * x
+                    y = (y + fitted[k, 3]) * (1 - x)
+                    y = (y + fitted[k, 2]) * x
+                    y = (y + fitted[k, 1]) * (1 - x)
+                    samples[sample, k] = state[k] + (y + fitted[k, 0]) * x
             sample += 1
         now, rest = then, then_rest
         for k in range(n):
             state[k], tail[k] = new[k], new_tail[k]
-            stages[0, k] = stages[12, k]
+            stages[k, 0] = stages[k, 12]
         step *= min(largest_factor, max(1 / 3, 0.9 * error**-0.125))
         largest_factor = 6.0
     return DONE

@@ -50,11 +50,14 @@ def plan(targets: Floats, step: float, begin: Floats, length: Floats, count: Int
         if abs(distance) <= slack:
             length[i], count[i] = 0.0, 0
             continue
-        needed = max(1.0, np.ceil((abs(distance) - slack) / step))
-        if not needed <= 9007199254740992.0:
-            return float(needed)
-        whole = abs(abs(distance) - needed * step) <= slack
-        size = math.copysign(step if whole else abs(distance) / needed, distance)
+        if abs(abs(distance) - step) <= slack:
+            needed, size = 1.0, math.copysign(step, distance)
+        else:
+            needed = max(1.0, np.ceil((abs(distance) - slack) / step))
+            if not needed <= 9007199254740992.0:
+                return float(needed)
+            whole = abs(abs(distance) - needed * step) <= slack
+            size = math.copysign(step if whole else abs(distance) / needed, distance)
         length[i] = size
         count[i] = int(needed)
         total += needed

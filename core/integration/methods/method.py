@@ -117,14 +117,17 @@ class Marching(AbstractMethod):
         start = np.ascontiguousarray(system.initial_state, dtype=np.float64)
         self._require_finite_start(system, start)
         states = np.empty((times.size, start.size))
-        states[:] = start
+        states[times == 0.0] = start
         evaluations = steps = rejected = 0
-        for side in (times > 0, times < 0):
-            if not side.any():
+        for side in (np.flatnonzero(times > 0.0), np.flatnonzero(times < 0.0)):
+            if not side.size:
                 continue
-            targets, rows = _outwards(times[side])
+            # A slice where it can be: numpy copies rows by index ten times slower.
+            run = side[-1] - side[0] + 1 == side.size
+            place = slice(side[0], side[-1] + 1) if run else side
+            targets, rows = _outwards(times[place])
             leg = self._march(system, start, targets, budget.evaluations - evaluations)
-            states[side] = leg.states if rows is None else leg.states[rows]
+            states[place] = leg.states if rows is None else leg.states[rows]
             evaluations += leg.evaluations
             steps += leg.steps
             rejected += leg.rejected

@@ -100,7 +100,7 @@ def time_stepped_shafts(
     step: float,
     slack: float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return velocities x_i' and R_i theta_i' at `times` by Moreau's time stepping, plastic jerks, friction by projection.
+    """Return velocities x_i' and R_i theta_i' at `times` by Moreau's time stepping with plastic jerks.
 
     Each step solves the complementarity conditions of friction and string by projected Gauss-Seidel.
     Reference: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988).
@@ -234,7 +234,7 @@ def chain_state(
     velocity: float,
     time: float,
 ) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
-    """Return position, velocity and apex tension of the chain by the textbook's hyperbola, or parabola for no density."""
+    """Return position, velocity and apex tension of the chain by the textbook's hyperbola, or parabola."""
     with mp.workdps(digits_for(*masses, gravity, length, density, position, velocity, time) + 200):
         M1, M2, g, L, rho, x0, v0, t = (
             mp.mpf(u) for u in (*masses, gravity, length, density, position, velocity, time)

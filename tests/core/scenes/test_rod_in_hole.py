@@ -26,19 +26,19 @@ def figures(scene: RodInHole) -> dict[str, object]:
 
 def truth(scene: RodInHole) -> dict[str, mp.mpf]:
     """Return what follows from the parameters at the working precision, the rod released at the rim."""
-    a, l, M, g, kappa = (
+    a, length, M, g, kappa = (
         mp.mpf(v) for v in (scene.hole_radius, scene.length, scene.mass, scene.gravity, scene.inertia_factor)
     )
-    k = mp.sqrt(a * a - l * l / 4)
-    inertia = k * k + kappa * l * l
-    omega = mp.sqrt(2 * g * k * (1 - l / (2 * a)) / inertia)
-    drop = M * a * g * (l / (2 * a)) / k
-    lean = M * a * g * kappa * l / inertia * (k / a)
+    k = mp.sqrt(a * a - length * length / 4)
+    inertia = k * k + kappa * length * length
+    omega = mp.sqrt(2 * g * k * (1 - length / (2 * a)) / inertia)
+    drop = M * a * g * (length / (2 * a)) / k
+    lean = M * a * g * kappa * length / inertia * (k / a)
     return {
         "omega": omega,
         "equivalent": inertia / k,
-        "period": 4 * mp.ellipk((1 - l / (2 * a)) / 2) * mp.sqrt(inertia / (g * k)),
-        "angle": -mp.acos(l / (2 * a)),
+        "period": 4 * mp.ellipk((1 - length / (2 * a)) / 2) * mp.sqrt(inertia / (g * k)),
+        "angle": -mp.acos(length / (2 * a)),
         "A": drop / 2 - lean,
         "B": drop / 2 + lean,
     }
@@ -116,10 +116,12 @@ def test_limits_of_the_length() -> None:
 
 
 def test_forces_at_the_horizontal_and_at_release_as_on_the_page() -> None:
-    a, l, k, g = 1.0, 1.0, math.sqrt(0.75), 9.81
+    a, length, k, g = 1.0, 1.0, math.sqrt(0.75), 9.81
     upper, lower = figures(UNIT)["forces_at_release"]  # type: ignore[misc]
-    assert upper == pytest.approx(g * l * (8 * a**2 - l**2) / (8 * k * (6 * a**2 - l**2)), rel=1e-14)
-    assert lower == pytest.approx(g * l * (16 * a**2 - 3 * l**2) / (8 * k * (6 * a**2 - l**2)), rel=1e-14)
+    assert upper == pytest.approx(g * length * (8 * a**2 - length**2) / (8 * k * (6 * a**2 - length**2)), rel=1e-14)
+    assert lower == pytest.approx(
+        g * length * (16 * a**2 - 3 * length**2) / (8 * k * (6 * a**2 - length**2)), rel=1e-14
+    )
     quarter = figures(UNIT)["period"] / 4  # type: ignore[operator]
     answer = UNIT.answer(np.array([quarter]))
     assert answer.trajectory is not None

@@ -1,0 +1,183 @@
+"""Bodies known by what was measured of them: principal moments, a tensor of inertia, or where their points are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from core.bodies.mass_properties import About, MassProperties, diagonal
+from core.bodies.principal_inertia import EPSILON, ZEROS
+from core.errors import InvalidParameter
+from core.notices import Notice
+from core.quantities import Coordinate, InertiaComponent, Mass, MomentOfInertia, Position, Quantity, Rows, check
+
+POSITIONS = Rows(3, Quantity("m"))
+MASSES = Rows(0, Quantity("kg", above=0))
+
+InertiaRow = tuple[InertiaComponent, InertiaComponent, InertiaComponent]
+
+SYMMETRIC = 8.0 * EPSILON
+"""How much two components of a symmetric tensor may differ, as a share of its largest: what printing it may have lost."""
+
+
+def _unphysical(properties: MassProperties, field: str) -> MassProperties:
+    """Return the properties with a warning if no matter can have them."""
+    failed = [condition.detail for condition in properties.validity.report if not condition.holds]
+    if not failed:
+        return properties
+    notice = Notice(
+        "unphysical-inertia",
+        f"no distribution of positive mass has these moments of inertia ({'; '.join(failed)}); "
+        "the equations of motion hold for them all the same",
+        (field,),
+    )
+    return MassProperties(
+        properties.inertia,
+        properties.inertia_tail,
+        properties.mass,
+        properties.center_of_mass,
+        properties.mass_tail,
+        properties.center_of_mass_tail,
+        properties.about,
+        (*properties.warnings, notice),
+        properties.conditions,
+    )
+
+
+@dataclass(frozen=True)
+class PrincipalMoments:
+    """A body known by its principal moments of inertia; its body axes are the principal axes, in the order given.
+
+    Attributes
+    ----------
+    moments : tuple of 3 floats
+        Each greater than 0 (kg m^2). Moments that no matter can have are answered with a warning.
+    """
+
+    moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
+    kind: Literal["principal-moments"] = "principal-moments"
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def mass_properties(self) -> MassProperties:
+        """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
+        return _unphysical(diagonal(self.moments), "moments")
+
+
+@dataclass(frozen=True)
+class InertiaTensor:
+    """A body known by its tensor of inertia about its centre of mass, in body axes.
+
+    Attributes
+    ----------
+    tensor : tuple of 3 rows
+        Symmetric; off-diagonal components are I_xy = -(integral of x y dm) (kg m^2).
+    mass : float, optional
+        kg.
+    center_of_mass : tuple of 3 floats, optional
+        In the frame in which the body is described (m).
+    """
+
+    tensor: tuple[InertiaRow, InertiaRow, InertiaRow]
+    mass: Mass | None = None
+    center_of_mass: Position | None = None
+    kind: Literal["inertia-tensor"] = "inertia-tensor"
+
+    def __post_init__(self) -> None:
+        check(self)
+        size = max(abs(x) for row in self.tensor for x in row)
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            if abs(self.tensor[i][j] - self.tensor[j][i]) > SYMMETRIC * size:
+                raise InvalidParameter(
+                    ("tensor", j, i),
+                    f"equal tensor/{i}/{j}: a tensor of inertia is symmetric",
+                    remedy="give I_xy = -(integral of x y dm) in both places",
+                )
+        if size == 0.0:
+            raise InvalidParameter("tensor", "not be zero")
+
+    def mass_properties(self) -> MassProperties:
+        """Return what the mechanics needs to know of the body."""
+        given = np.array(self.tensor)
+        inertia = np.triu(given) + np.triu(given, 1).T
+        center = None if self.center_of_mass is None else np.array(self.center_of_mass)
+        properties = MassProperties(inertia, ZEROS, self.mass, center, center_of_mass_tail=ZEROS[0])
+        if not properties.principal.moments[0] >= 0.0:
+            lowest = float(properties.principal.moments[0])
+            raise InvalidParameter("tensor", f"have no negative principal moment, and has {lowest:.6g} kg m^2")
+        return _unphysical(properties, "tensor")
+
+
+@dataclass(frozen=True, eq=False)
+class PointMasses:
+    """Point masses held rigidly together.
+
+    Attributes
+    ----------
+    masses : float or sequence of n floats
+        One mass for all, or one for each (kg).
+    positions : array_like, shape (n, 3)
+        In body axes (m); kept as an array that cannot be written.
+    about : {"center-of-mass", "origin"}
+        The point about which the body turns. A free body turns about its centre of mass; "origin" is a body pinned there.
+    """
+
+    masses: Mass | Annotated[Any, MASSES]
+    positions: Annotated[Any, POSITIONS]
+    about: About = "center-of-mass"
+    kind: Literal["point-masses"] = "point-masses"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "positions", POSITIONS.read(("positions",), self.positions))
+        if isinstance(self.masses, (list, tuple, np.ndarray)):
+            object.__setattr__(self, "masses", MASSES.read(("masses",), self.masses))
+            if len(self.masses) != len(self.positions):
+                raise InvalidParameter(
+                    "masses",
+                    f"have one entry for each of the {len(self.positions)} positions, not {len(self.masses)}",
+                    remedy="give one number if all masses are equal",
+                )
+        else:
+            MASSES.quantity.check(("masses",), self.masses)
+        if self.about not in ("center-of-mass", "origin"):
+            raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
+
+    def mass_properties(self) -> MassProperties:
+        """Return what the mechanics needs to know of the body, sums formed in double-double."""
+        # Compiled code is fetched only for the bodies that need it.
+        from core.bodies.point_sums import first_moments, second_moments
+
+        masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
+        # Powers of two keep products within range and round nothing.
+        heavy = int(np.frexp(masses.max())[1])
+        far = int(np.frexp(np.abs(self.positions).max())[1])
+        m = np.ascontiguousarray(np.ldexp(masses, -heavy))
+        r = np.ascontiguousarray(np.ldexp(self.positions, -far))
+        center = np.zeros((2, 4))
+        first_moments(m, r, center)
+        second = np.zeros((2, 3, 3))
+        second_moments(m, r, center, second)
+        exact = [
+            [
+                Fraction(float(second[0, min(i, j), max(i, j)])) + Fraction(float(second[1, min(i, j), max(i, j)]))
+                for j in range(3)
+            ]
+            for i in range(3)
+        ]
+        trace = exact[0][0] + exact[1][1] + exact[2][2]
+        unit = Fraction(2) ** (heavy + 2 * far)
+        inertia = [[unit * ((trace if i == j else 0) - exact[i][j]) for j in range(3)] for i in range(3)]
+        com = [Fraction(float(center[0, k])) + Fraction(float(center[1, k])) for k in range(4)]
+        found = MassProperties.from_exact(
+            com[0] * Fraction(2) ** heavy, [x * Fraction(2) ** far for x in com[1:]], inertia
+        )
+        if self.about == "center-of-mass":
+            return found
+        return MassProperties(
+            found.inertia, found.inertia_tail, found.mass, found.center_of_mass, found.mass_tail,
+            found.center_of_mass_tail, "origin", found.warnings, found.conditions,
+        )  # fmt: skip
