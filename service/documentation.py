@@ -8,11 +8,11 @@ from typing import Annotated, Any
 
 from fastapi import Body, FastAPI, Request
 from fastapi.routing import APIRoute
-from starlette.responses import Response
+from starlette.responses import JSONResponse, Response
 
 from service import VERSION
 from service.problems import MEDIA_TYPE, REGISTRY
-from service.routing import Page, Question, Route
+from service.routing import Question, Route
 from service.schemas import ProblemDocument
 
 DESCRIPTION = """\
@@ -61,6 +61,8 @@ def documented(routes: Sequence[Route], serve: Serve, lifespan: Any = None) -> F
 def openapi(app: FastAPI) -> dict[str, Any]:
     """Return the OpenAPI document."""
     document = app.openapi()
+    problem = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
+    document["components"]["schemas"] |= problem.pop("$defs") | {"ProblemDocument": problem}
     for schema in document["components"]["schemas"].values():
         _require_tag(schema)
     return document
@@ -102,8 +104,9 @@ class _Route(APIRoute):
 
 
 def _response_class(route: Route) -> type[Response]:
-    media_type = "application/json" if isinstance(route, Question) else route.media_type
-    return type("_Media", (Response,), {"media_type": media_type})
+    if isinstance(route, Question) or route.media_type == "application/json":
+        return JSONResponse
+    return type("_Media", (Response,), {"media_type": route.media_type})
 
 
 def _endpoint(route: Route) -> Callable[..., Any]:
@@ -134,10 +137,4 @@ def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:
             "description": f"Problem: {', '.join(codes)}.",
             "content": {MEDIA_TYPE: reference},
         }
-    # One of them by its model, which puts the schema among the components.
-    last = statuses[-1]
-    responses[last] = {"description": responses[last]["description"], "model": ProblemDocument}
     return responses
-
-
-__all__ = ["Page", "documented", "openapi"]

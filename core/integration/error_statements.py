@@ -28,7 +28,7 @@ ROUNDOFF = 8 * 2.0**-53
 
 
 _row = types.float64[::1]
-_rows = types.float64[:, ::1]
+_rows = types.float64[:, :]
 
 
 class Errors(NamedTuple):
@@ -57,12 +57,12 @@ def _differences(
 
     All in units of `unit`, a power of two that keeps the squares in range and rounds nothing.
     """
-    largest = 0.0
+    largest, inverse = 0.0, 1.0 / unit
     for i in range(states.shape[0]):
         norm, error = 0.0, 0.0
         for k in range(states.shape[1]):
-            exact = reference[i, k] / unit
-            difference = states[i, k] / unit - exact
+            exact = reference[i, k] * inverse
+            difference = states[i, k] * inverse - exact
             norm += exact * exact
             error += difference * difference
             magnitudes[k] = max(magnitudes[k], abs(exact))
@@ -93,15 +93,15 @@ def _magnitude(rows: Floats) -> float:
     return max(float(rows.max()), -float(rows.min()))
 
 
-@kernel(types.UniTuple(types.float64, 2)(_row, types.float64))
+@kernel("UniTuple(float64, 2)(float64[::1], float64)")
 def _strayed(values: Floats, first: float) -> tuple[float, float]:
-    """Return the largest change from `first` and the largest magnitude, both NaN if any value is."""
+    """Return the largest change from `first` and the largest magnitude, both infinite if any value is not finite."""
     change, largest = 0.0, 0.0
     for value in values:
-        if not abs(value - first) <= change:
-            change = abs(value - first)
-        if not abs(value) <= largest:
-            largest = abs(value)
+        if not math.isfinite(value):
+            return math.inf, math.inf
+        change = max(change, abs(value - first))
+        largest = max(largest, abs(value))
     return change, largest
 
 

@@ -80,7 +80,7 @@ def solve(
     budget = budget or Budget()
     _tolerated.check(("accuracy",), accuracy)
     _uncertainty.check(("input_uncertainty",), input_uncertainty)
-    instants = _checked(times, budget)
+    instants = checked_times(times, budget)
     exact = system.closed_form()
     if exact is not None and (method is None or isinstance(method, ClosedFormEvaluation)):
         return _evaluated(system, exact, instants, accuracy, input_uncertainty)
@@ -95,7 +95,16 @@ def solve(
     return _compared_with_finer_run(system, method, run, instants, accuracy, budget)
 
 
-def _checked(times: ArrayLike, budget: Budget) -> Floats:
+def checked_times(times: ArrayLike, budget: Budget) -> Floats:
+    """Return times as an array.
+
+    Raises
+    ------
+    InvalidParameter
+        If there are none, or one is not finite.
+    BudgetExceeded
+        If there are more than the budget has samples.
+    """
     instants = np.ascontiguousarray(times, dtype=np.float64)
     if instants.ndim != 1 or instants.size == 0:
         raise InvalidParameter("times", "be a list of at least one time")

@@ -35,13 +35,17 @@ class PrincipalFrame:
     @cached_property
     def aligned(self) -> bool:
         """Whether the principal axes are the body axes, in some order and with some signs, exactly."""
-        a = self.axes
-        return bool(np.all((a == 0.0) | (np.abs(a) == 1.0))) and not np.any(self.axes_tail)
+        # Nine numbers: plain Python is quicker than arrays.
+        entries = (x for row in self.axes.tolist() for x in row)
+        return all(x in (0.0, 1.0, -1.0) for x in entries) and not any(
+            x for row in self.axes_tail.tolist() for x in row
+        )
 
     @cached_property
     def rows(self) -> list[int]:
         """Body axis along which each principal axis lies, where they are aligned."""
-        return [int(k) for k in np.argmax(np.abs(self.axes), axis=0)]
+        columns = zip(*self.axes.tolist(), strict=True)
+        return [next(row for row, x in enumerate(column) if x) for column in columns]
 
     @cached_property
     def signs(self) -> list[float]:
@@ -51,7 +55,8 @@ class PrincipalFrame:
     def components(self, vector: Floats) -> tuple[Floats, Floats]:
         """Return a vector's principal components and their tails, each of shape (3,), exact where axes are aligned."""
         if self.aligned:
-            exact = np.array([sign * vector[row] for row, sign in zip(self.rows, self.signs, strict=True)])
+            given = vector.tolist()
+            exact = np.array([sign * given[row] for row, sign in zip(self.rows, self.signs, strict=True)])
             return exact, np.zeros(3)
         out = np.empty((2, 3))
         _components(

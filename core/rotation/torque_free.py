@@ -70,8 +70,8 @@ def _invariants(
 ) -> None:
     a, b, c = tensor[0, 0], tensor[1, 1], tensor[2, 2]
     d, e, f = tensor[0, 1], tensor[0, 2], tensor[1, 2]
-    for n in range(states.shape[0]):
-        x, y, z = unit * states[n, 0], unit * states[n, 1], unit * states[n, 2]
+    for n in range(states.shape[1]):
+        x, y, z = unit * states[0, n], unit * states[1, n], unit * states[2, n]
         mx, my, mz = a * x + d * y + e * z, d * x + b * y + f * z, e * x + f * y + c * z
         out[0, n] = 0.5 * (x * mx + y * my + z * mz)
         out[1, n] = math.sqrt(mx * mx + my * my + mz * mz)
@@ -165,7 +165,7 @@ class TorqueFree:
         largest = float(np.max(np.abs(self.angular_velocity)))
         unit = math.ldexp(1.0, max(-1000, min(1000, -math.frexp(largest)[1])))
         out = np.empty((2, len(states)))
-        _invariants(self.tensor, states, unit, out)
+        _invariants(self.tensor, np.ascontiguousarray(states.T), unit, out)
         return {"energy": out[0], "angular_momentum": out[1]}
 
     @property

@@ -60,7 +60,7 @@ def _march(
                 if change == 0.0 or (change >= last and change <= 1e-13 * size):
                     break
                 if spent >= ITERATIONS or not change < np.inf:
-                    tally[1] = OVERFLOW if not change < np.inf else NO_CONVERGENCE
+                    tally[1] = NO_CONVERGENCE
                     return i
                 last = change
             tally[0] -= spent - 1

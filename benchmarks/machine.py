@@ -1,0 +1,45 @@
+"""What a benchmark ran on, and how it measures."""
+
+from __future__ import annotations
+
+import os
+import platform
+import statistics
+import time
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+RESULTS = Path(__file__).parent / "results"
+
+
+def described(*packages: str) -> dict[str, Any]:
+    """Return processor, cores, Python and the versions of packages."""
+    model = ""
+    if Path("/proc/cpuinfo").exists():
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "")
+    versions = {package: metadata.version(package) for package in packages}
+    return {"processor": model, "cores": os.cpu_count(), "python": platform.python_version(), "versions": versions}
+
+
+def medians(runs: dict[str, Callable[[], object]], repeats: int, least: float = 2e-3) -> dict[str, float]:
+    """Return the median time of each run (s), all taken in turn so that a drifting machine drifts for all.
+
+    Short runs are repeated within one measurement until it lasts `least` seconds.
+    """
+    loops = {}
+    for name, run in runs.items():
+        run()
+        start = time.perf_counter()
+        run()
+        loops[name] = max(1, int(least / max(time.perf_counter() - start, 1e-9)))
+    spent: dict[str, list[float]] = {name: [] for name in runs}
+    for _ in range(repeats):
+        for name, run in runs.items():
+            start = time.perf_counter()
+            for _ in range(loops[name]):
+                run()
+            spent[name].append((time.perf_counter() - start) / loops[name])
+    return {name: statistics.median(times) for name, times in spent.items()}

@@ -1,0 +1,115 @@
+"""From an enclosure to a decimal numeral whose every digit it proves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from flint import arb, fmpz
+
+FEWEST_DIGITS, MOST_DIGITS = 16, 1000
+
+SPARE_DIGITS = 4
+"""Digits beyond the printed ones that the decimal expansion of a ball is formed with."""
+
+SHARE = 100
+"""The radius of an enclosure may be this small a part of one unit of the last printed digit."""
+
+FLOOR_IN_DIGITS = 2
+"""A component that is this many times the printed digits below the largest norm is given as far as that place."""
+
+_TEN = [fmpz(10) ** k for k in range(64)]
+
+
+class Undetermined(ArithmeticError):
+    """The enclosure is too wide for the digits that were asked for; a higher precision narrows it."""
+
+
+def decimal(ball: arb, digits: int, floor: int | None = None) -> str:
+    """Return `digits` significant digits of the number in a ball.
+
+    The numeral differs from the number by at most 0.51 units of its last digit: half a unit by rounding to nearest, the
+    rest by the radius of the ball.
+
+    Parameters
+    ----------
+    ball : arb
+    digits : int
+    floor : int, optional
+        No digit is given beyond the place ``10**floor``, so that a number which is zero, but is not known to be, can be
+        written at all; it then reads ``"0e-60"``. Without it only a ball that is exactly zero is written ``"0"``.
+
+    Raises
+    ------
+    Undetermined
+        If the ball does not determine the digits.
+    """
+    if ball.is_zero():
+        return "0"
+    if not ball.is_finite():
+        raise Undetermined
+    mid, rad, exponent = ball.mid_rad_10exp(digits + SPARE_DIGITS)
+    negative = mid < 0
+    size = -mid if negative else mid
+    written = str(size)
+    place = len(written) - digits + int(exponent)
+    if floor is not None and place < floor:
+        place = floor
+    drop = place - int(exponent)
+    if drop < 0 or (size == 0 and floor is None):
+        raise Undetermined
+    unit = _power_of_ten(drop)
+    if SHARE * rad > unit:
+        raise Undetermined
+    return numeral(int((size + unit // 2) // unit), place, digits, negative)
+
+
+def decimals(row: Sequence[arb], digits: int, floor: int | None = None) -> list[str]:
+    """Return `decimal` of every entry."""
+    return [decimal(ball, digits, floor) for ball in row]
+
+
+def decimal_of_fraction(number: Fraction, digits: int) -> str:
+    """Return a rational number rounded to `digits` significant digits."""
+    if number == 0:
+        return "0"
+    size = abs(number)
+    # 30103/100000 is log10(2) to five digits: good to one place, which the loop mends.
+    place = (size.numerator.bit_length() - size.denominator.bit_length()) * 30103 // 100000 - digits
+    while size / Fraction(10) ** place >= 10**digits:
+        place += 1
+    return numeral(round(size / Fraction(10) ** place), place, digits, number < 0)
+
+
+def numeral(whole: int, place: int, digits: int, negative: bool) -> str:
+    """Write ``whole * 10**place``: with a plain point where the zeros that this costs are few, else with an exponent."""
+    if whole == 0:
+        return f"0e{place}"
+    written = str(whole)
+    if len(written) > digits:
+        # Rounding has carried into a new digit, so the last one is a zero.
+        written, place = written[:-1], place + 1
+    sign = "-" if negative else ""
+    exponent = len(written) - 1 + place
+    if -5 < exponent < 0:
+        return f"{sign}0.{'0' * (-exponent - 1)}{written}"
+    if place <= 0 <= exponent:
+        point = exponent + 1
+        return f"{sign}{written[:point]}.{written[point:]}" if place else sign + written
+    fraction = f".{written[1:]}" if len(written) > 1 else ""
+    return f"{sign}{written[0]}{fraction}e{exponent}"
+
+
+def place_of(size: arb) -> int:
+    """Return the place of the leading decimal digit of a positive number, as an exponent of ten, or the one beside it."""
+    mid, _, exponent = size.mid_rad_10exp(3)
+    return len(str(mid)) - 1 + int(exponent)
+
+
+def floor_below(size: arb, digits: int) -> int:
+    """Return the last place that is printed of the components of a vector whose largest norm is `size`."""
+    return place_of(size) - FLOOR_IN_DIGITS * digits
+
+
+def _power_of_ten(exponent: int) -> fmpz:
+    return _TEN[exponent] if exponent < len(_TEN) else fmpz(10) ** exponent

@@ -1,0 +1,73 @@
+"""Numbers as they were given: a double is the rational number that it stands for, "0.1" is one tenth."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+from math import isfinite
+from numbers import Real
+
+from flint import arb, fmpq
+
+from core.errors import InvalidParameter, Path
+
+LONGEST_NUMERAL = 1100
+"""Characters of a decimal string: a thousand digits, their point and an exponent."""
+
+LARGEST_EXPONENT = 1000
+"""A power of ten costs memory in proportion to itself, so its exponent is bounded."""
+
+_NUMERAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE]([+-]?[0-9]{1,5}))?")
+
+Number = float | int | str | Fraction
+
+
+def exact(number: Number, path: str | Path) -> Fraction:
+    """Return a double, an integer, a fraction or a decimal string as the rational number that it is.
+
+    Raises
+    ------
+    InvalidParameter
+        For infinities and NaN, for strings that are not plain decimal numerals or that are too long.
+    """
+    if isinstance(number, Fraction):
+        return number
+    if isinstance(number, str):
+        return _read(number, path)
+    if isinstance(number, bool) or not isinstance(number, Real):
+        raise InvalidParameter(path, "be a number or a decimal string")
+    if not isfinite(number):
+        raise InvalidParameter(path, "be finite")
+    return Fraction(number)
+
+
+def exact_numbers(numbers: Sequence[Number], path: Path, count: int | None = None) -> tuple[Fraction, ...]:
+    """Return every entry of a list as a rational number.
+
+    Raises
+    ------
+    InvalidParameter
+        For an entry that is no number, or a list that has not `count` of them.
+    """
+    if isinstance(numbers, str) or not isinstance(numbers, Sequence):
+        raise InvalidParameter(path, "be a list")
+    if count is not None and len(numbers) != count:
+        raise InvalidParameter(path, f"have {count} entries, not {len(numbers)}")
+    return tuple(exact(number, (*path, i)) for i, number in enumerate(numbers))
+
+
+def enclosed(number: Fraction) -> arb:
+    """Return a ball of the current precision around a rational number, of radius zero where it is dyadic and short."""
+    return arb(fmpq(number.numerator, number.denominator))
+
+
+def _read(numeral: str, path: str | Path) -> Fraction:
+    if len(numeral) > LONGEST_NUMERAL:
+        raise InvalidParameter(path, f"have at most {LONGEST_NUMERAL} characters, not {len(numeral)}")
+    matched = _NUMERAL.fullmatch(numeral)
+    if matched is None:
+        raise InvalidParameter(path, "be a decimal number", remedy='for example "0.1", "-12.5" or "6.02e23"')
+    if matched[1] is not None and abs(int(matched[1])) > LARGEST_EXPONENT:
+        raise InvalidParameter(path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
+    return Fraction(numeral)

@@ -1,0 +1,298 @@
+"""Error against cost: what each method, with each setting, makes of one question.
+
+Errors are measured against the closed form where there is one, otherwise against an integrator at the end of double
+precision, whose own estimated error is added. Costs are counted, which is the same on every machine, and on request
+timed as well. The conventions are those of work-precision diagrams: the reference is far below the tightest error, times
+are medians of repeated runs, and a method that fails with a setting is listed with its reason.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
+from core.integration.budget import Budget
+from core.integration.error_statements import drifts, estimated, measured
+from core.integration.methods import (
+    ClosedFormEvaluation,
+    DormandPrince853,
+    ExplicitEuler,
+    ImplicitMidpoint,
+    Lsoda,
+    Method,
+    Radau,
+    RungeKutta4,
+    SymmetricSplitting,
+)
+from core.integration.methods.dormand_prince_853 import SMALLEST_TOLERANCE
+from core.integration.solve import checked_times
+from core.integration.system import Floats, System
+
+STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
+TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))
+SCIPY_TOLERANCES = tuple(10.0**-k for k in range(3, 12, 2))
+LARGEST_FITTED = 0.1
+"""Above this the error has not yet begun to fall with its order."""
+ABOVE_FLOOR = 10.0
+"""Errors within this factor of the floor hold round-off, and are not fitted."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One method with one setting.
+
+    Attributes
+    ----------
+    method : Method
+    error, final_error : float or None
+        Largest norm of any sample's error, and of the one farthest from the start, relative to the largest norm of the
+        motion. None if the method failed.
+    component_errors : tuple of float
+        Largest error of each component, relative to the largest magnitude that this component takes.
+    drifts : dict of str to float
+        Of the conserved quantities: not an error.
+    evaluations, steps : int
+    seconds : float or None
+        Median; None if nothing was timed.
+    failure : str or None
+        Why there is no answer.
+    """
+
+    method: Method
+    error: float | None = None
+    final_error: float | None = None
+    component_errors: tuple[float, ...] = ()
+    drifts: dict[str, float] | None = None
+    evaluations: int = 0
+    steps: int = 0
+    seconds: float | None = None
+    failure: str | None = None
+
+
+@dataclass(frozen=True)
+class Curve:
+    """All settings of one method, cheapest first.
+
+    Attributes
+    ----------
+    kind : str
+    declared_order : int or None
+    fitted_order : float or None
+        Slope of the logarithm of the error over that of the steps, between the coarse settings and the floor; None with
+        fewer than two settings there.
+    floor : float or None
+        Round-off floor: the smallest error, where more work brings none smaller; None if it was not met.
+    measurements : tuple of Measurement
+    """
+
+    kind: str
+    declared_order: int | None
+    fitted_order: float | None
+    floor: float | None
+    measurements: tuple[Measurement, ...]
+
+
+@dataclass(frozen=True)
+class Recommendation:
+    """The cheapest setting that was measured to reach the accuracy, or None with what was reached at best."""
+
+    method: Method | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class WorkPrecision:
+    """Error against cost on one question.
+
+    Attributes
+    ----------
+    reference : str
+        ``"closed form"`` or the kind of the integrator that stood in for it.
+    reference_error : float
+        Contained in every error that is stated.
+    curves : tuple of Curve
+    pareto_front : tuple of Measurement
+        Those that no other beats in both error and evaluations, cheapest first.
+    recommendation : Recommendation
+    """
+
+    reference: str
+    reference_error: float
+    curves: tuple[Curve, ...]
+    pareto_front: tuple[Measurement, ...]
+    recommendation: Recommendation
+
+
+def work_precision(
+    system: System,
+    times: ArrayLike,
+    methods: Sequence[Method] | None = None,
+    *,
+    accuracy: float = 1e-9,
+    repeats: int = 0,
+    budget: Budget | None = None,
+    clock: Callable[[], float] = time.perf_counter,
+) -> WorkPrecision:
+    """Measure methods on one question.
+
+    Parameters
+    ----------
+    system : System
+    times : array_like, shape (n,)
+        As in `solve`.
+    methods : sequence of Method, optional
+        With their settings, in any order; a ladder of every method that the system admits if omitted.
+    accuracy : float
+        What the recommendation is for.
+    repeats : int
+        How often each run is timed; nothing is if 0, and the result is the same whenever it is asked for.
+    budget : Budget, optional
+        For every single run. One that exceeds it is listed as failed.
+    clock : callable
+        Returns seconds.
+
+    Raises
+    ------
+    InvalidParameter
+        For times as in `solve`, or no methods at all.
+    AccuracyUnreachable
+        If no reference can be had.
+    """
+    budget = budget or Budget()
+    instants = checked_times(times, budget)
+    chosen = default_methods(system, instants) if methods is None else tuple(methods)
+    if not chosen:
+        raise InvalidParameter("methods", "name at least one method")
+    reference, states, own = _reference(system, instants, budget)
+    found = [_measure(system, instants, method, states, own, repeats, budget, clock) for method in chosen]
+    ordered = sorted(found, key=lambda one: (one.method.kind, one.evaluations, -(one.error or math.inf)))
+    curves = tuple(_curve(kind, tuple(group)) for kind, group in groupby(ordered, key=lambda one: one.method.kind))
+    return WorkPrecision(reference, own, curves, pareto_front(found), _recommended(found, accuracy))
+
+
+def default_methods(system: System, times: Floats) -> tuple[Method, ...]:
+    """Return every method that the system admits, with a ladder of settings.
+
+    Steps are fractions of the motion's own time, the size of the state over its rate of change, or of the horizon where
+    that is shorter or the start is at rest.
+    """
+    slope = np.empty_like(system.initial_state)
+    system.equation(0.0, system.initial_state, system.parameters, slope)
+    size, speed = float(np.abs(system.initial_state).max()), float(np.abs(slope).max())
+    horizon = float(np.abs(times).max()) or 1.0
+    own = min(size / speed, horizon) if size > 0.0 and speed > 0.0 else horizon
+    found: list[Method] = [] if system.closed_form() is None else [ClosedFormEvaluation()]
+    for number in STEPS_PER_OWN_TIME:
+        step = own / number
+        found += [ExplicitEuler(step), RungeKutta4(step), ImplicitMidpoint(step)]
+        if system.structure.splitting is not None:
+            found.append(SymmetricSplitting(step))
+    found += [DormandPrince853(tolerance) for tolerance in TOLERANCES]
+    for tolerance in SCIPY_TOLERANCES:
+        found += [Lsoda(tolerance), Radau(tolerance)]
+    return tuple(found)
+
+
+def pareto_front(measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
+    """Return those that no other beats in both error and evaluations, cheapest first."""
+    front: list[Measurement] = []
+    best = math.inf
+    for one in sorted(measurements, key=lambda one: (one.evaluations, one.error or 0.0)):
+        if one.error is not None and one.error < best:
+            front.append(one)
+            best = one.error
+    return tuple(front)
+
+
+def _reference(system: System, times: Floats, budget: Budget) -> tuple[str, Floats, float]:
+    exact = system.closed_form()
+    if exact is not None:
+        return "closed form", exact.sample(times), exact.error(times)
+    method = DormandPrince853(10 * SMALLEST_TOLERANCE)
+    run = method.integrate(system, times, budget)
+    error = estimated(method, system, times, run, budget, run.work.evaluations).errors.largest
+    if error > LARGEST_FITTED:
+        raise AccuracyUnreachable(
+            LARGEST_FITTED,
+            error,
+            "no reference can be had this far from the start",
+            path=("times",),
+            remedy="ask for earlier times",
+        )
+    return method.kind, run.states, error
+
+
+def _measure(
+    system: System,
+    times: Floats,
+    method: Method,
+    reference: Floats,
+    own: float,
+    repeats: int,
+    budget: Budget,
+    clock: Callable[[], float],
+) -> Measurement:
+    try:
+        run = method.integrate(system, times, budget)
+    except MechanicsError as fault:
+        return Measurement(method, failure=fault.detail)
+    seconds = []
+    for _ in range(repeats):
+        start = clock()
+        method.integrate(system, times, budget)
+        seconds.append(clock() - start)
+    # The closed form is not measured against itself: its error is its own bound, which is all that `own` says.
+    errors = measured(run.states, reference, times)
+    return Measurement(
+        method,
+        errors.largest + own,
+        errors.final + own,
+        tuple(component + own for component in errors.components),
+        drifts(system, run.states),
+        run.work.evaluations,
+        run.work.steps,
+        statistics.median(seconds) if seconds else None,
+    )
+
+
+def _curve(kind: str, measurements: tuple[Measurement, ...]) -> Curve:
+    order = measurements[0].method.order
+    points = [(one.steps, one.error) for one in measurements if one.error is not None and one.steps > 0]
+    floor = _floor([error for _, error in points])
+    lowest = ABOVE_FLOOR * floor if floor is not None else 0.0
+    fitted = [(steps, error) for steps, error in points if lowest < error < LARGEST_FITTED]
+    slope = None
+    if len({steps for steps, _ in fitted}) > 1:
+        logarithms = np.log(np.array(fitted))
+        slope = -float(np.polyfit(logarithms[:, 0], logarithms[:, 1], 1)[0])
+    return Curve(kind, order, slope, floor, measurements)
+
+
+def _floor(errors: list[float]) -> float | None:
+    """Return the smallest of errors in the order of growing work, if the work after it brought none below half of it."""
+    if len(errors) < 2:
+        return None
+    least = min(errors[:-1])
+    return min(errors) if errors[-1] > 0.5 * least else None
+
+
+def _recommended(measurements: Sequence[Measurement], accuracy: float) -> Recommendation:
+    reached = [one for one in measurements if one.error is not None and one.error <= accuracy]
+    if not reached:
+        best = min((one.error for one in measurements if one.error is not None), default=math.inf)
+        return Recommendation(None, f"no setting reached {accuracy:.3g}; the smallest error was {best:.3g}")
+    timed = all(one.seconds is not None for one in reached)
+    cheapest = min(reached, key=lambda one: (one.seconds if timed and one.seconds is not None else 0, one.evaluations))
+    why = "in the shortest median time" if timed else "with the fewest evaluations"
+    return Recommendation(
+        cheapest.method,
+        f"{cheapest.method.kind} reached {cheapest.error:.3g}, where {accuracy:.3g} was asked for, {why}",
+    )
