@@ -2,8 +2,8 @@
 
 Errors are measured against the closed form where there is one, otherwise against an integrator at the end of double
 precision, whose own estimated error is added. Costs are counted, which is the same on every machine, and on request
-timed as well. The conventions are those of work-precision diagrams: the reference is far below the tightest error, times
-are medians of repeated runs, and a method that fails with a setting is listed with its reason.
+timed as well. The conventions are those of work-precision diagrams: the reference is far below the tightest error,
+times are medians of repeated runs, and a method that fails with a setting is listed with its reason.
 """
 
 from __future__ import annotations
@@ -277,7 +277,7 @@ def _curve(kind: str, measurements: tuple[Measurement, ...]) -> Curve:
 
 
 def _floor(errors: list[float]) -> float | None:
-    """Return the smallest of errors in the order of growing work, if the work after it brought none below half of it."""
+    """Return the smallest of errors listed by growing work, if the most work brought none below half of the others."""
     if len(errors) < 2:
         return None
     least = min(errors[:-1])
@@ -292,7 +292,5 @@ def _recommended(measurements: Sequence[Measurement], accuracy: float) -> Recomm
     timed = all(one.seconds is not None for one in reached)
     cheapest = min(reached, key=lambda one: (one.seconds if timed and one.seconds is not None else 0, one.evaluations))
     why = "in the shortest median time" if timed else "with the fewest evaluations"
-    return Recommendation(
-        cheapest.method,
-        f"{cheapest.method.kind} reached {cheapest.error:.3g}, where {accuracy:.3g} was asked for, {why}",
-    )
+    reason = f"{cheapest.method.kind} reached {cheapest.error:.3g}, where {accuracy:.3g} was asked for, {why}"
+    return Recommendation(cheapest.method, reason)

@@ -30,7 +30,7 @@ class ExactInertia:
     tensor: Matrix
 
     def __post_init__(self) -> None:
-        (a, b, c), (_, d, e), (_, _, f) = self.tensor
+        a, b, d = self.tensor[0][0], self.tensor[0][1], self.tensor[1][1]
         for i, j in ((0, 1), (0, 2), (1, 2)):
             if self.tensor[i][j] != self.tensor[j][i]:
                 raise InvalidParameter(("tensor", j, i), f"equal tensor/{i}/{j}: the tensor is symmetric")
@@ -41,7 +41,6 @@ class ExactInertia:
                 "have three moments of inertia greater than 0 to rotate freely",
                 remedy="give a body with extent in at least two directions",
             )
-        del c, e, f
 
     @classmethod
     def of_moments(cls, moments: Sequence[Number]) -> ExactInertia:
@@ -144,7 +143,8 @@ class ExactInertia:
 
     def momentum(self, angular_velocity: Vector) -> Vector:
         """Return I w."""
-        return _triple([sum((i * w for i, w in zip(row, angular_velocity, strict=True)), Fraction(0)) for row in self.tensor])
+        x, y, z = (sum((i * w for i, w in zip(row, angular_velocity, strict=True)), Fraction(0)) for row in self.tensor)
+        return x, y, z
 
 
 def cross(u: Sequence[Fraction], v: Sequence[Fraction]) -> Vector:

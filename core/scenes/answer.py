@@ -14,9 +14,11 @@ from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
 from core.integration.trajectory import Accuracy, Work
 from core.notices import Notice
-from core.scenes.enclosure import MORE_BITS, Ball, Rounding, precision
+from core.scenes.enclosure import MORE_BITS, Ball, Rounding, precision, sign
 
 HORIZON = "horizon"
+SMALLEST_SAMPLE = 1e-290
+"""Columns of smaller numbers than this would lose digits below the normal range of doubles."""
 MOTION = ("events", "ended", "trajectory")
 """Outputs that need the motion, in every scene."""
 
@@ -67,6 +69,18 @@ class Columns:
                 scale = self.scales[name]
                 worst = max(worst, largest / scale if scale > 0.0 else math.inf)
         return worst
+
+    def without_underflow(self, sizes: Mapping[str, Ball]) -> Columns:
+        """Return the columns without those that a double is too small for, judged by the sizes given."""
+        lost = {name for name, size in sizes.items() if sign(size) and abs(float(size)) < SMALLEST_SAMPLE}
+
+        def kept(table: Mapping[str, Any]) -> dict[str, Any]:
+            return {name: entry for name, entry in table.items() if name not in lost}
+
+        notices = tuple(
+            Notice("outside-double-range", f"trajectory/{name} is too small for doubles") for name in sorted(lost)
+        )
+        return Columns(kept(self.values), kept(self.errors), kept(self.scales), (*self.notices, *notices))
 
 
 class Motion(ABC):

@@ -194,13 +194,14 @@ class ChainMotion(Motion):
         return () if self._end is None else (self._end,)
 
     def sample(self, times: Floats) -> Columns:
-        """Evaluate by the form of the solution that cancels less at these times."""
+        """Evaluate by the form of the solution that cancels less at these times, column by column."""
         slide = self.slide
         with np.errstate(over="ignore", invalid="ignore"):
             forms = [self._from_start(times)]
             if sign(slide.square):
                 forms.append(self._from_equilibrium(times))
-            x, v, dx, dv = min(forms, key=lambda form: _largest(form[2]) + _largest(form[3]) * _span(times))
+            x, dx = min(((form[0], form[2]) for form in forms), key=lambda column: _largest(column[1]))
+            v, dv = min(((form[1], form[3]) for form in forms), key=lambda column: _largest(column[1]))
             (m1, m2), rho = (float(m) for m in slide.masses), float(slide.density)
             unit, length = float((slide.pulls[0] + slide.pulls[1]) / slide.mass), float(slide.length)
             left, right = m1 + rho * x, m2 + rho * (length - x)
@@ -217,7 +218,7 @@ class ChainMotion(Motion):
             name: max(float(np.max(np.abs(values[name]), initial=0.0)), abs(float(ball)))
             for name, ball in zip(NAMES, given, strict=True)
         }
-        return Columns(values, errors, scales)
+        return Columns(values, errors, scales).without_underflow({"apex_tension": given[2]})
 
     def _from_start(self, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return x, x' and bounds of their errors from x_0 + x_0' sinh(kt)/k + x_0'' 2 sinh^2(kt/2)/k^2."""
@@ -267,7 +268,3 @@ def _sinhc(z: Floats) -> Floats:
 def _largest(bound: Floats) -> float:
     largest = float(np.max(bound, initial=0.0))
     return largest if np.isfinite(largest) else np.inf
-
-
-def _span(times: Floats) -> float:
-    return float(np.max(np.abs(times), initial=0.0))

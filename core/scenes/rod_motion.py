@@ -191,4 +191,5 @@ class RodMotion(Motion):
             "forces": max(abs(float(force)) for force in self.rod.forces(*self.pendulum.whole, self.pendulum.rate)),
         }
         scales = {name: max(float(np.max(np.abs(column), initial=0.0)), given[name]) for name, column in values.items()}
-        return Columns(values, errors, scales)
+        weight = self.rod.mass * self.rod.gravity
+        return Columns(values, errors, scales).without_underflow({"forces": weight})

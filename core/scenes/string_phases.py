@@ -14,6 +14,9 @@ from core.scenes.quadratics import exit_time
 from core.scenes.string_state import Constants, Drive, State
 
 MOST_PHASES = 2000
+FAINTEST_JERK = 2.0**-60
+"""Part of the fastest closing below which a jerk among others is the last: sticking and slipping between jerks leave no
+closed form for how they accumulate. What is cut off enters the error."""
 ROUNDING = 1e-12
 """Velocities that differ by less than this part of their terms count as equal, as a product R omega is rounded."""
 
@@ -86,11 +89,14 @@ class Phases:
         What ends the motion.
     events : tuple of Event
         Everything that begins a phase, and the end.
+    cut : ball
+        Bound of the closing velocities of jerks that were left out (m/s).
     """
 
     phases: tuple[Phase, ...]
     end: Event | None
     events: tuple[Event, ...]
+    cut: Ball = ZERO
 
 
 class _Follower:
@@ -102,6 +108,7 @@ class _Follower:
         self.constants, self.restitution, self.limits, self.law, self.slip = constants, restitution, limits, law, slip
         self.phases: list[Phase] = []
         self.events: list[Event] = []
+        self.fastest, self.last, self.cut = ZERO, ZERO, ZERO
 
     def follow(self, state: State, horizon: float) -> Phases:
         while True:
@@ -116,8 +123,9 @@ class _Follower:
             impulse, loss, jerks = ZERO, ZERO, 0
             if state.tight and sign(state.opening) < 0:
                 closing = -state.opening
-                impulse, loss, jerks = self._impulse(closing), self._loss(closing), 1
-                state = state.kicked(self.constants, closing, self.restitution)
+                restitution = self._restitution(closing)
+                impulse, loss, jerks = self._impulse(closing, restitution), self._loss(closing, restitution), 1
+                state = state.kicked(self.constants, closing, restitution)
                 self.events.append(Event("jerk", state.time))
             drive = self.law(self.constants, state)
             if (
@@ -134,13 +142,25 @@ class _Follower:
             if end is not None:
                 self.events.append(end)
             if end is not None or phase.duration is None or float(state.time) > horizon:
-                return Phases(tuple(self.phases), end, tuple(self.events))
+                return Phases(tuple(self.phases), end, tuple(self.events), self.cut)
 
-    def _impulse(self, closing: Ball) -> Ball:
-        return (1 + self.restitution) * closing * self.constants.harmonic
+    def _restitution(self, closing: Ball) -> Ball:
+        """Return the restitution of this jerk: none for the last of a sequence that dies out."""
+        self.fastest = closing if closing > self.fastest else self.fastest
+        if self.slip and sign(self.restitution) and closing < self.fastest * exact(FAINTEST_JERK):
+            # The rest of the sequence, as a geometric series with the ratio of its last two jerks.
+            ratio = closing / self.last if closing < self.last else self.restitution
+            rest = closing / (1 - ratio) if ratio < 1 else closing * MOST_PHASES
+            self.cut = self.cut + 4 * rest
+            return ZERO
+        self.last = closing
+        return self.restitution
 
-    def _loss(self, closing: Ball) -> Ball:
-        return (1 - self.restitution**2) * closing * closing * self.constants.harmonic / 2
+    def _impulse(self, closing: Ball, restitution: Ball) -> Ball:
+        return (1 + restitution) * closing * self.constants.harmonic
+
+    def _loss(self, closing: Ball, restitution: Ball) -> Ball:
+        return (1 - restitution**2) * closing * closing * self.constants.harmonic / 2
 
     def _steady(self, state: State) -> bool:
         """Whether every arc after a jerk has the accelerations of the first."""
@@ -225,8 +245,8 @@ class _Follower:
         S = sequence.limit if found is None else sequence.sum(found[0])
         n = None if found is None else found[0]
         # The jerks after the first close at w, e w, ...: their sum and the sum of their squares.
-        impulse = impulse + self._impulse(state.opening) * S
-        loss = loss + self._loss(state.opening) * S * (1 + sequence.ratio(S)) / (1 + self.restitution)
+        impulse = impulse + self._impulse(state.opening, self.restitution) * S
+        loss = loss + self._loss(state.opening, self.restitution) * S * (1 + sequence.ratio(S)) / (1 + self.restitution)
         jerks = None if n is None else n + 1
         if found is None:
             after = sequence.accumulated()

@@ -11,7 +11,7 @@ from core.integration.system import Floats, Model
 from core.notices import Notice
 from core.scenes.answer import Columns, Event, Motion, finite
 from core.scenes.bounces import Sequence
-from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, as_pair
+from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, as_pair, sign
 from core.scenes.string_phases import Phase, Phases
 
 WHY = {"taut": "the string is taut", "slack": "the string is slack", "stick": "both shafts roll on the string's track"}
@@ -47,7 +47,8 @@ class ShaftMotion(Motion):
     def __init__(
         self, phases: Phases, radii: tuple[float, float], given: Mapping[str, float], unresolved: float
     ) -> None:
-        self.phases, self._radii, self._given, self._unresolved = phases, np.array(radii), given, unresolved
+        self.phases, self._radii, self._given = phases, np.array(radii), given
+        self._unresolved = unresolved + float(phases.cut)
 
     @property
     def model(self) -> Model:
@@ -117,7 +118,9 @@ class ShaftMotion(Motion):
             name: max(float(np.max(np.abs(column), initial=0.0)), self._given.get(name, 0.0))
             for name, column in values.items()
         }
-        return Columns(values, errors, scales, notices)
+        tensions = [phase.drive.tension for phase in phases if phase.drive.tension is not None]
+        faint = {"tension": tension for tension in tensions if sign(tension) and determinate}
+        return Columns(values, errors, scales, notices).without_underflow(faint)
 
 
 class _Clock:

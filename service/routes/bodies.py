@@ -88,13 +88,13 @@ def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
 
 def reading_price(question: Any, budget: Budget) -> float:
     """Return the predicted time to find the mass properties of a question's body (s)."""
-    return 2e-4 + 2e-5 * _parts(question.body)
+    return 2e-4 + 1e-7 * _size(question.body)
 
 
-def _parts(body: Any) -> int:
-    points = getattr(body, "positions", None) or getattr(body, "faces", None) or ()
-    parts = getattr(body, "parts", ())
-    return len(points) + sum(10 + _parts(part.body) for part in parts)
+def _size(body: Any) -> int:
+    """Return how many points or faces a body has; each part of a composite counts as a thousand."""
+    own = max(len(getattr(body, name, ())) for name in ("positions", "faces"))
+    return own + sum(1000 + _size(part.body) for part in getattr(body, "parts", ()))
 
 
 BODIES = (

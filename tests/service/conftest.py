@@ -62,9 +62,15 @@ class Server:
 
     def wait_until_ready(self) -> None:
         deadline = time.monotonic() + 120
-        while httpx.get(self.url + "/readyz").status_code != 200:
+        while not self._ready():
             assert time.monotonic() < deadline
             time.sleep(0.05)
+
+    def _ready(self) -> bool:
+        try:
+            return httpx.get(self.url + "/readyz").status_code == 200
+        except httpx.TransportError:
+            return False
 
     def stop(self) -> str:
         self.process.terminate()

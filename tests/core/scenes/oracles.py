@@ -119,12 +119,15 @@ def time_stepped_shafts(
                 u = free_v - free_r - (tension + friction) / mu
                 # The string: no opening rate below -gap/step with an impulse that pulls.
                 excess = u.sum() - max(gap, 0.0) / step
+                before = (tension, *friction)
                 tension = max(0.0, tension + excess / (1 / mu).sum())
                 u = free_v - free_r - (tension + friction) / mu
                 for i in (0, 1):
                     wanted = friction[i] + mu[i] * u[i]
                     hold, drag = static[i] * load[i] * step, kinetic[i] * load[i] * step
                     friction[i] = wanted if abs(wanted) <= hold else np.sign(wanted) * drag
+                if np.allclose(before, (tension, *friction), rtol=1e-9, atol=1e-12):
+                    break
             v, r = free_v - (tension + friction) / M, free_r + (tension + friction) / (c * M)
             gap += step * (r - v).sum()
             now += step

@@ -155,9 +155,7 @@ def test_equilibrium_stays_and_its_neighbours_leave_to_their_sides() -> None:
             k = mp.sqrt(mp.mpf(0.5) * mp.mpf(9.81) * 2 * mp.sin(mp.mpf(0.5)) / 3)
             # Where T = rho v^2, or the end, whichever comes first, and the time there by the inverse of cosh.
             d0 = abs(mp.mpf(x) - 1)
-            gone = min(
-                mp.findroot(lambda d: (mp.mpf(1.5) ** 2 - d * d / 4) - mp.mpf(0.25) * (d * d - d0 * d0), 1), mp.mpf(1)
-            )
+            gone = min(mp.sqrt(2 * (mp.mpf(2.25) + d0 * d0 / 4)), mp.mpf(1))
             true = mp.acosh(gone / d0) / k
         assert relative(event["time"], true) < 1e-13
 

@@ -1,0 +1,222 @@
+"""The state from which a free rotation starts, and what it decides exactly: the regime and the axis that is circled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+from flint import arb, fmpq, fmpq_poly
+
+from core.certified.decimals import Undetermined
+from core.certified.exact_inertia import ExactInertia, Vector, cross
+from core.certified.exact_inputs import enclosed
+
+Regime = Literal["rest", "steady", "periodic", "separatrix"]
+Balls = tuple[arb, arb, arb]
+
+
+class PrincipalState(NamedTuple):
+    """The start in right-handed principal axes of ascending moments, as balls of the current precision.
+
+    Attributes
+    ----------
+    moments, rates : 3 balls
+    gaps : 3 balls
+        |B - A|, |C - B|, |C - A|, each formed without cancellation where the moments are rational.
+    axes : 3 rows of 3 balls
+        Columns are the principal axes in body axes.
+    """
+
+    moments: Balls
+    gaps: Balls
+    rates: Balls
+    axes: tuple[Balls, Balls, Balls]
+
+
+@dataclass(frozen=True)
+class ExactStart:
+    """A body and its angular velocity at t = 0 in rational numbers, and the facts that depend on nothing else.
+
+    Attributes
+    ----------
+    inertia : ExactInertia
+    angular_velocity : tuple of 3 fractions
+        In body axes (rad/s).
+    """
+
+    inertia: ExactInertia
+    angular_velocity: Vector
+
+    @cached_property
+    def momentum(self) -> Vector:
+        """M = I w, in body axes."""
+        return self.inertia.momentum(self.angular_velocity)
+
+    @cached_property
+    def twice_energy(self) -> Fraction:
+        """2E = w.I w."""
+        return sum((m * w for m, w in zip(self.momentum, self.angular_velocity, strict=True)), Fraction(0))
+
+    @cached_property
+    def squared_momentum(self) -> Fraction:
+        """L^2."""
+        return sum((m * m for m in self.momentum), Fraction(0))
+
+    @cached_property
+    def side(self) -> int:
+        """The sign of D_B = L^2 - 2E B for a motion that turns: 1 circles the axis of the largest moment, -1 the smallest.
+
+        s = L^2/2E lies strictly between A and C, because it is the mean of the moments with weights I w^2. There
+        (A - s)(B - s)(C - s) has the sign of s - B, whatever coincides: a rational number decides although the moments
+        may be irrational.
+        """
+        value = self.inertia.determinant_at(self.squared_momentum / self.twice_energy)
+        return (value > 0) - (value < 0)
+
+    @cached_property
+    def regime(self) -> Regime:
+        """Which branch of the solution holds."""
+        if not any(self.angular_velocity):
+            return "rest"
+        if not any(cross(self.momentum, self.angular_velocity)):
+            return "steady"
+        return "periodic" if self.side else "separatrix"
+
+    @cached_property
+    def order(self) -> tuple[int, int, int]:
+        """Body axes in ascending order of moments, where the body axes are principal."""
+        i, j, k = sorted(range(3), key=lambda n: self.inertia.tensor[n][n])
+        return i, j, k
+
+    @cached_property
+    def middle_difference(self) -> Fraction | None:
+        """D_B, where the moments are rational."""
+        moments = self.inertia.rational_moments
+        if moments is None:
+            return None
+        return self.squared_momentum - self.twice_energy * moments[1]
+
+    def principal_state(self) -> PrincipalState:
+        """Return the start in principal axes at the current precision.
+
+        Raises
+        ------
+        Undetermined
+            If the precision does not tell the moments apart.
+        """
+        if self.inertia.diagonal:
+            return self._along_body_axes()
+        rational = self.inertia.rational_moments
+        return self._general() if rational is None else self._symmetric(rational)
+
+    def _along_body_axes(self) -> PrincipalState:
+        moments = [self.inertia.tensor[n][n] for n in self.order]
+        # An odd permutation is made right-handed by turning the third axis round.
+        sign = 1 if self.order in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else -1
+        signs = (1, 1, sign)
+        rates = [enclosed(s * self.angular_velocity[n]) for s, n in zip(signs, self.order, strict=True)]
+        rows = []
+        for body_axis in range(3):
+            row = [arb(s if n == body_axis else 0) for s, n in zip(signs, self.order, strict=True)]
+            rows.append(_three(row))
+        return PrincipalState(
+            _three([enclosed(x) for x in moments]), _gaps(moments), _three(rates), (rows[0], rows[1], rows[2])
+        )
+
+    def _symmetric(self, moments: tuple[Fraction, ...]) -> PrincipalState:
+        """Two moments coincide: the axis of the third is known exactly, up to its length, and the spin gives the second."""
+        low, middle, high = moments
+        pair, single = (low, high) if low == middle else (high, low)
+        # I - pair has rank one, so its columns are along the axis of the single moment.
+        t = self.inertia.tensor
+        columns = [[t[i][j] - (pair if i == j else 0) for i in range(3)] for j in range(3)]
+        n = next(column for column in columns if any(column))
+        w = self.angular_velocity
+        along = sum((x * y for x, y in zip(n, w, strict=True)), Fraction(0)) / sum((x * x for x in n), Fraction(0))
+        across = [x - along * y for x, y in zip(w, n, strict=True)]
+        axis, first = _unit(n), _unit(across)
+        second = _unit(cross(n, across))
+        spin = enclosed(along) * enclosed(sum((x * x for x in n), Fraction(0))).sqrt()
+        plane = enclosed(sum((x * x for x in across), Fraction(0))).sqrt()
+        zero = arb(0)
+        if single == high:
+            return PrincipalState(
+                _three([enclosed(x) for x in moments]), _gaps(moments), (plane, zero, spin), _columns(first, second, axis)
+            )
+        return PrincipalState(
+            _three([enclosed(x) for x in moments]), _gaps(moments), (spin, plane, zero), _columns(axis, first, second)
+        )
+
+    def _general(self) -> PrincipalState:
+        """Three algebraic moments: enclosures of the roots of the cubic, and the axes from the adjugate of I - root."""
+        moments = self._roots()
+        low, middle, high = moments
+        axes = [_eigenvector(self.inertia, x) for x in moments]
+        first, second, third = axes
+        if not _dot(_cross(first, second), third) > 0:
+            third = _three([-x for x in third])
+        w = _three([enclosed(x) for x in self.angular_velocity])
+        return PrincipalState(
+            moments,
+            (middle - low, high - middle, high - low),
+            (_dot(first, w), _dot(second, w), _dot(third, w)),
+            _columns(first, second, third),
+        )
+
+    def _roots(self) -> Balls:
+        inertia = self.inertia
+        coefficients = [-inertia.determinant_at(Fraction(0)), inertia.minors, -inertia.trace, Fraction(1)]
+        polynomial = fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
+        found = [root.real for root, _ in polynomial.complex_roots()]
+        a, b, c = sorted(found, key=lambda root: root.mid())
+        if not (a < b < c and a > 0):
+            raise Undetermined
+        return a, b, c
+
+
+def _gaps(moments: tuple[Fraction, ...] | list[Fraction]) -> Balls:
+    low, middle, high = moments
+    return enclosed(middle - low), enclosed(high - middle), enclosed(high - low)
+
+
+def _eigenvector(inertia: ExactInertia, moment: arb) -> Balls:
+    """Return a unit eigenvector: every column of the adjugate of I - root is one, and the longest is not zero."""
+    (a, b, c), (_, d, e), (_, _, f) = ([enclosed(x) for x in row] for row in inertia.tensor)
+    a, d, f = a - moment, d - moment, f - moment
+    columns = (
+        (d * f - e * e, c * e - b * f, b * e - c * d),
+        (c * e - b * f, a * f - c * c, b * c - a * e),
+        (b * e - c * d, b * c - a * e, a * d - b * b),
+    )
+    # The adjugate is the projector on the axis times a number, so its diagonal holds the squares of the components.
+    longest = max(range(3), key=lambda k: abs(columns[k][k]).mid())
+    column = columns[longest]
+    if not abs(column[longest]) > 0:
+        raise Undetermined
+    norm = _dot(column, column).sqrt()
+    return _three([x / norm for x in column])
+
+
+def _unit(vector: list[Fraction] | Vector) -> Balls:
+    norm = enclosed(sum((x * x for x in vector), Fraction(0))).sqrt()
+    return _three([enclosed(x) / norm for x in vector])
+
+
+def _dot(u: Balls, v: Balls) -> arb:
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def _cross(u: Balls, v: Balls) -> Balls:
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+def _columns(x: Balls, y: Balls, z: Balls) -> tuple[Balls, Balls, Balls]:
+    rows = [(x[i], y[i], z[i]) for i in range(3)]
+    return rows[0], rows[1], rows[2]
+
+
+def _three(values: list[arb]) -> Balls:
+    x, y, z = values
+    return x, y, z

@@ -1,0 +1,245 @@
+"""The free rotation of a rigid body to any number of digits, each of them proven."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from flint import arb
+
+from core.certified.decimals import FLOOR_IN_DIGITS, decimal, decimal_of_fraction, decimals, floor_below
+from core.certified.exact_inertia import ExactInertia
+from core.certified.exact_inputs import Number, enclosed, exact_numbers
+from core.certified.exact_start import ExactStart, Regime
+from core.certified.raising import bits_for, check_digits, determined, each_determined
+from core.certified.turning_motion import QuaternionBalls, TurningMotion
+from core.errors import InvalidParameter
+
+Rows = list[list[str]]
+IDENTITY = (1, 0, 0, 0)
+
+
+@dataclass(frozen=True)
+class CertifiedRotation:
+    """A body that turns freely, its inertia and its start taken as exact.
+
+    Every numeral that is returned has the number of significant digits asked for and differs from the true value by at
+    most 0.51 units of its last digit. ``"0"`` is exactly zero. Numbers of which it is not known beforehand whether they are zero
+    (components of an attitude, and of an angular velocity where the principal axes are not the body axes) are given at
+    most as far as twice so many digits below the largest norm: one that vanishes to there reads ``"0e-60"``.
+
+    Attributes
+    ----------
+    inertia : ExactInertia
+    angular_velocity_at_start : tuple of 3 fractions
+        In body axes, at t = 0 (rad/s).
+    """
+
+    inertia: ExactInertia
+    angular_velocity_at_start: tuple[Fraction, Fraction, Fraction]
+
+    @classmethod
+    def of(cls, inertia: ExactInertia, angular_velocity: Sequence[Number]) -> CertifiedRotation:
+        """Return the motion that starts with an angular velocity given as doubles or decimal strings, shape (3,)."""
+        x, y, z = exact_numbers(angular_velocity, ("angular_velocity",), 3)
+        return cls(inertia, (x, y, z))
+
+    @classmethod
+    def of_moments(cls, moments: Sequence[Number], angular_velocity: Sequence[Number]) -> CertifiedRotation:
+        """Return the motion of a body given by its principal moments along the body axes."""
+        return cls.of(ExactInertia.of_moments(moments), angular_velocity)
+
+    @cached_property
+    def start(self) -> ExactStart:
+        """The start, and what it decides exactly."""
+        return ExactStart(self.inertia, self.angular_velocity_at_start)
+
+    @property
+    def regime(self) -> Regime:
+        """Which branch of the solution holds."""
+        return self.start.regime
+
+    @property
+    def turns(self) -> bool:
+        """Whether the angular velocity changes."""
+        return self.regime in ("periodic", "separatrix")
+
+    def angular_velocity(self, times: Sequence[Number], digits: int) -> Rows:
+        """Return the angular velocity in body axes, n rows of 3 numerals.
+
+        Each component has its own `digits` significant digits. Along principal axes this is always possible: at
+        t = 0 the components are the given rational numbers, and at any other time a component that is not identically zero
+        is a transcendental number (Schneider; Lindemann where the functions are elementary), so some precision tells it
+        from zero.
+
+        Raises
+        ------
+        InvalidParameter
+            For digits outside 16 to 1000, or times that are no numbers.
+        BudgetExceeded
+            For more digits than one question may have.
+        """
+        check_digits(digits, 3 * len(times))
+        start = [decimal_of_fraction(w, digits) for w in self.angular_velocity_at_start]
+        instants = exact_numbers(times, ("times",))
+        if not self.turns:
+            return [list(start) for _ in instants]
+
+        def evaluators() -> Callable[[int], list[str]]:
+            motion = TurningMotion(self.start)
+            floor = None if self.inertia.diagonal else floor_below(motion.largest_rate, digits)
+            moments = [enclosed(t) for t in instants]
+
+            def row(i: int) -> list[str]:
+                return decimals(motion.angular_velocity(moments[i]), digits, floor) if instants[i] else list(start)
+
+            return row
+
+        return each_determined(evaluators, len(instants), self._bits(digits, instants))
+
+    def attitude(self, times: Sequence[Number], digits: int, attitude: Sequence[Number] = IDENTITY) -> Rows:
+        """Return unit quaternions [w, x, y, z], body to space, n rows of 4 numerals, continuous in time from t = 0.
+
+        Parameters
+        ----------
+        times : sequence of n numbers
+            (s).
+        digits : int
+        attitude : sequence of 4 numbers
+            At t = 0; any length but zero, normalised here.
+        """
+        check_digits(digits, 4 * len(times))
+        instants = exact_numbers(times, ("times",))
+        given = exact_numbers(attitude, ("attitude",), 4)
+        if not any(given):
+            raise InvalidParameter(
+                "attitude", "not be zero", remedy="give a unit quaternion [w, x, y, z]; [1, 0, 0, 0] is no turn"
+            )
+
+        def evaluators() -> Callable[[int], list[str]]:
+            at = self.attitudes(given)
+            moments = [enclosed(t) for t in instants]
+            return lambda i: decimals(at(moments[i]), digits, -FLOOR_IN_DIGITS * digits)
+
+        return each_determined(evaluators, len(instants), self._bits(digits, instants, turning=True))
+
+    def attitudes(self, attitude: Sequence[Fraction]) -> Callable[[arb], QuaternionBalls]:
+        """Return the attitude as a function of time, in balls of the precision that holds now."""
+        norm = enclosed(sum((x * x for x in attitude), Fraction(0))).sqrt()
+        q0 = _four([enclosed(x) / norm for x in attitude])
+        if not self.turns:
+            return lambda time: product(q0, self._steady_turn(time))
+        motion = TurningMotion(self.start)
+        first = motion.turned(arb(0))
+        columns = []
+        for k in range(4):
+            unit = [arb(0)] * 4
+            unit[k] = arb(1)
+            w, x, y, z = product((first[0], -first[1], -first[2], -first[3]), _four(unit))
+            columns.append(product(q0, (w, *motion.in_body((x, y, z)))))
+        rows = list(zip(*columns, strict=True))
+
+        def at(time: arb) -> QuaternionBalls:
+            a, b, c, d = motion.turned(time)
+            w, x, y, z = (row[0] * a + row[1] * b + row[2] * c + row[3] * d for row in rows)
+            return w, x, y, z
+
+        return at
+
+    def _steady_turn(self, time: arb) -> QuaternionBalls:
+        square = sum((w * w for w in self.angular_velocity_at_start), Fraction(0))
+        if square == 0:
+            return arb(1), arb(0), arb(0), arb(0)
+        rate = enclosed(square).sqrt()
+        sin, cos = (rate * time / 2).sin_cos()
+        x, y, z = (sin * enclosed(w) / rate for w in self.angular_velocity_at_start)
+        return cos, x, y, z
+
+    def energy(self, digits: int) -> str:
+        """Return the kinetic energy (J)."""
+        return decimal_of_fraction(self.start.twice_energy / 2, check_digits(digits))
+
+    def angular_momentum(self, digits: int) -> str:
+        """Return the magnitude of the angular momentum (kg m^2/s)."""
+        return self._number(lambda: enclosed(self.start.squared_momentum).sqrt(), digits)
+
+    def angular_momentum_in_body(self, digits: int) -> list[str]:
+        """Return the angular momentum at t = 0 in body axes (kg m^2/s)."""
+        return [decimal_of_fraction(m, check_digits(digits)) for m in self.start.momentum]
+
+    def period(self, digits: int) -> str | None:
+        """Return the period of the angular velocity in the body, 4K/p (s); None if it is constant or on the separatrix."""
+        return self._number(lambda: _of(self.start).period, digits) if self.regime == "periodic" else None
+
+    def flip_interval(self, digits: int) -> str | None:
+        """Return the time between sign changes of the middle component, 2K/p (s); None where no such axis is left."""
+        if self.regime != "periodic" or self.inertia.equal_moments > 1:
+            return None
+        return self._number(lambda: 1 / _of(self.start).frequency, digits)
+
+    def enclosures(self, times: Sequence[Number], digits: int) -> list[tuple[arb, arb, arb]]:
+        """Return balls around the angular velocity, each of a radius below 10^-digits of the largest rate.
+
+        They are exact about what they say at whatever precision they are used.
+        """
+        instants = exact_numbers(times, ("times",))
+
+        def evaluators() -> Callable[[int], tuple[arb, arb, arb]]:
+            if not self.turns:
+                x, y, z = (enclosed(w) for w in self.angular_velocity_at_start)
+                return lambda i: (x, y, z)
+            motion = TurningMotion(self.start)
+            floor = floor_below(motion.largest_rate, digits) + digits * (FLOOR_IN_DIGITS - 1)
+
+            def row(i: int) -> tuple[arb, arb, arb]:
+                w = motion.angular_velocity(enclosed(instants[i]))
+                decimals(w, 1, floor)
+                return w
+
+            return row
+
+        return each_determined(evaluators, len(instants), self._bits(digits, instants))
+
+    def _number(self, evaluate: Callable[[], arb | None], digits: int) -> str:
+        check_digits(digits)
+
+        def written() -> str:
+            ball = evaluate()
+            assert ball is not None
+            return decimal(ball, digits)
+
+        return determined(written, self._bits(digits, ()))
+
+    def _bits(self, digits: int, times: Sequence[Fraction], *, turning: bool = False) -> int:
+        """Return a first working precision: a phase that has k bits before the point loses as many behind it."""
+        farthest = max((abs(t) for t in times), default=Fraction(0))
+        if farthest == 0:
+            return bits_for(digits)
+        # p and the rate of precession are at most the largest rate times the ratio of the moments.
+        fastest = max(abs(w) for w in self.angular_velocity_at_start)
+        radians = farthest * fastest
+        magnitude = radians.numerator.bit_length() - radians.denominator.bit_length() + 2
+        return bits_for(digits, magnitude)
+
+
+def _of(start: ExactStart) -> TurningMotion:
+    return TurningMotion(start)
+
+
+def product(p: QuaternionBalls, q: QuaternionBalls) -> QuaternionBalls:
+    """Return Hamilton's product of two quaternions [w, x, y, z]."""
+    a, b, c, d = p
+    w, x, y, z = q
+    return (
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    )
+
+
+def _four(values: list[arb]) -> QuaternionBalls:
+    w, x, y, z = values
+    return w, x, y, z

@@ -1,0 +1,221 @@
+"""A free rotation that turns, as balls of one precision: its constants, its samples, its attitude.
+
+In the right-handed frame (x, y, z) with z along the circled axis d, towards the spin, and x along the other extreme c,
+
+    w_x = A_c cn u,   w_y = g A_b sn u,   w_z = A_d dn u,   u = u0 + p t,
+
+g = 1 where d has the largest moment and -1 where it has the smallest. The attitude is Rz(psi) P, P the shortest arc that
+takes the angular momentum to z, which never is singular because M_z > 0; and psi' = (2E + L w_z)/(L + M_z), an elliptic
+function of u with poles at 2iK' +- i eta, dn(i eta) = L/M_z(u=0), so that
+
+    psi = kappa u + 2 g arg theta4(z - i eta/2K | 2i K'/K),   z = u/2K,
+
+in which kappa follows from psi' at u = 0. On the separatrix psi = (L/B)(t - t0) - 2 g arctan(h tanh(u/2)) with
+h = M_x/(L + M_z) at u = 0. Half of psi is all that a quaternion needs, and neither form has a branch to choose.
+
+References
+----------
+E. T. Whittaker, "A Treatise on the Analytical Dynamics of Particles and Rigid Bodies", 4th ed., sections 69-71, for the
+quotients of theta functions. NIST Digital Library of Mathematical Functions, 22.16 and 20.5 for their logarithms.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+from flint import arb
+
+from core.certified.decimals import Undetermined
+from core.certified.elliptic_functions import ONE, ZERO, EllipticFunctions, PhaseOfTheta, carlson_rf, split
+from core.certified.exact_inputs import enclosed
+from core.certified.exact_start import Balls, ExactStart
+
+QuaternionBalls = tuple[arb, arb, arb, arb]
+
+
+class TurningMotion:
+    """The constants of one motion at the precision at which it was built.
+
+    Parameters
+    ----------
+    start : ExactStart
+        Of regime ``"periodic"`` or ``"separatrix"``.
+
+    Raises
+    ------
+    Undetermined
+        If the precision does not tell what the constants are.
+    """
+
+    def __init__(self, start: ExactStart) -> None:
+        state = start.principal_state()
+        self.start, self.side, self.axes = start, start.side or -1, state.axes
+        low, middle, high = self.moments = state.moments
+        ab, bc, ac = state.gaps
+        d, c = (2, 0) if self.side > 0 else (0, 2)
+        self.circled, self.other = d, c
+        bd, cb = (bc, ab) if d == 2 else (ab, bc)
+        wa, wb, wc = (w * w for w in state.rates)
+        # L^2 - 2E I of the circled and of the other extreme, as sums of terms of one sign.
+        if d == 2:
+            X, Y = low * ac * wa + middle * bc * wb, high * ac * wc + middle * ab * wb
+        else:
+            X, Y = high * ac * wc + middle * ab * wb, low * ac * wa + middle * bc * wb
+        I_c, I_d = self.moments[c], self.moments[d]
+        self.A_c, self.A_b = (X / (I_c * ac)).sqrt(), (X / (middle * bd)).sqrt()
+        self.A_d = (Y / (I_d * ac)).sqrt()
+        self.p = (bd * Y / (low * middle * high)).sqrt()
+        self.m = cb * X / (bd * Y)
+        self.m1 = ac * self._difference() / (bd * Y)
+        self.L, self.twice_energy = enclosed(start.squared_momentum).sqrt(), enclosed(start.twice_energy)
+        # x and z along or against their principal axes; y completes them.
+        towards_d = _sign(state.rates[d])
+        towards_c = _sign(state.rates[c]) if self.separatrix else 1
+        self.signs = (towards_c, towards_c * towards_d * (1 if d == 2 else -1), towards_d)
+        sx, sy, sz = self.signs
+        sn, cn, dn = (
+            self.side * sy * state.rates[1] / self.A_b,
+            sx * state.rates[c] / self.A_c,
+            sz * state.rates[d] / self.A_d,
+        )
+        if self.separatrix:
+            self.u0 = sn * carlson_rf(cn * cn, cn * cn, ONE)
+            self.z0, self.frequency = self.u0, self.p
+        else:
+            self.functions = EllipticFunctions(self.m, self.m1)
+            half = 2 * self.functions.quarter
+            self.u0 = self.functions.argument(sn, cn, dn)
+            self.z0, self.frequency = self.u0 / half, self.p / half
+
+    def _difference(self) -> arb:
+        exact = self.start.middle_difference
+        if exact is not None:
+            return enclosed(abs(exact))
+        if self.start.side == 0:
+            return ZERO
+        found = abs(enclosed(self.start.squared_momentum) - enclosed(self.start.twice_energy) * self.moments[1])
+        if not found > 0:
+            raise Undetermined
+        return found
+
+    @property
+    def separatrix(self) -> bool:
+        """Whether the motion tends to the middle axis and never returns."""
+        return self.start.side == 0
+
+    @property
+    def largest_rate(self) -> arb:
+        """Largest norm of the angular velocity in the whole motion."""
+        first = (self.A_c * self.A_c + self.A_d * self.A_d).sqrt()
+        second = (self.A_b * self.A_b + self.m1 * self.A_d * self.A_d).sqrt()
+        return first if first.mid() >= second.mid() else second
+
+    def phase(self, time: arb) -> arb:
+        """Return the phase in half periods of the elliptic functions; on the separatrix, u itself."""
+        return self.z0 + self.frequency * time
+
+    def in_frame(self, phase: arb) -> Balls:
+        """Return the angular velocity in the frame (x, y, z)."""
+        if self.separatrix:
+            sech, tanh = phase.sech(), phase.tanh()
+            return self.A_c * sech, self.side * self.A_b * tanh, self.A_d * sech
+        sn, cn, dn = self.functions.at(phase)
+        return self.A_c * cn, self.side * self.A_b * sn, self.A_d * dn
+
+    def along_principal_axes(self, v: Balls) -> Balls:
+        """Return a vector of the frame along the ascending principal axes."""
+        x, y, z = (s * entry for s, entry in zip(self.signs, v, strict=True))
+        return (x, y, z) if self.circled == 2 else (z, y, x)
+
+    def in_body(self, v: Balls) -> Balls:
+        """Return a vector of the frame in body axes."""
+        a, b, c = self.along_principal_axes(v)
+        if self.start.inertia.diagonal:
+            i, j, k = self.start.order
+            out = [a, b, c]
+            out[i], out[j], out[k] = a, b, c * self.axes[k][2]
+            return out[0], out[1], out[2]
+        x, y, z = (row[0] * a + row[1] * b + row[2] * c for row in self.axes)
+        return x, y, z
+
+    def angular_velocity(self, time: arb) -> Balls:
+        """Return the angular velocity in body axes."""
+        return self.in_body(self.in_frame(self.phase(time)))
+
+    @property
+    def period(self) -> arb | None:
+        """4K/p, None on the separatrix."""
+        return None if self.separatrix else 2 / self.frequency
+
+    @cached_property
+    def _at_zero(self) -> tuple[arb, arb]:
+        """M_x and M_z at u = 0."""
+        return self.moments[self.other] * self.A_c, self.moments[self.circled] * self.A_d
+
+    @cached_property
+    def _phase_of_theta(self) -> PhaseOfTheta | None:
+        if self.m.is_zero():
+            return None
+        x, z = self._at_zero
+        tangent = x * x / (self.m * z * z)
+        over = 1 / (1 + tangent)
+        eta = (tangent * over).sqrt() * carlson_rf(over, (1 + self.m * tangent) * over, ONE)
+        return PhaseOfTheta(self.functions, eta)
+
+    @cached_property
+    def psi_per_half_period(self) -> arb:
+        """By how much psi grows while u grows by 2K."""
+        _, z = self._at_zero
+        half = 2 * self.functions.quarter
+        uniform = (self.twice_energy + self.L * self.A_d) / (self.p * (self.L + z)) * half
+        if self._phase_of_theta is None:
+            return uniform
+        return uniform - 2 * self.side * self._phase_of_theta.rate()
+
+    @property
+    def precession_per_period(self) -> arb | None:
+        """Angle by which axis d turns about the angular momentum in one period, not reduced; None on the separatrix."""
+        if self.separatrix:
+            return None
+        # psi differs from Euler's angle by the turn that P makes with the momentum, once a period.
+        return 2 * self.psi_per_half_period + 2 * self.side * arb.pi()
+
+    @cached_property
+    def _half_turns(self) -> arb:
+        return self.psi_per_half_period / (2 * arb.pi())
+
+    def _half_psi(self, phase: arb) -> tuple[arb, arb]:
+        """Return cosine and sine of psi/2, up to a common positive factor."""
+        if self.separatrix:
+            x, z = self._at_zero
+            s, c = (phase / 2).sinh_cosh()
+            real, imag = c, -self.side * x / (self.L + z) * s
+            sin, cos = (self.L / (2 * self.moments[1] * self.p) * phase).sin_cos()
+        else:
+            sin, cos = (self._half_turns * phase).sin_cos_pi()
+            if self._phase_of_theta is None:
+                return cos, sin
+            _, r = split(phase)
+            real, imag = self._phase_of_theta.at(r)
+            imag = self.side * imag
+        return cos * real - sin * imag, sin * real + cos * imag
+
+    def turned(self, time: arb) -> QuaternionBalls:
+        """Return the attitude Rz(psi) P of the frame, as a unit quaternion [w, x, y, z]."""
+        phase = self.phase(time)
+        v = self.in_frame(phase)
+        mx, my, mz = self.moments[self.other] * v[0], self.moments[1] * v[1], self.moments[self.circled] * v[2]
+        c, s = self._half_psi(phase)
+        total = self.L + mz
+        q = (c * total, c * my + s * mx, s * my - c * mx, s * total)
+        over = 1 / ((c * c + s * s) * (2 * self.L * total)).sqrt()
+        w, x, y, z = (entry * over for entry in q)
+        return w, x, y, z
+
+
+def _sign(ball: arb) -> int:
+    if ball > 0:
+        return 1
+    if ball < 0:
+        return -1
+    raise Undetermined

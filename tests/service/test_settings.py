@@ -1,0 +1,43 @@
+import pytest
+from pydantic import ValidationError
+
+from service.__main__ import main, parser
+from service.settings import Settings
+
+
+@pytest.mark.parametrize("name", Settings.model_fields)
+def test_every_setting_is_documented_in_the_help(name: str) -> None:
+    field = Settings.model_fields[name]
+    assert field.description is not None
+    assert field.description.endswith(".")
+    assert f"POLHODE_{name.upper()}" in parser().format_help()
+    assert field.description in parser().format_help()
+
+
+def test_settings_come_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("POLHODE_MAX_SAMPLES", "17")
+    monkeypatch.setenv("POLHODE_LOG_REQUESTS", "all")
+    settings = Settings()
+    assert (settings.max_samples, settings.log_requests) == (17, "all")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("PORT", "70000"), ("MAX_SAMPLES", "0"), ("LOG_LEVEL", "loud"), ("PORT", "x")]
+)
+def test_settings_out_of_range_stop_the_start(monkeypatch: pytest.MonkeyPatch, name: str, value: str) -> None:
+    monkeypatch.setenv(f"POLHODE_{name}", value)
+    with pytest.raises(ValidationError):
+        Settings()
+
+
+def test_defaults_are_those_of_the_house() -> None:
+    settings = Settings()
+    assert (settings.host, settings.port, settings.workers) == ("127.0.0.1", 8000, 1)
+
+
+def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
+    for option, text in (("--help", "POLHODE_PORT"), ("--version", "0.1.0")):
+        with pytest.raises(SystemExit) as stop:
+            main([option])
+        assert stop.value.code == 0
+        assert text in capsys.readouterr().out
