@@ -130,12 +130,12 @@ class Lattice(NamedTuple):
     scale: float
     """What a quarter period is in the argument of the theta functions: pi/2, or pi K/2K'."""
     scale_tail: float
-    even_sn: float
-    even_cn: float
-    even_dn: float
-    odd_sn: float
-    odd_cn: float
-    odd_dn: float
+    even_sn: Pair
+    even_cn: Pair
+    even_dn: Pair
+    odd_sn: Pair
+    odd_cn: Pair
+    odd_dn: Pair
     """Constants in front of the quotients near even and odd quarter periods."""
 
 
@@ -167,17 +167,18 @@ def lattice(kh: float, kl: float, ch: float, cl: float) -> Lattice:
     if circular:
         if kh < 1e-40:
             # q = m/16 is below the last bit of everything it is added to.
-            return Lattice(True, Kh, Kl, 0.0, 0.0, halfpi_h, halfpi_l, 1.0, 1.0, 1.0, 1.0, -1.0, 1.0)
+            one = (1.0, 0.0)
+            return Lattice(True, Kh, Kl, 0.0, 0.0, halfpi_h, halfpi_l, one, one, one, one, (-1.0, 0.0), one)
         ah, al = agm_dd(kh, kl)
         # pi K'/K = pi agm(1, k')/agm(1, k)
         rh, rl = dd_div(gh, gl, ah, al)
         rh, rl = dd_mul(rh, rl, PI[0], PI[1])
         qh, ql = dd_exp(-rh, -rl)
         t3h, t3l, t4h, t4l, ph, pl = theta_constants(qh, ql)
-        s, _ = dd_div(t3h, t3l, ph, pl)
-        c, _ = dd_div(t4h, t4l, ph, pl)
-        d, _ = dd_div(t4h, t4l, t3h, t3l)
-        return Lattice(True, Kh, Kl, qh, math.sqrt(qh), halfpi_h, halfpi_l, s, c, d, s, -c, d)
+        s = dd_div(t3h, t3l, ph, pl)
+        c = dd_div(t4h, t4l, ph, pl)
+        d = dd_div(t4h, t4l, t3h, t3l)
+        return Lattice(True, Kh, Kl, qh, math.sqrt(qh), halfpi_h, halfpi_l, s, c, d, s, (-c[0], -c[1]), d)
     ah, al = agm_dd(kh, kl)
     rh, rl = dd_div(ah, al, gh, gl)
     lh, ll = dd_mul(rh, rl, halfpi_h, halfpi_l)
@@ -186,14 +187,14 @@ def lattice(kh: float, kl: float, ch: float, cl: float) -> Lattice:
         qh, ql = dd_exp(-2.0 * lh, -2.0 * ll)
     root, _ = dd_exp(-lh, -ll)
     t3h, t3l, t4h, t4l, ph, pl = theta_constants(qh, ql)
-    sn, _ = dd_div(t3h, t3l, t4h, t4l)
-    cn, _ = dd_div(ph, pl, t4h, t4l)
-    dn, _ = dd_div(ph, pl, t3h, t3l)
+    sn = dd_div(t3h, t3l, t4h, t4l)
+    cn = dd_div(ph, pl, t4h, t4l)
+    dn = dd_div(ph, pl, t3h, t3l)
     # Near odd quarter periods: sn = cd, cn = -k' sd, dn = k' nd of the distance.
     th, tl = dd_div(t3h, t3l, ph, pl)
     th, tl = dd_mul(th, tl, ch, cl)
-    odd_cn, _ = dd_mul(th, tl, sn, 0.0)
-    return Lattice(False, Kh, Kl, qh, root, lh, ll, sn, cn, dn, sn, -odd_cn, th)
+    odd_cn = dd_mul(-th, -tl, sn[0], sn[1])
+    return Lattice(False, Kh, Kl, qh, root, lh, ll, sn, cn, dn, sn, odd_cn, (th, tl))
 
 
 @kernel()
@@ -257,27 +258,30 @@ def sin_cos_quarter(r: float, r_tail: float) -> Pair:
 def sinh_cosh(xh: float, xl: float) -> Pair:
     """Return sinh and cosh of xh + xl for |xh| < 700, both with full relative precision."""
     n = fma(xh, 1.4426950408889634, 6755399441055744.0) - 6755399441055744.0
-    r = fma(-n, 0.6931471805599453, xh)
-    r += fma(-n, 2.3190468138462996e-17, xl)
+    # The first difference is exact: a multiple of 2^-54 below 0.35.
+    near = fma(-n, 0.6931471805599453, xh)
+    tail = fma(-n, 2.3190468138462996e-17, xl)
+    r = near + tail
+    tail += near - r
     w = r * r
     p = fma(w, 1.6059043836821613e-10, 2.505210838544172e-08)
     p = fma(w, p, 2.7557319223985893e-06)
     p = fma(w, p, 0.0001984126984126984)
     p = fma(w, p, 0.008333333333333333)
     p = fma(w, p, 0.16666666666666666)
-    s = fma(r * w, p, r)
-    p = fma(w, 1.1470745597729725e-11, 2.08767569878681e-09)
-    p = fma(w, p, 2.755731922398589e-07)
+    # sinh r = r + s, cosh r = 1 + c
+    s = fma(r * w, p, tail)
+    p = fma(w, 2.08767569878681e-09, 2.755731922398589e-07)
     p = fma(w, p, 2.48015873015873e-05)
     p = fma(w, p, 0.001388888888888889)
     p = fma(w, p, 0.041666666666666664)
     p = fma(w, p, 0.5)
-    c = w * p
+    c = fma(w, p, r * tail)
     k = int(n)
     up = 0.5 * double_from_bits((k + 1023) << 52)
     down = 0.5 * double_from_bits((1023 - k) << 52)
     sn, cn = up - down, up + down
-    return sn + fma(sn, c, cn * s), cn + fma(cn, c, sn * s)
+    return sn + fma(cn, r, fma(sn, c, cn * s)), cn + fma(sn, r, fma(cn, c, sn * s))
 
 
 @kernel()
@@ -292,11 +296,12 @@ def theta_parts(circular: bool, nome: float, root_nome: float, s: float, c: floa
     q2 = q * q
     q4 = q2 * q2
     w = y * y
-    p_even = fma(w, fma(-q4 * q4, q2, q4), 1.0 - fma(q4, q2, q2))
+    # Each series is 1 + (what is small): one rounding of full size.
+    p_even = fma(w, fma(-q4 * q4, q2, q4), -fma(q4, q2, q2))
     p_odd = y * fma(-q4 * q4 * q, w, fma(2.0 * q4 * q4, q2 * q, q4 * q - q))
-    c_even = fma(w, q2, fma(-2.0, q4, 1.0))
+    c_even = fma(w, q2, -2.0 * q4)
     c_odd = y * fma(w, q4 * q2, fma(-3.0 * q4, q4, 1.0))
-    return s * (p_even + p_odd), c * (p_even - p_odd), c_even + c_odd, c_even - c_odd
+    return fma(s, p_even + p_odd, s), fma(c, p_even - p_odd, c), 1.0 + (c_even + c_odd), 1.0 + (c_even - c_odd)
 
 
 @kernel()
@@ -308,17 +313,17 @@ def jacobi_at(lat: Lattice, n: float, r: float, r_tail: float) -> tuple[float, f
         S, C, D3, D4 = theta_parts(True, lat.nome, lat.root_nome, s, c)
         if odd:
             over = 1.0 / D3
-            return sign * lat.odd_sn * C * over, sign * lat.odd_cn * S * over, lat.odd_dn * D4 * over
+            return sign * lat.odd_sn[0] * C * over, sign * lat.odd_cn[0] * S * over, lat.odd_dn[0] * D4 * over
         over = 1.0 / D4
-        return sign * lat.even_sn * S * over, sign * lat.even_cn * C * over, lat.even_dn * D3 * over
+        return sign * lat.even_sn[0] * S * over, sign * lat.even_cn[0] * C * over, lat.even_dn[0] * D3 * over
     xh, xl = two_prod(r, lat.scale)
     s, c = sinh_cosh(xh, xl + fma(r, lat.scale_tail, r_tail * lat.scale))
     S, C, D3, D4 = theta_parts(False, lat.nome, lat.root_nome, s, c)
     if odd:
         over = 1.0 / D3
-        return sign * lat.odd_sn * D4 * over, sign * lat.odd_cn * S * over, lat.odd_dn * C * over
+        return sign * lat.odd_sn[0] * D4 * over, sign * lat.odd_cn[0] * S * over, lat.odd_dn[0] * C * over
     over = 1.0 / C
-    return sign * lat.even_sn * S * over, sign * lat.even_cn * D4 * over, lat.even_dn * D3 * over
+    return sign * lat.even_sn[0] * S * over, sign * lat.even_cn[0] * D4 * over, lat.even_dn[0] * D3 * over
 
 
 @kernel()

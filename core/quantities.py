@@ -127,8 +127,10 @@ class Rows:
         try:
             array = np.array(flat, dtype=np.int64 if self.whole else np.float64)
         except OverflowError:
-            i = next(i for i, entry in enumerate(flat) if abs(entry) > 1e308)
-            raise InvalidParameter((*path, *self._place(i)), "be within the range of doubles") from None
+            limit = 2**63 - 1 if self.whole else 10**308
+            i = next(i for i, entry in enumerate(flat) if type(entry) is int and abs(entry) > limit)
+            kind = "64-bit integers" if self.whole else "doubles"
+            raise InvalidParameter((*path, *self._place(i)), f"be within the range of {kind}") from None
         if not self._inside(array):
             for i, entry in enumerate(flat):
                 self.quantity.check((*path, *self._place(i)), entry)
@@ -140,8 +142,10 @@ class Rows:
         return (i // self.width, i % self.width) if self.width else (i,)
 
     def _inside(self, array: NDArray[Any]) -> bool:
+        if not array.size:
+            return True
         q = self.quantity
-        low, high = float(array.min(initial=inf)), float(array.max(initial=-inf))
+        low, high = float(array.min()), float(array.max())
         return (
             isfinite(low)
             and isfinite(high)

@@ -38,7 +38,7 @@ from core.integration.system import Floats, System
 
 STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
 TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))
-SCIPY_TOLERANCES = tuple(10.0**-k for k in range(3, 12, 2))
+SCIPY_TOLERANCES = tuple(10.0**-k for k in range(3, 10, 2))
 LARGEST_FITTED = 0.1
 """Above this the error has not yet begun to fall with its order."""
 ABOVE_FLOOR = 10.0
@@ -266,7 +266,7 @@ def _measure(
 def _curve(kind: str, measurements: tuple[Measurement, ...]) -> Curve:
     order = measurements[0].method.order
     points = [(one.steps, one.error) for one in measurements if one.error is not None and one.steps > 0]
-    floor = _floor([error for _, error in points])
+    floor = _floor(points, order)
     lowest = ABOVE_FLOOR * floor if floor is not None else 0.0
     fitted = [(steps, error) for steps, error in points if lowest < error < LARGEST_FITTED]
     slope = None
@@ -276,12 +276,16 @@ def _curve(kind: str, measurements: tuple[Measurement, ...]) -> Curve:
     return Curve(kind, order, slope, floor, measurements)
 
 
-def _floor(errors: list[float]) -> float | None:
-    """Return the smallest of errors listed by growing work, if the most work brought none below half of the others."""
-    if len(errors) < 2:
+def _floor(points: list[tuple[int, float]], order: int | None) -> float | None:
+    """Return the smallest error if the last (steps, error), the points being listed by steps, no longer falls.
+
+    It should fall with the order; it is taken to have stopped where it does not do so with half of it.
+    """
+    if len(points) < 2 or points[-1][1] > LARGEST_FITTED:
         return None
-    least = min(errors[:-1])
-    return min(errors) if errors[-1] > 0.5 * least else None
+    (steps, error), (last_steps, last_error) = min(points[:-1], key=lambda point: point[1]), points[-1]
+    expected = (steps / last_steps) ** ((order or 1) / 2)
+    return min(error, last_error) if last_error > expected * error else None
 
 
 def _recommended(measurements: Sequence[Measurement], accuracy: float) -> Recommendation:

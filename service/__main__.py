@@ -58,6 +58,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             log_config=None,
             access_log=False,
             server_header=False,
+            # The address of the client is not used, so headers of proxies need not be read.
+            proxy_headers=False,
             timeout_graceful_shutdown=settings.shutdown_seconds,
             timeout_keep_alive=15,
             h11_max_incomplete_event_size=65536,

@@ -6,7 +6,6 @@ A double is a rational number, and mass properties of solids and of their assemb
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -23,32 +22,63 @@ Matrix = Sequence[Sequence[Fraction]]
 PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 
 
+SMALLEST = 2.0**-1022
+"""Below this a double has fewer than 53 bits."""
+
+
 def pair(number: Fraction) -> tuple[float, float]:
     """Return the nearest double and the nearest double to what is then missing.
 
     Raises
     ------
     InvalidParameter
-        If the number is too large for a double, or not zero and too small for one.
+        If the number is too large for a double.
     """
     try:
         value = float(number)
     except OverflowError:
-        value = math.inf
-    if not math.isfinite(value) or (value == 0.0 and number != 0):
-        raise InvalidParameter(
-            (),
-            "have mass, centre of mass and moments of inertia within the range of doubles, 5e-324 to 1.8e308",
-            remedy="use units in which the numbers are nearer to one",
-        )
+        raise _out_of_range() from None
     return value, float(number - Fraction(value))
 
 
-def pairs(numbers: Vector | Matrix) -> tuple[Floats, Floats]:
-    """Return values and tails of a vector, shape (3,), or a matrix, shape (3, 3), as arrays that cannot be written."""
-    shape = (3, 3) if isinstance(numbers[0], Sequence) else (3,)
-    flat = [x for row in numbers for x in row] if isinstance(numbers[0], Sequence) else list(numbers)  # type: ignore[union-attr, arg-type]
-    value, tail = np.array([pair(x) for x in flat]).T.reshape(2, *shape)  # type: ignore[arg-type]
+def size_pair(number: Fraction) -> tuple[float, float]:
+    """Return the same for a mass or a moment, which must not lose digits by being small.
+
+    Raises
+    ------
+    InvalidParameter
+        If the number is too large for a double, or not zero and too small for 53 bits.
+    """
+    value, tail = pair(number)
+    if number != 0 and abs(value) < SMALLEST:
+        raise _out_of_range()
+    return value, tail
+
+
+def _out_of_range() -> InvalidParameter:
+    return InvalidParameter(
+        (),
+        "have mass, centre of mass and moments of inertia within the range of doubles, 2.3e-308 to 1.8e308",
+        remedy="use units in which the numbers are nearer to one",
+    )
+
+
+def vector_pairs(numbers: Vector) -> tuple[Floats, Floats]:
+    """Return values and tails of a vector, shape (3,), as arrays that cannot be written."""
+    return _frozen([pair(x) for x in numbers], 3)
+
+
+def tensor_pairs(numbers: Matrix) -> tuple[Floats, Floats]:
+    """Return values and tails of a tensor of inertia, shape (3, 3), as arrays that cannot be written."""
+    found = [
+        size_pair(x) if i == j else pair(x) for i, row in enumerate(numbers) for j, x in enumerate(row)
+    ]  # fmt: skip
+    return _frozen(found, 3, 3)
+
+
+def _frozen(found: list[tuple[float, float]], *shape: int) -> tuple[Floats, Floats]:
+    value = np.array([v for v, _ in found]).reshape(shape)
+    tail = np.array([t for _, t in found]).reshape(shape)
     value.setflags(write=False)
     tail.setflags(write=False)
     return value, tail

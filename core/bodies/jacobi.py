@@ -48,7 +48,7 @@ def jacobi(tensor: Floats, tensor_tail: Floats) -> tuple[Floats, Floats, Floats,
     for _ in range(_SWEEPS):
         rotated = False
         for p, q in ((0, 1), (0, 2), (1, 2)):
-            h, l = a[p, q], e[p, q]
+            h, low = a[p, q], e[p, q]
             if h == 0.0:
                 continue
             if abs(h) <= _NEGLIGIBLE * math.sqrt(abs(a[p, p])) * math.sqrt(abs(a[q, q])):
@@ -57,9 +57,9 @@ def jacobi(tensor: Floats, tensor_tail: Floats) -> tuple[Floats, Floats, Floats,
             # cot(2 phi), and t = tan(phi) as the smaller root of t^2 + 2 t cot(2 phi) = 1.
             dh, dl = dd_sub(a[q, q], e[q, q], a[p, p], e[p, p])
             if abs(h) < 1e-60 * abs(dh):
-                th, tl = dd_div(h, l, dh, dl)
+                th, tl = dd_div(h, low, dh, dl)
             else:
-                ch, cl = dd_div(dh, dl, 2.0 * h, 2.0 * l)
+                ch, cl = dd_div(dh, dl, 2.0 * h, 2.0 * low)
                 sh, sl = dd_mul(ch, cl, ch, cl)
                 sh, sl = dd_add_d(sh, sl, 1.0)
                 rh, rl = dd_sqrt(sh, sl)
@@ -75,7 +75,7 @@ def jacobi(tensor: Floats, tensor_tail: Floats) -> tuple[Floats, Floats, Floats,
             sh, sl = dd_mul(th, tl, ch, cl)
             ch, cl = dd_add_d(ch, cl, 1.0)
             uh, ul = dd_div(sh, sl, ch, cl)
-            th, tl = dd_mul(th, tl, h, l)
+            th, tl = dd_mul(th, tl, h, low)
             a[p, p], e[p, p] = dd_sub(a[p, p], e[p, p], th, tl)
             a[q, q], e[q, q] = dd_add(a[q, q], e[q, q], th, tl)
             a[p, q], e[p, q] = 0.0, 0.0

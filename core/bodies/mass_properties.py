@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Literal
@@ -11,7 +11,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from core.bodies.exact import Matrix, Vector, exact_matrix, exact_vector, pair, pairs, parallel_axis
+from core.bodies.exact import (
+    Matrix,
+    Vector,
+    exact_matrix,
+    exact_vector,
+    parallel_axis,
+    size_pair,
+    tensor_pairs,
+    vector_pairs,
+)
 from core.bodies.principal_inertia import ZEROS, PrincipalInertia, Symmetry
 from core.bodies.validity import Condition, Validity
 from core.errors import NotApplicable
@@ -27,8 +36,8 @@ About = Literal["center-of-mass", "origin"]
 class MassProperties:
     """What the mechanics needs to know of a body.
 
-    A derived number is kept as an unevaluated sum of two doubles, value and tail, right to about 1e-30, so that rounding
-    it does not enter a motion as an error. Off-diagonal components are I_xy = -(integral of x y dm).
+    A derived number is kept as an unevaluated sum of two doubles, value and tail, right to about 1e-30, so that
+    rounding it does not enter a motion as an error. Off-diagonal components are I_xy = -(integral of x y dm).
 
     Attributes
     ----------
@@ -73,9 +82,9 @@ class MassProperties:
         InvalidParameter
             If one lies outside the range of doubles.
         """
-        m, m_tail = pair(mass)
-        c, c_tail = pairs(center_of_mass)
-        i, i_tail = pairs(inertia)
+        m, m_tail = size_pair(mass)
+        c, c_tail = vector_pairs(center_of_mass)
+        i, i_tail = tensor_pairs(inertia)
         return cls(i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions)
 
     @property
@@ -114,7 +123,7 @@ class MassProperties:
         """
         center = self.exact_center_of_mass
         d = [Fraction(float(p)) - c for p, c in zip(point, center, strict=True)]
-        return pairs(parallel_axis(self.exact_mass, d, self.exact_inertia))
+        return tensor_pairs(parallel_axis(self.exact_mass, d, self.exact_inertia))
 
     @cached_property
     def about_origin(self) -> tuple[Floats, Floats] | None:
@@ -148,10 +157,27 @@ class MassProperties:
     @cached_property
     def validity(self) -> Validity:
         """The validity report."""
-        mass = ()
+        mass: tuple[Condition, ...] = ()
         if self.mass is not None:
             mass = (Condition("positive-mass", self.mass > 0.0, f"the mass is {self.mass:.6g} kg"),)
         return Validity.of(self.principal, (*mass, *self.conditions))
+
+    def told(self, warnings: tuple[Notice, ...], conditions: tuple[Condition, ...] = ()) -> MassProperties:
+        """Return the same with more warnings and conditions."""
+        return replace(self, warnings=(*self.warnings, *warnings), conditions=(*self.conditions, *conditions))
+
+    def judged(self, field: str) -> MassProperties:
+        """Return the same, with a warning at `field` if no distribution of positive mass has these moments."""
+        failed = "; ".join(condition.detail for condition in self.validity.violations)
+        if not failed:
+            return self
+        notice = Notice(
+            "unphysical-inertia",
+            f"no distribution of positive mass has these moments of inertia (not so: {failed}); "
+            "the equations of motion hold for them all the same",
+            (field,),
+        )
+        return self.told((notice,))
 
 
 def diagonal(moments: Sequence[float]) -> MassProperties:

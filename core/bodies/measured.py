@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from core.bodies.exact import SMALLEST, tensor_pairs
 from core.bodies.mass_properties import About, MassProperties, diagonal
-from core.bodies.principal_inertia import EPSILON, ZEROS
-from core.errors import InvalidParameter
+from core.bodies.principal_inertia import EPSILON
+from core.bodies.validity import TOLERANCE
+from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
-from core.quantities import Coordinate, InertiaComponent, Mass, MomentOfInertia, Position, Quantity, Rows, check
+from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Quantity, Rows, check
 
 POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))
@@ -20,31 +22,7 @@ MASSES = Rows(0, Quantity("kg", above=0))
 InertiaRow = tuple[InertiaComponent, InertiaComponent, InertiaComponent]
 
 SYMMETRIC = 8.0 * EPSILON
-"""How much two components of a symmetric tensor may differ, as a share of its largest: what printing it may have lost."""
-
-
-def _unphysical(properties: MassProperties, field: str) -> MassProperties:
-    """Return the properties with a warning if no matter can have them."""
-    failed = [condition.detail for condition in properties.validity.report if not condition.holds]
-    if not failed:
-        return properties
-    notice = Notice(
-        "unphysical-inertia",
-        f"no distribution of positive mass has these moments of inertia ({'; '.join(failed)}); "
-        "the equations of motion hold for them all the same",
-        (field,),
-    )
-    return MassProperties(
-        properties.inertia,
-        properties.inertia_tail,
-        properties.mass,
-        properties.center_of_mass,
-        properties.mass_tail,
-        properties.center_of_mass_tail,
-        properties.about,
-        (*properties.warnings, notice),
-        properties.conditions,
-    )
+"""How much two components of a symmetric tensor may differ, as a share of its largest: what rounding explains."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +43,7 @@ class PrincipalMoments:
 
     def mass_properties(self) -> MassProperties:
         """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
-        return _unphysical(diagonal(self.moments), "moments")
+        return diagonal(self.moments).judged("moments")
 
 
 @dataclass(frozen=True)
@@ -90,26 +68,49 @@ class InertiaTensor:
     def __post_init__(self) -> None:
         check(self)
         size = max(abs(x) for row in self.tensor for x in row)
+        if size < SMALLEST:
+            raise InvalidParameter("tensor", f"have a component of at least {SMALLEST:.3g} kg m^2")
         for i, j in ((0, 1), (0, 2), (1, 2)):
-            if abs(self.tensor[i][j] - self.tensor[j][i]) > SYMMETRIC * size:
+            # Halved, as the difference of two doubles may exceed their range.
+            if abs(self.tensor[i][j] / 2 - self.tensor[j][i] / 2) > SYMMETRIC * size / 2:
                 raise InvalidParameter(
                     ("tensor", j, i),
                     f"equal tensor/{i}/{j}: a tensor of inertia is symmetric",
                     remedy="give I_xy = -(integral of x y dm) in both places",
                 )
-        if size == 0.0:
-            raise InvalidParameter("tensor", "not be zero")
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body."""
-        given = np.array(self.tensor)
-        inertia = np.triu(given) + np.triu(given, 1).T
+        """Return what the mechanics needs to know of the body.
+
+        Components on opposite sides of the diagonal that differ by rounding are replaced by their exact mean, with a
+        warning.
+
+        Raises
+        ------
+        UnphysicalInertia
+            If a principal moment is negative beyond rounding.
+        """
+        given = [[Fraction(x) for x in row] for row in self.tensor]
+        inertia, tail = tensor_pairs([[(given[i][j] + given[j][i]) / 2 for j in range(3)] for i in range(3)])
         center = None if self.center_of_mass is None else np.array(self.center_of_mass)
-        properties = MassProperties(inertia, ZEROS, self.mass, center, center_of_mass_tail=ZEROS[0])
-        if not properties.principal.moments[0] >= 0.0:
-            lowest = float(properties.principal.moments[0])
-            raise InvalidParameter("tensor", f"have no negative principal moment, and has {lowest:.6g} kg m^2")
-        return _unphysical(properties, "tensor")
+        properties = MassProperties(inertia, tail, self.mass, center)
+        lowest, _, highest = (float(x) for x in properties.principal.moments)
+        if lowest < -TOLERANCE * abs(highest):
+            raise UnphysicalInertia(
+                "tensor",
+                f"have no negative principal moment, and has {lowest:.6g} kg m^2",
+                remedy="check the signs of the off-diagonal components: I_xy = -(integral of x y dm)",
+            )
+        differing = max(abs(given[i][j] - given[j][i]) for i, j in ((0, 1), (0, 2), (1, 2)))
+        if differing:
+            notice = Notice(
+                "asymmetric-tensor",
+                f"components on opposite sides of the diagonal differ by up to {float(differing):.3g} kg m^2; "
+                "the mean of both was taken",
+                ("tensor",),
+            )
+            properties = properties.told((notice,))
+        return properties.judged("tensor")
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +124,8 @@ class PointMasses:
     positions : array_like, shape (n, 3)
         In body axes (m); kept as an array that cannot be written.
     about : {"center-of-mass", "origin"}
-        The point about which the body turns. A free body turns about its centre of mass; "origin" is a body pinned there.
+        The point about which the body turns. A free body turns about its centre of mass; "origin" is a body
+        pinned there.
     """
 
     masses: Mass | Annotated[Any, MASSES]
@@ -175,9 +177,4 @@ class PointMasses:
         found = MassProperties.from_exact(
             com[0] * Fraction(2) ** heavy, [x * Fraction(2) ** far for x in com[1:]], inertia
         )
-        if self.about == "center-of-mass":
-            return found
-        return MassProperties(
-            found.inertia, found.inertia_tail, found.mass, found.center_of_mass, found.mass_tail,
-            found.center_of_mass_tail, "origin", found.warnings, found.conditions,
-        )  # fmt: skip
+        return replace(found, about=self.about)

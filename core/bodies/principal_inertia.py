@@ -120,4 +120,5 @@ def _resolution(tensor: Floats, vectors: Floats) -> Floats:
     from the large components.
     """
     v = np.abs(vectors)
-    return 2.0**-102 * np.einsum("ik,ij,jk->k", v, np.abs(tensor), v)
+    share: Floats = 2.0**-102 * np.einsum("ik,ij,jk->k", v, np.abs(tensor), v)
+    return share

@@ -82,7 +82,7 @@ def decimal_of_fraction(number: Fraction, digits: int) -> str:
 
 
 def numeral(whole: int, place: int, digits: int, negative: bool) -> str:
-    """Write ``whole * 10**place``: with a plain point where the zeros that this costs are few, else with an exponent."""
+    """Write ``whole * 10**place``: with a plain point where that costs few zeros, else with an exponent."""
     if whole == 0:
         return f"0e{place}"
     written = str(whole)
@@ -101,7 +101,7 @@ def numeral(whole: int, place: int, digits: int, negative: bool) -> str:
 
 
 def place_of(size: arb) -> int:
-    """Return the place of the leading decimal digit of a positive number, as an exponent of ten, or the one beside it."""
+    """Return the exponent of ten of the leading digit of a positive number, or the one beside it."""
     mid, _, exponent = size.mid_rad_10exp(3)
     return len(str(mid)) - 1 + int(exponent)
 

@@ -25,6 +25,11 @@ def carlson_rf(x: arb, y: arb, z: arb) -> arb:
     return acb.elliptic_rf(x, y, z).real
 
 
+def _theta(z: acb, tau: acb, derivative: int = 0) -> tuple[acb, acb, acb, acb]:
+    """Return theta1 to theta4 at pi z, or their derivatives with respect to z."""
+    return acb.modular_theta(z, tau, derivative)
+
+
 def split(z: arb) -> tuple[int, arb]:
     """Return the integer nearest to a number and what remains of it, in [-1/2, 1/2]."""
     nearest = (z.mid() + HALF).mid().floor()
@@ -61,7 +66,7 @@ class EllipticFunctions:
     @cached_property
     def _factors(self) -> tuple[arb, arb, arb]:
         """Theta functions at 0 that make the quotients sn, cn, dn."""
-        _, t2, t3, t4 = (theta.real for theta in acb(0).modular_theta(self._tau))
+        _, t2, t3, t4 = (theta.real for theta in _theta(acb(0), self._tau))
         return (t3 / t2, t4 / t2, t4 / t3) if self.circular else (t3 / t4, t2 / t4, t2 / t3)
 
     @cached_property
@@ -81,10 +86,10 @@ class EllipticFunctions:
             return sn, cn, ONE
         s, c, d = self._factors
         if self.circular:
-            t1, t2, t3, t4 = acb(r).modular_theta(self._tau)
+            t1, t2, t3, t4 = _theta(acb(r), self._tau)
             over = 1 / t4.real
             return s * t1.real * over, c * t2.real * over, d * t3.real * over
-        t1, t2, t3, t4 = acb(0, r * self._turn).modular_theta(self._tau)
+        t1, t2, t3, t4 = _theta(acb(0, r * self._turn), self._tau)
         over = 1 / t2.real
         return s * t1.imag * over, c * t4.real * over, d * t3.real * over
 
@@ -123,8 +128,8 @@ class PhaseOfTheta:
 
     def _value(self, r: arb, derivative: int = 0) -> acb:
         if self._functions.circular:
-            return acb(r, -self._shift).modular_theta(self._tau, derivative)[3]
-        return acb(-self._shift, -r * self._turn).modular_theta(self._tau, derivative)[1]
+            return _theta(acb(r, -self._shift), self._tau, derivative)[3]
+        return _theta(acb(-self._shift, -r * self._turn), self._tau, derivative)[1]
 
     def at(self, r: arb) -> tuple[arb, arb]:
         """Return cosine and sine of the direction, for r in [-1/2, 1/2]."""

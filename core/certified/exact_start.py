@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from flint import arb, fmpq, fmpq_poly
 
@@ -66,7 +66,7 @@ class ExactStart:
 
     @cached_property
     def side(self) -> int:
-        """The sign of D_B = L^2 - 2E B for a motion that turns: 1 circles the axis of the largest moment, -1 the smallest.
+        """The sign of D_B = L^2 - 2E B for a motion that turns: 1 circles the axis of the largest moment, -1 the least.
 
         s = L^2/2E lies strictly between A and C, because it is the mean of the moments with weights I w^2. There
         (A - s)(B - s)(C - s) has the sign of s - B, whatever coincides: a rational number decides although the moments
@@ -126,7 +126,7 @@ class ExactStart:
         )
 
     def _symmetric(self, moments: tuple[Fraction, ...]) -> PrincipalState:
-        """Two moments coincide: the axis of the third is known exactly, up to its length, and the spin gives the second."""
+        """Two moments coincide: the axis of the third is rational, up to its length, and the spin gives another."""
         low, middle, high = moments
         pair, single = (low, high) if low == middle else (high, low)
         # I - pair has rank one, so its columns are along the axis of the single moment.
@@ -143,7 +143,10 @@ class ExactStart:
         zero = arb(0)
         if single == high:
             return PrincipalState(
-                _three([enclosed(x) for x in moments]), _gaps(moments), (plane, zero, spin), _columns(first, second, axis)
+                _three([enclosed(x) for x in moments]),
+                _gaps(moments),
+                (plane, zero, spin),
+                _columns(first, second, axis),
             )
         return PrincipalState(
             _three([enclosed(x) for x in moments]), _gaps(moments), (spin, plane, zero), _columns(axis, first, second)
@@ -169,7 +172,8 @@ class ExactStart:
         inertia = self.inertia
         coefficients = [-inertia.determinant_at(Fraction(0)), inertia.minors, -inertia.trace, Fraction(1)]
         polynomial = fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
-        found = [root.real for root, _ in polynomial.complex_roots()]
+        roots: list[Any] = polynomial.complex_roots()
+        found = [root.real for root, _ in roots]
         a, b, c = sorted(found, key=lambda root: root.mid())
         if not (a < b < c and a > 0):
             raise Undetermined

@@ -14,7 +14,7 @@ from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact_numbers
 from core.certified.exact_start import ExactStart, Regime
 from core.certified.raising import bits_for, check_digits, determined, each_determined
-from core.certified.turning_motion import QuaternionBalls, TurningMotion
+from core.certified.turning_motion import QuaternionBalls, TurningMotion, product
 from core.errors import InvalidParameter
 
 Rows = list[list[str]]
@@ -26,9 +26,10 @@ class CertifiedRotation:
     """A body that turns freely, its inertia and its start taken as exact.
 
     Every numeral that is returned has the number of significant digits asked for and differs from the true value by at
-    most 0.51 units of its last digit. ``"0"`` is exactly zero. Numbers of which it is not known beforehand whether they are zero
-    (components of an attitude, and of an angular velocity where the principal axes are not the body axes) are given at
-    most as far as twice so many digits below the largest norm: one that vanishes to there reads ``"0e-60"``.
+    most 0.51 units of its last digit. ``"0"`` is exactly zero. Numbers of which it is not known beforehand whether
+    they are zero (components of an attitude, and of an angular velocity where the principal axes are not the body
+    axes) are given at most as far as twice so many digits below the largest norm: one that vanishes to there reads
+    ``"0e-60"``.
 
     Attributes
     ----------
@@ -69,10 +70,17 @@ class CertifiedRotation:
     def angular_velocity(self, times: Sequence[Number], digits: int) -> Rows:
         """Return the angular velocity in body axes, n rows of 3 numerals.
 
-        Each component has its own `digits` significant digits. Along principal axes this is always possible: at
-        t = 0 the components are the given rational numbers, and at any other time a component that is not identically zero
-        is a transcendental number (Schneider; Lindemann where the functions are elementary), so some precision tells it
+        Each component has its own `digits` significant digits. Along principal axes this is always possible: at t = 0
+        the components are the given rational numbers, and at any other time a component that is not identically zero is
+        a transcendental number (Schneider; Lindemann where the functions are elementary), so some precision tells it
         from zero.
+
+        Parameters
+        ----------
+        times : sequence of n numbers
+            Measured from the start, of either sign, in any order (s).
+        digits : int
+            From 16 to 1000.
 
         Raises
         ------
@@ -81,72 +89,64 @@ class CertifiedRotation:
         BudgetExceeded
             For more digits than one question may have.
         """
-        check_digits(digits, 3 * len(times))
-        start = [decimal_of_fraction(w, digits) for w in self.angular_velocity_at_start]
-        instants = exact_numbers(times, ("times",))
-        if not self.turns:
-            return [list(start) for _ in instants]
-
-        def evaluators() -> Callable[[int], list[str]]:
-            motion = TurningMotion(self.start)
-            floor = None if self.inertia.diagonal else floor_below(motion.largest_rate, digits)
-            moments = [enclosed(t) for t in instants]
-
-            def row(i: int) -> list[str]:
-                return decimals(motion.angular_velocity(moments[i]), digits, floor) if instants[i] else list(start)
-
-            return row
-
-        return each_determined(evaluators, len(instants), self._bits(digits, instants))
+        return [row[0] for row in self._rows(times, digits, None)]
 
     def attitude(self, times: Sequence[Number], digits: int, attitude: Sequence[Number] = IDENTITY) -> Rows:
         """Return unit quaternions [w, x, y, z], body to space, n rows of 4 numerals, continuous in time from t = 0.
 
         Parameters
         ----------
-        times : sequence of n numbers
-            (s).
-        digits : int
         attitude : sequence of 4 numbers
             At t = 0; any length but zero, normalised here.
         """
-        check_digits(digits, 4 * len(times))
-        instants = exact_numbers(times, ("times",))
+        return self.trajectory(times, digits, attitude)[1]
+
+    def trajectory(
+        self, times: Sequence[Number], digits: int, attitude: Sequence[Number] = IDENTITY
+    ) -> tuple[Rows, Rows]:
+        """Return `angular_velocity` and `attitude` at once, at less cost than one after the other."""
         given = exact_numbers(attitude, ("attitude",), 4)
         if not any(given):
             raise InvalidParameter(
                 "attitude", "not be zero", remedy="give a unit quaternion [w, x, y, z]; [1, 0, 0, 0] is no turn"
             )
+        rows = self._rows(times, digits, given)
+        return [row[0] for row in rows], [row[1] for row in rows]
 
-        def evaluators() -> Callable[[int], list[str]]:
-            at = self.attitudes(given)
-            moments = [enclosed(t) for t in instants]
-            return lambda i: decimals(at(moments[i]), digits, -FLOOR_IN_DIGITS * digits)
+    def _rows(self, times: Sequence[Number], digits: int, attitude: Sequence[Fraction] | None) -> list[Rows]:
+        """Return for each time the numerals of the angular velocity and, if one is given, of the attitude."""
+        check_digits(digits, (3 if attitude is None else 7) * len(times))
+        instants = exact_numbers(times, ("times",))
+        start = [decimal_of_fraction(w, digits) for w in self.angular_velocity_at_start]
+        if not self.turns and attitude is None:
+            return [[list(start)] for _ in instants]
 
-        return each_determined(evaluators, len(instants), self._bits(digits, instants, turning=True))
+        def steady() -> Callable[[int], Rows]:
+            q0 = _normalised(attitude or IDENTITY)
+            points = [enclosed(t) for t in instants]
+            floor = -FLOOR_IN_DIGITS * digits
+            return lambda i: [list(start), decimals(product(q0, self._steady_turn(points[i])), digits, floor)]
 
-    def attitudes(self, attitude: Sequence[Fraction]) -> Callable[[arb], QuaternionBalls]:
-        """Return the attitude as a function of time, in balls of the precision that holds now."""
-        norm = enclosed(sum((x * x for x in attitude), Fraction(0))).sqrt()
-        q0 = _four([enclosed(x) / norm for x in attitude])
-        if not self.turns:
-            return lambda time: product(q0, self._steady_turn(time))
-        motion = TurningMotion(self.start)
-        first = motion.turned(arb(0))
-        columns = []
-        for k in range(4):
-            unit = [arb(0)] * 4
-            unit[k] = arb(1)
-            w, x, y, z = product((first[0], -first[1], -first[2], -first[3]), _four(unit))
-            columns.append(product(q0, (w, *motion.in_body((x, y, z)))))
-        rows = list(zip(*columns, strict=True))
+        def turning() -> Callable[[int], Rows]:
+            motion = TurningMotion(self.start)
+            points = [enclosed(t) for t in instants]
+            floor = None if self.inertia.diagonal else floor_below(motion.largest_rate, digits)
+            q0 = _normalised(attitude or IDENTITY)
+            turned = None if attitude is None else motion.attitudes(q0)
 
-        def at(time: arb) -> QuaternionBalls:
-            a, b, c, d = motion.turned(time)
-            w, x, y, z = (row[0] * a + row[1] * b + row[2] * c + row[3] * d for row in rows)
-            return w, x, y, z
+            def row(i: int) -> Rows:
+                phase = motion.phase(points[i])
+                v = motion.in_frame(phase)
+                rates = decimals(motion.in_body(v), digits, floor) if instants[i] else list(start)
+                if turned is None:
+                    return [rates]
+                q = turned(phase, v) if instants[i] else q0
+                return [rates, decimals(q, digits, -FLOOR_IN_DIGITS * digits)]
 
-        return at
+            return row
+
+        bits = self._bits(digits, instants)
+        return each_determined(turning if self.turns else steady, len(instants), bits)
 
     def _steady_turn(self, time: arb) -> QuaternionBalls:
         square = sum((w * w for w in self.angular_velocity_at_start), Fraction(0))
@@ -170,7 +170,7 @@ class CertifiedRotation:
         return [decimal_of_fraction(m, check_digits(digits)) for m in self.start.momentum]
 
     def period(self, digits: int) -> str | None:
-        """Return the period of the angular velocity in the body, 4K/p (s); None if it is constant or on the separatrix."""
+        """Return the period of the angular velocity in the body, 4K/p (s); None if it has none."""
         return self._number(lambda: _of(self.start).period, digits) if self.regime == "periodic" else None
 
     def flip_interval(self, digits: int) -> str | None:
@@ -212,7 +212,7 @@ class CertifiedRotation:
 
         return determined(written, self._bits(digits, ()))
 
-    def _bits(self, digits: int, times: Sequence[Fraction], *, turning: bool = False) -> int:
+    def _bits(self, digits: int, times: Sequence[Fraction]) -> int:
         """Return a first working precision: a phase that has k bits before the point loses as many behind it."""
         farthest = max((abs(t) for t in times), default=Fraction(0))
         if farthest == 0:
@@ -228,18 +228,8 @@ def _of(start: ExactStart) -> TurningMotion:
     return TurningMotion(start)
 
 
-def product(p: QuaternionBalls, q: QuaternionBalls) -> QuaternionBalls:
-    """Return Hamilton's product of two quaternions [w, x, y, z]."""
-    a, b, c, d = p
-    w, x, y, z = q
-    return (
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    )
-
-
-def _four(values: list[arb]) -> QuaternionBalls:
-    w, x, y, z = values
+def _normalised(quaternion: Sequence[Fraction | int]) -> QuaternionBalls:
+    exact = [Fraction(x) for x in quaternion]
+    norm = enclosed(sum((x * x for x in exact), Fraction(0))).sqrt()
+    w, x, y, z = (enclosed(entry) / norm for entry in exact)
     return w, x, y, z

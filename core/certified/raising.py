@@ -55,8 +55,8 @@ def determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
     """Evaluate at `bits` of working precision, and at twice as many, and so on, until no digit is in doubt.
 
     A decision that cannot be taken at one precision, and a digit that it does not determine, both raise `Undetermined`.
-    What depends on doubles or decimal strings of bounded length is decided well before the limit unless the question has
-    no answer of this form.
+    What depends on doubles or on decimal strings of bounded length is decided well before the limit, unless the
+    question has no answer of this form.
 
     Raises
     ------
@@ -72,9 +72,7 @@ def determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
     raise _too_many(bits)
 
 
-def each_determined(
-    evaluators: Callable[[], Callable[[int], Answer]], count: int, bits: int
-) -> list[Answer]:
+def each_determined(evaluators: Callable[[], Callable[[int], Answer]], count: int, bits: int) -> list[Answer]:
     """Evaluate `count` independent numbers, and again at twice the precision only those that are still in doubt.
 
     Parameters

@@ -4,13 +4,13 @@ In the right-handed frame (x, y, z) with z along the circled axis d, towards the
 
     w_x = A_c cn u,   w_y = g A_b sn u,   w_z = A_d dn u,   u = u0 + p t,
 
-g = 1 where d has the largest moment and -1 where it has the smallest. The attitude is Rz(psi) P, P the shortest arc that
-takes the angular momentum to z, which never is singular because M_z > 0; and psi' = (2E + L w_z)/(L + M_z), an elliptic
-function of u with poles at 2iK' +- i eta, dn(i eta) = L/M_z(u=0), so that
+g = 1 where d has the largest moment and -1 where it has the smallest. The attitude is Rz(psi) P, P the shortest arc
+that takes the angular momentum to z, which never is singular because M_z > 0; and psi' = (2E + L w_z)/(L + M_z), an
+elliptic function of u with poles at 2iK' +- i eta, dn(i eta) = L/M_z(u=0), so that
 
     psi = kappa u + 2 g arg theta4(z - i eta/2K | 2i K'/K),   z = u/2K,
 
-in which kappa follows from psi' at u = 0. On the separatrix psi = (L/B)(t - t0) - 2 g arctan(h tanh(u/2)) with
+in which kappa follows from psi' at u = 0. On the separatrix psi = L u/(B p) - 2 g arctan(h tanh(u/2)) with
 h = M_x/(L + M_z) at u = 0. Half of psi is all that a quaternion needs, and neither form has a branch to choose.
 
 References
@@ -21,6 +21,7 @@ quotients of theta functions. NIST Digital Library of Mathematical Functions, 22
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 from flint import arb
@@ -142,6 +143,22 @@ class TurningMotion:
         """Return the angular velocity in body axes."""
         return self.in_body(self.in_frame(self.phase(time)))
 
+    def attitudes(self, q0: QuaternionBalls) -> Callable[[arb, Balls], QuaternionBalls]:
+        """Return the attitude that is `q0` at t = 0, as a function of phase and angular velocity in the frame."""
+        w, x, y, z = self.turned(self.z0, self.in_frame(self.z0))
+        columns = []
+        for k in range(4):
+            back = product((w, -x, -y, -z), _unit_quaternion(k))
+            columns.append(product(q0, (back[0], *self.in_body(back[1:]))))
+        rows = list(zip(*columns, strict=True))
+
+        def at(phase: arb, v: Balls) -> QuaternionBalls:
+            a, b, c, d = self.turned(phase, v)
+            w, x, y, z = (row[0] * a + row[1] * b + row[2] * c + row[3] * d for row in rows)
+            return w, x, y, z
+
+        return at
+
     @property
     def period(self) -> arb | None:
         """4K/p, None on the separatrix."""
@@ -200,10 +217,8 @@ class TurningMotion:
             imag = self.side * imag
         return cos * real - sin * imag, sin * real + cos * imag
 
-    def turned(self, time: arb) -> QuaternionBalls:
-        """Return the attitude Rz(psi) P of the frame, as a unit quaternion [w, x, y, z]."""
-        phase = self.phase(time)
-        v = self.in_frame(phase)
+    def turned(self, phase: arb, v: Balls) -> QuaternionBalls:
+        """Return the attitude Rz(psi) P of the frame, as a unit quaternion, where the angular velocity in it is `v`."""
         mx, my, mz = self.moments[self.other] * v[0], self.moments[1] * v[1], self.moments[self.circled] * v[2]
         c, s = self._half_psi(phase)
         total = self.L + mz
@@ -219,3 +234,20 @@ def _sign(ball: arb) -> int:
     if ball < 0:
         return -1
     raise Undetermined
+
+
+def product(p: QuaternionBalls, q: QuaternionBalls) -> QuaternionBalls:
+    """Return Hamilton's product of two quaternions [w, x, y, z]."""
+    a, b, c, d = p
+    w, x, y, z = q
+    return (
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    )
+
+
+def _unit_quaternion(k: int) -> QuaternionBalls:
+    w, x, y, z = (arb(int(k == n)) for n in range(4))
+    return w, x, y, z

@@ -20,7 +20,7 @@ from core.rotation.constants_of_motion import PERIODIC, REST, SEPARATRIX, STEADY
 from core.rotation.precession_constants import Precession, precession_constants
 from core.rotation.quaternions import Extended, left, quaternion_of, right, unit
 
-ATTITUDE_ERROR = 12.0 * UNIT_ROUNDOFF
+ATTITUDE_ERROR = 14.0 * UNIT_ROUNDOFF
 """Bound of the error of one attitude, as the largest change of a unit vector that it turns."""
 
 

@@ -71,18 +71,18 @@ def _attitude_at(motion: Motion, pre: Precession, time: float) -> tuple[float, f
             ti = -pre.theta_s1 * s2 + pre.theta_s2 * 2.0 * s2 * c2
             extra = 0.0
             if odd:
-                sn, cn, dn = sign * lat.odd_sn * C / D3, sign * lat.odd_cn * S / D3, lat.odd_dn * D4 / D3
+                sn, cn, dn = sign * lat.odd_sn[0] * C / D3, sign * lat.odd_cn[0] * S / D3, lat.odd_dn[0] * D4 / D3
             else:
-                sn, cn, dn = sign * lat.even_sn * S / D4, sign * lat.even_cn * C / D4, lat.even_dn * D3 / D4
+                sn, cn, dn = sign * lat.even_sn[0] * S / D4, sign * lat.even_cn[0] * C / D4, lat.even_dn[0] * D3 / D4
         else:
             xh, xl = two_prod(r, lat.scale)
             xl += fma(r, lat.scale_tail, r_tail * lat.scale)
             s1, c1 = sinh_cosh(0.5 * xh, 0.5 * xl)
             S, C, D3, D4 = theta_parts(False, lat.nome, lat.root_nome, 2.0 * s1 * c1, fma(2.0 * s1, s1, 1.0))
             if odd:
-                sn, cn, dn = sign * lat.odd_sn * D4 / D3, sign * lat.odd_cn * S / D3, lat.odd_dn * C / D3
+                sn, cn, dn = sign * lat.odd_sn[0] * D4 / D3, sign * lat.odd_cn[0] * S / D3, lat.odd_dn[0] * C / D3
             else:
-                sn, cn, dn = sign * lat.even_sn * S / C, sign * lat.even_cn * D4 / C, lat.even_dn * D3 / C
+                sn, cn, dn = sign * lat.even_sn[0] * S / C, sign * lat.even_cn[0] * D4 / C, lat.even_dn[0] * D3 / C
             tr, ti = _theta_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
             extra = pre.eta * r * pre.eta_x * 0.6366197723675814
     n, r, r_tail = split_phase(pre.turn, pre.turn_tail, t, extra, 0.0)

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from core.compiled import kernel
 from core.double_double import (
+    Pair,
     Scaled,
     dd_div,
     dd_mul,
@@ -60,6 +61,17 @@ class Sensitivity(NamedTuple):
     exponent: float
 
 
+class Weights(NamedTuple):
+    """Amplitudes times the constants of the theta quotients, near even and odd quarter periods, each rounded once."""
+
+    c_even: float
+    b_even: float
+    d_even: float
+    c_odd: float
+    b_odd: float
+    d_odd: float
+
+
 class Motion(NamedTuple):
     """Constants of one motion; times in seconds, rates in rad/s, axes numbered in ascending order of moments."""
 
@@ -74,6 +86,7 @@ class Motion(NamedTuple):
     m1: float
     p: float
     lattice: Lattice
+    weights: Weights
     rate: float
     rate_tail: float
     """Quarter periods per unit of scaled time; on the separatrix, u per unit of scaled time."""
@@ -88,10 +101,29 @@ class Motion(NamedTuple):
     computed: Sensitivity
     """With u = 1: for the rounding of 2^-104 with which these constants were formed."""
 
+    def mirrored(self, c: float, b: float, d: float) -> Motion:
+        """Return the motion with the components along its three axes multiplied by signs."""
+        k = self.weights
+        weights = Weights(c * k.c_even, b * k.b_even, d * k.d_even, c * k.c_odd, b * k.b_odd, d * k.d_odd)
+        return self._replace(A_c=c * self.A_c, A_b=b * self.A_b, A_d=d * self.A_d, weights=weights)
+
 
 @kernel()
 def _no_lattice() -> Lattice:
-    return Lattice(True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    none = (0.0, 0.0)
+    return Lattice(True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, none, none, none, none, none, none)
+
+
+@kernel()
+def _weights(ac: Pair, ab: Pair, ad: Pair, lat: Lattice) -> Weights:
+    return Weights(
+        dd_mul(ac[0], ac[1], lat.even_cn[0], lat.even_cn[1])[0],
+        dd_mul(ab[0], ab[1], lat.even_sn[0], lat.even_sn[1])[0],
+        dd_mul(ad[0], ad[1], lat.even_dn[0], lat.even_dn[1])[0],
+        dd_mul(ac[0], ac[1], lat.odd_cn[0], lat.odd_cn[1])[0],
+        dd_mul(ab[0], ab[1], lat.odd_sn[0], lat.odd_sn[1])[0],
+        dd_mul(ad[0], ad[1], lat.odd_dn[0], lat.odd_dn[1])[0],
+    )
 
 
 @kernel()
@@ -107,6 +139,7 @@ def _motionless(regime: int, start: float, rate: float, quadratic: float) -> Mot
         1.0,
         0.0,
         _no_lattice(),
+        Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         0.0,
         0.0,
         1.0,
@@ -259,7 +292,8 @@ def constants_of_motion(
     ah, al = (sh, sl) if sh >= 0.0 else (-sh, -sl)
     gh, gl = (ch, cl) if ch >= 0.0 else (-ch, -cl)
 
-    amplitude_c, amplitude_b, amplitude_d = sc_pair(Ac)[0], s * sc_pair(Ab)[0], s * sc_pair(Ad)[0]
+    ac, ab, ad = sc_pair(Ac), sc_pair(Ab), sc_pair(Ad)
+    amplitude_c, amplitude_b, amplitude_d = ac[0], s * ab[0], s * ad[0]
     p_pair = sc_pair(p)
     # Sensitivities in units in which the largest moment and the largest component are of order one.
     ie = math.ldexp(1.0, -max(-1000, min(1000, IC.exponent)))
@@ -295,7 +329,8 @@ def constants_of_motion(
             1.0, 0.0, p_pair[0], 1.0, sh, ch, dh, 8.0, 0.0 if decided else missed, top,
         )  # fmt: skip
         return Motion(
-            SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0], _no_lattice(),
+            SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0],
+            _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             p.high, p.low, math.ldexp(1.0, p.exponent), 0.0, uh, ul, inherited, computed,
         )  # fmt: skip
     lat = lattice(kh, kl, k1h, k1l)
@@ -326,6 +361,7 @@ def constants_of_motion(
         m, m1, p_pair[0], lat.K, sh, ch, dh, 8.0 if decided else 8.0 * cancellation, 0.0, top,
     )  # fmt: skip
     return Motion(
-        PERIODIC, circled, amplitude_c, amplitude_b, amplitude_d, m, m1, p_pair[0], lat,
+        PERIODIC, circled, amplitude_c, amplitude_b, amplitude_d, m, m1, p_pair[0],
+        lat, _weights(ac, (s * ab[0], s * ab[1]), (s * ad[0], s * ad[1]), lat),
         f.high, f.low, math.ldexp(1.0, f.exponent), quarter, sign * rh, sign * rl, inherited, computed,
     )  # fmt: skip

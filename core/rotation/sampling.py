@@ -12,6 +12,13 @@ from core.rotation.constants_of_motion import PERIODIC, Motion
 
 
 @kernel()
+def _quotient(above: float, over: float, lost: float) -> float:
+    """Return above * over (1 + lost): one reciprocal serves three quotients, each as if divided."""
+    near = above * over
+    return fma(near, lost, near)
+
+
+@kernel()
 def _circular(
     motion: Motion,
     times: NDArray[np.float64],
@@ -22,17 +29,19 @@ def _circular(
     lat = motion.lattice
     rate, rate_tail, scale, first = motion.rate, motion.rate_tail, motion.time_scale, motion.start_quarter
     start, start_tail, q = motion.start, motion.start_tail, lat.nome
-    c_even, b_even, d_even = motion.A_c * lat.even_cn, motion.A_b * lat.even_sn, motion.A_d * lat.even_dn
-    c_odd, b_odd, d_odd = motion.A_c * lat.odd_cn, motion.A_b * lat.odd_sn, motion.A_d * lat.odd_dn
+    k = motion.weights
+    c_even, b_even, d_even, c_odd, b_odd, d_odd = k.c_even, k.b_even, k.d_even, k.c_odd, k.b_odd, k.d_odd
     for i in range(times.size):
         n, r, r_tail = split_phase(rate, rate_tail, scale * times[i], start, start_tail)
         odd, sign = half_parity(n + first)
         s, c = sin_cos_quarter(r, r_tail)
         S, C, D3, D4 = theta_parts(True, q, 0.0, s, c)
-        over = 1.0 / (D3 if odd else D4)
-        oc[i] = sign * ((c_odd if odd else c_even) * (S if odd else C)) * over
-        ob[i] = sign * ((b_odd if odd else b_even) * (C if odd else S)) * over
-        od[i] = (d_odd if odd else d_even) * (D4 if odd else D3) * over
+        below = D3 if odd else D4
+        over = 1.0 / below
+        lost = fma(-over, below, 1.0)
+        oc[i] = _quotient(sign * ((c_odd if odd else c_even) * (S if odd else C)), over, lost)
+        ob[i] = _quotient(sign * ((b_odd if odd else b_even) * (C if odd else S)), over, lost)
+        od[i] = _quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost)
 
 
 @kernel()
@@ -47,18 +56,20 @@ def _hyperbolic(
     rate, rate_tail, scale, first = motion.rate, motion.rate_tail, motion.time_scale, motion.start_quarter
     start, start_tail, q, root = motion.start, motion.start_tail, lat.nome, lat.root_nome
     quarter, quarter_tail = lat.scale, lat.scale_tail
-    c_even, b_even, d_even = motion.A_c * lat.even_cn, motion.A_b * lat.even_sn, motion.A_d * lat.even_dn
-    c_odd, b_odd, d_odd = motion.A_c * lat.odd_cn, motion.A_b * lat.odd_sn, motion.A_d * lat.odd_dn
+    k = motion.weights
+    c_even, b_even, d_even, c_odd, b_odd, d_odd = k.c_even, k.b_even, k.d_even, k.c_odd, k.b_odd, k.d_odd
     for i in range(times.size):
         n, r, r_tail = split_phase(rate, rate_tail, scale * times[i], start, start_tail)
         odd, sign = half_parity(n + first)
         xh, xl = two_prod(r, quarter)
         s, c = sinh_cosh(xh, xl + fma(r, quarter_tail, r_tail * quarter))
         S, C, D3, D4 = theta_parts(False, q, root, s, c)
-        over = 1.0 / (D3 if odd else C)
-        oc[i] = sign * ((c_odd if odd else c_even) * (S if odd else D4)) * over
-        ob[i] = sign * ((b_odd if odd else b_even) * (D4 if odd else S)) * over
-        od[i] = (d_odd if odd else d_even) * (C if odd else D3) * over
+        below = D3 if odd else C
+        over = 1.0 / below
+        lost = fma(-over, below, 1.0)
+        oc[i] = _quotient(sign * ((c_odd if odd else c_even) * (S if odd else D4)), over, lost)
+        ob[i] = _quotient(sign * ((b_odd if odd else b_even) * (D4 if odd else S)), over, lost)
+        od[i] = _quotient((d_odd if odd else d_even) * (C if odd else D3), over, lost)
 
 
 @kernel()

@@ -232,8 +232,9 @@ class ChainMotion(Motion):
         x = x0 + (v0 * single + square)
         v = v0 * cosh + a0 * single
         few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
-        tiny = SMALLEST * (1.0 + np.abs(t)) ** 2 * (1.0 + cosh) * (v0 != 0.0 or a0 != 0.0)
-        dx = few * (np.abs(x0) + np.abs(v0 * single) + np.abs(square)) + tiny
+        # What numbers lose below the normal range; zeros lose nothing.
+        tiny = SMALLEST * (1.0 + np.abs(t)) * (1.0 + cosh) * ((v0 != 0.0) + (a0 != 0.0) * np.abs(t))
+        dx = few * (np.abs(x0) + np.abs(v0 * single) + np.abs(square)) + tiny * np.abs(t)
         return x, v, dx, few * (np.abs(v0) * cosh + np.abs(a0 * single)) + tiny
 
     def _from_equilibrium(self, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -15,10 +15,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from fractions import Fraction
 from threading import RLock
 from typing import Any
 
-from flint import acb, arb, ctx
+from flint import acb, arb, ctx, fmpq
 
 from core.errors import Path
 from core.notices import Notice
@@ -48,15 +49,17 @@ def precision(bits: int = BITS) -> Iterator[None]:
         yield
 
 
-def exact(number: float) -> Ball:
-    """Return a double as a ball of radius zero."""
+def exact(number: float | Fraction) -> Ball:
+    """Return a double as a ball of radius zero, a fraction as one of the current precision."""
+    if isinstance(number, Fraction):
+        return arb(fmpq(number.numerator, number.denominator))
     return arb(float(number))
 
 
 def exact_pair(numbers: Iterable[float]) -> Balls:
-    """Return two doubles as balls of radius zero."""
+    """Return two numbers as `exact` does."""
     first, second = numbers
-    return arb(float(first)), arb(float(second))
+    return exact(first), exact(second)
 
 
 def sign(ball: Ball) -> int:

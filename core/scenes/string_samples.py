@@ -11,7 +11,7 @@ from core.integration.system import Floats, Model
 from core.notices import Notice
 from core.scenes.answer import Columns, Event, Motion, finite
 from core.scenes.bounces import Sequence
-from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, as_pair, sign
+from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, as_pair
 from core.scenes.string_phases import Phase, Phases
 
 WHY = {"taut": "the string is taut", "slack": "the string is slack", "stick": "both shafts roll on the string's track"}
@@ -118,9 +118,11 @@ class ShaftMotion(Motion):
             name: max(float(np.max(np.abs(column), initial=0.0)), self._given.get(name, 0.0))
             for name, column in values.items()
         }
-        tensions = [phase.drive.tension for phase in phases if phase.drive.tension is not None]
-        faint = {"tension": tension for tension in tensions if sign(tension) and determinate}
-        return Columns(values, errors, scales, notices).without_underflow(faint)
+        columns = Columns(values, errors, scales, notices)
+        if determinate:
+            for phase in phases:
+                columns = columns.without_underflow({"tension": phase.drive.tension or ZERO})
+        return columns
 
 
 class _Clock:
@@ -173,13 +175,12 @@ class _Clock:
         later = rate + a * t
         whole = self.elapsed
         pace = np.abs(v) + np.abs(nu) * S + np.abs(a) * t
-        # What coefficients lose below the normal range; zeros lose nothing.
-        tiny = SMALLEST * (1.0 + whole) * (1.0 + whole)
-        moves = any((v, a, nu))
+        # What numbers lose below the normal range; zeros lose nothing.
+        tiny = SMALLEST * (1.0 + whole) * (((v != 0.0) or (nu != 0.0)) + (a != 0.0) * whole)
         few = 32.0 * UNIT_ROUNDOFF
         return (
             value,
             later,
-            few * (size + pace * whole) + tiny * (moves or y != 0.0),
-            few * (pace + np.abs(a) * (t if d == 0.0 else whole)) + tiny * moves,
+            few * (size + pace * whole) + tiny * whole + SMALLEST * (y != 0.0),
+            few * (pace + np.abs(a) * (t if d == 0.0 else whole)) + tiny,
         )

@@ -21,7 +21,7 @@ from core.integration.methods import (
 )
 from core.integration.solve import solve
 from core.work_precision import Measurement, pareto_front, work_precision
-from tests.core.integration.systems import elliptic_functions, explosion, lorenz, prey_and_predator
+from tests.core.integration.systems import elliptic_functions, explosion, lorenz, prey_and_predator, stiff
 
 TIMES = np.linspace(0, 10, 11)
 
@@ -65,6 +65,14 @@ def test_the_floor_is_found_where_more_work_brings_nothing() -> None:
     assert curve.floor is not None
     assert 1e-15 < curve.floor < 1e-13
     assert curve.fitted_order == pytest.approx(4, abs=0.1)
+
+
+def test_an_error_that_still_falls_unevenly_is_no_floor() -> None:
+    # At coarse steps halving takes away less than half of the error, which is no round-off yet.
+    (curve,) = work_precision(stiff(1.0), [1.0], [ExplicitEuler(0.4), ExplicitEuler(0.2)]).curves
+    coarse, fine = (one.error for one in curve.measurements)
+    assert 0.55 * coarse < fine < 0.6 * coarse
+    assert curve.floor is None
 
 
 def test_nothing_beats_a_member_of_the_front_and_everything_else_is_beaten(whole) -> None:

@@ -63,6 +63,13 @@ def test_samples_agree_with_the_hyperbola_in_many_digits(masses, slopes, density
     for j, name in enumerate(("position", "velocity", "apex_tension")):
         true = [state[j] for state in states]
         largest = max(abs(value) for value in true)
+        if name not in answer.trajectory:
+            assert largest < 1e-280
+            continue
+        if largest < 1e-60 * scene.gravity * last:
+            # Exact balance, which the other computation misses by its last digit.
+            assert np.max(np.abs(answer.trajectory[name])) <= 1e-60 * scene.gravity * last
+            continue
         worst = max(abs(mp.mpf(float(f)) - t) for f, t in zip(answer.trajectory[name], true, strict=True))
         assert worst <= 1e-13 * largest, name
         assert worst <= answer.accuracy.error * largest, "the stated error is never below the true one"

@@ -1,0 +1,220 @@
+"""The constrained scenes to any number of digits.
+
+The set-up of a scene (forces, accelerations, events) is computed in balls anyway; here it runs at as high a precision
+as the digits need, and the trajectory, which otherwise is sampled in doubles, is evaluated in balls too.
+
+What a scene takes for zero because its own precision cannot tell it from zero (a line of contact at rest, two events
+at the same instant) is decided with at least 320 bits. A figure that vanishes to twice the digits asked for, relative
+to the terms of which it is the difference, is written ``"0e-60"``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
+from typing import Any, TypeVar
+
+from flint import arb
+
+from core.certified.decimals import Undetermined, decimal, place_of
+from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
+from core.certified.raising import bits_for, check_digits, determined, working_bits
+from core.certified.scene_samples import Sampler, sampler
+from core.errors import InvalidParameter, MechanicsError, NotApplicable
+from core.integration.system import Model
+from core.notices import Notice
+from core.scenes.answer import HORIZON, MOTION, ConstrainedSystem
+from core.scenes.enclosure import BITS
+from core.scenes.friction import Friction
+from core.scenes.rod_in_hole import RodInHole
+from core.scenes.string_samples import ShaftMotion
+
+MOST_SAMPLES = 100_000
+
+SceneType = TypeVar("SceneType", bound=ConstrainedSystem)
+
+
+@dataclass(frozen=True)
+class CertifiedScene:
+    """Answer to a question about a scene: numerals in the places where the scene's own answer has doubles.
+
+    Attributes
+    ----------
+    model : Model
+    figures : mapping
+        By name; nested as in the scene's answer.
+    trajectory : mapping of str to list, or None
+        Columns; ``time`` repeats the instants at which there is a motion, as they were given.
+    ended : str or None
+        ``"horizon"`` or the event that ended the motion before it.
+    warnings : tuple of Notice
+    """
+
+    model: Model
+    figures: Mapping[str, Any]
+    trajectory: Mapping[str, list[Any]] | None
+    ended: str | None
+    warnings: tuple[Notice, ...]
+
+
+def exact_scene(kind: type[SceneType], parameters: Mapping[str, Any]) -> SceneType:
+    """Return a scene whose numbers are exact: doubles, or decimal strings, as the rational numbers that they are.
+
+    A parameter that is left out has the value that its default stands for: the factor of a uniform rod is one twelfth.
+
+    Raises
+    ------
+    InvalidParameter
+        As for the scene itself, and for strings that are no numbers.
+    """
+    known = {field.name for field in fields(kind)}
+    for name in parameters:
+        if name not in known:
+            raise InvalidParameter(name, f"be a parameter of this scene: one of {sorted(known - {'kind'})}")
+    converted = {name: _exactly(value, (name,)) for name, value in parameters.items()}
+    if kind is RodInHole:
+        converted.setdefault("inertia_factor", Fraction(1, 12))
+    return kind(**converted)
+
+
+def certified_scene(
+    scene: ConstrainedSystem,
+    digits: int,
+    times: Sequence[Number] | None = None,
+    outputs: frozenset[str] | None = None,
+) -> CertifiedScene:
+    """Compute what is asked for, and nothing else, with so many significant digits.
+
+    Parameters
+    ----------
+    scene : ConstrainedSystem
+        Its parameters are doubles or fractions, both taken as exact.
+    digits : int
+        From 16 to 1000.
+    times : sequence of n numbers, optional
+        Instants of the trajectory, in any order (s).
+    outputs : frozenset of str, optional
+        Names out of the scene's outputs; by default all, the trajectory if there are times.
+
+    Raises
+    ------
+    InvalidParameter
+        For unknown outputs, digits outside 16 to 1000, times before the beginning of the motion.
+    NotApplicable
+        Where the scene has to round its input to say what the motion is: velocities that agree only to rounding.
+    BudgetExceeded
+        For more digits than one question may have.
+    """
+    check_digits(digits, 8 * len(times or ()))
+    instants = None if times is None else exact_numbers(times, ("times",))
+    wanted = _wanted(scene, instants, outputs)
+    first = max(BITS, bits_for(digits))
+    return determined(lambda: _Question(scene, digits, first, instants, wanted).answer(times), first)
+
+
+@dataclass(frozen=True)
+class _Question:
+    scene: ConstrainedSystem
+    digits: int
+    first_bits: int
+    instants: tuple[Fraction, ...] | None
+    wanted: frozenset[str]
+
+    def answer(self, given: Sequence[Number] | None) -> CertifiedScene:
+        # A scene keeps its constants once they are computed: a copy computes them at the precision that holds now.
+        scene: Any = replace(self.scene)
+        table: dict[str, Callable[[], Any]] = dict(scene.figures())
+        motion, ended, trajectory = None, None, None
+        if self.wanted & {*MOTION, *scene.of_motion}:
+            points = [enclosed(t) for t in self.instants or ()]
+            horizon = max((float(t) for t in self.instants), default=0.0) if self.instants is not None else float("inf")
+            motion = scene.motion(horizon)
+            _refuse_rounded(motion)
+            end = motion.end
+            last = None if self.instants is None else enclosed(max((*self.instants, Fraction(0))))
+            over = end is not None and (last is None or not end.time > last)
+            ended = end.kind if over else HORIZON if last is not None else None
+            table |= scene.motion_figures(motion)
+            happened = [event for event in motion.events() if last is None or not event.time > last]
+            table["events"] = lambda: [{"kind": event.kind, "time": event.time} for event in happened]
+            if "trajectory" in self.wanted and given is not None:
+                trajectory = self._trajectory(sampler(scene, motion), points, motion, given)
+        figures = {n: self._written(table[n]()) for n in scene.outputs if n in self.wanted and n in table}
+        model = scene.still() if motion is None else motion.model
+        return CertifiedScene(model, figures, trajectory, ended, scene.notices(self.wanted))
+
+    def _trajectory(
+        self, sample: Sampler, points: Sequence[arb], motion: Any, given: Sequence[Number]
+    ) -> Mapping[str, list[Any]]:
+        existing = []
+        for i, point in enumerate(points):
+            if point < arb(motion.began):
+                raise InvalidParameter(
+                    ("times", i),
+                    f"be at least {motion.began:.17g} s",
+                    remedy="the model does not hold earlier; start from an earlier state",
+                )
+            if motion.end is None or not point > motion.end.time:
+                existing.append(i)
+        columns: dict[str, list[Any]] = {"time": [given[i] for i in existing]}
+        for i in existing:
+            for name, value in sample(points[i]).items():
+                columns.setdefault(name, []).append(self._written(value))
+        return columns
+
+    def _written(self, value: Any) -> Any:
+        """Return a value with every ball in it, however deep, as a numeral."""
+        if isinstance(value, arb):
+            return self._numeral(value)
+        if isinstance(value, Mapping):
+            return {key: self._written(entry) for key, entry in value.items()}
+        if isinstance(value, (tuple, list)):
+            return [self._written(entry) for entry in value]
+        return value
+
+    def _numeral(self, ball: arb) -> str:
+        try:
+            return decimal(ball, self.digits)
+        except Undetermined:
+            if working_bits() >= 2 * self.first_bits and ball.is_finite() and not (ball > 0 or ball < 0):
+                return f"0e{place_of(ball.abs_upper()) + 1}"
+            raise
+
+
+def _wanted(
+    scene: ConstrainedSystem, instants: tuple[Fraction, ...] | None, outputs: frozenset[str] | None
+) -> frozenset[str]:
+    if outputs is None:
+        names = frozenset(scene.outputs) - (frozenset({"trajectory"}) if instants is None else frozenset())
+        return names if instants is not None or scene.moves else names - {*MOTION, *scene.of_motion}
+    for name in sorted(outputs - set(scene.outputs)):
+        raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {scene.outputs}")
+    if "trajectory" in outputs and instants is None:
+        raise InvalidParameter("times", "be given when a trajectory is asked for")
+    return outputs
+
+
+def _refuse_rounded(motion: Any) -> None:
+    if isinstance(motion, ShaftMotion) and motion._unresolved > 0:
+        raise NotApplicable(
+            "velocities and spins agree with a taut string only to rounding, or jerks become too weak to be told apart",
+            path=("digits",),
+            remedy='give velocities and spins that agree exactly, if need be as decimal strings ("0.1")',
+        )
+
+
+def _exactly(value: Any, path: tuple[str | int, ...]) -> Any:
+    if isinstance(value, Mapping):
+        parts = {name: _exactly(entry, (*path, name)) for name, entry in value.items()}
+        try:
+            return Friction(**parts)
+        except MechanicsError as fault:
+            if isinstance(fault, InvalidParameter):
+                raise fault.inside(*path) from None
+            raise
+    if isinstance(value, (tuple, list)):
+        return tuple(_exactly(entry, (*path, i)) for i, entry in enumerate(value))
+    if value is None or path[-1] in ("kind", "hole"):
+        return value
+    return exact(value, path)

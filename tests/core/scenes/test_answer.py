@@ -1,0 +1,110 @@
+"""What all scenes share: numbers that no double holds, more digits where they cancel, refusals, roots."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from core.errors import AccuracyUnreachable, InvalidParameter
+from core.scenes.chain_on_wedge import ChainOnWedge
+from core.scenes.enclosure import exact, precision
+from core.scenes.quadratics import exit_time, real_roots
+from core.scenes.rod_in_hole import RodInHole
+from core.scenes.unwinding_shafts import UnwindingShafts
+from tests.core.scenes.oracles import relative
+
+SHAFTS = UnwindingShafts((2.0, 3.0), (0.1, 0.2), (0.6, 0.9), 9.81, positions=(5.0, 5.0))
+ROD = RodInHole(1.0, 1.0, 1.0, 9.81)
+
+
+def test_a_number_that_no_double_holds_is_left_out_with_a_warning() -> None:
+    answer = replace(ROD, mass=1e308, hole_radius=1e10, length=1e10).answer()
+    assert answer.figures["energy"]["potential"] is None
+    assert "outside-double-range" in {notice.code for notice in answer.warnings}
+    assert answer.figures["period"] is not None
+    tiny = replace(ROD, mass=1e-300, gravity=1e-20).answer(np.array([0.0, 1.0]))
+    assert tiny.figures["forces_at_release"] == [None, None]
+    assert "forces" not in tiny.trajectory  # type: ignore[operator]
+
+
+def test_cancellation_beyond_the_first_precision_is_met_with_more_digits() -> None:
+    answer = replace(ROD, length=1e-250, inertia_factor=1e300).answer(
+        outputs=frozenset({"contact", "equivalent_length"})
+    )
+    assert answer.accuracy.error <= 2.0**-52
+    with mp.workdps(900):
+        length = mp.mpf(1e-250)
+        k = mp.sqrt(1 - length**2 / 4)
+        assert relative(answer.figures["equivalent_length"], (k * k + mp.mpf(1e300) * length**2) / k) < 2e-16
+    near = replace(SHAFTS, masses=(1e200, 1e-200), slopes=(0.3, 0.9)).answer(outputs=frozenset({"accelerations"}))
+    with mp.workdps(900):
+        a, b = (mp.mpf(9.81) * mp.sin(mp.mpf(s)) for s in (0.3, 0.9))
+        M1, M2 = mp.mpf(1e200), mp.mpf(1e-200)
+        tension = (a + b) * M1 * M2 / (3 * (M1 + M2))
+        assert relative(near.figures["accelerations"][0], a - tension / M1) < 2e-16
+        assert relative(near.figures["accelerations"][1], b - tension / M2) < 2e-16
+
+
+def test_samples_beyond_the_range_of_doubles_are_refused() -> None:
+    with pytest.raises(InvalidParameter, match="range of double"):
+        SHAFTS.answer(np.array([1e200]))
+
+
+def test_an_accuracy_that_cannot_be_had_is_refused_with_what_can() -> None:
+    with pytest.raises(AccuracyUnreachable) as refusal:
+        SHAFTS.answer(np.array([1.0]), accuracy=1e-18)
+    assert 0 < refusal.value.achievable < 1e-13
+    assert SHAFTS.answer(np.array([1.0]), accuracy=refusal.value.achievable).accuracy.how == "closed form"
+
+
+@pytest.mark.parametrize(
+    "coefficients",
+    [(1, -3, 2), (1e-200, 1, -1), (1, 1e200, 1), (0, 2, -8), (1, 0, -4), (1e100, -2e100, 1e100), (3, 5, 0)],
+)
+def test_roots_of_quadratics(coefficients: tuple[float, float, float]) -> None:
+    with precision(), mp.workdps(500):
+        found = sorted(float(root) for root in real_roots(*map(exact, coefficients)))
+        a, b, c = (mp.mpf(v) for v in coefficients)
+        if a == 0:
+            true = [-c / b]
+        else:
+            root = mp.sqrt(b * b - 4 * a * c)
+            true = sorted([(-b - root) / (2 * a), (-b + root) / (2 * a)])
+        assert len(found) == len(true)
+        for value, exactly in zip(found, true, strict=True):
+            assert relative(value, exactly) < 2e-16
+        assert real_roots(exact(1), exact(0), exact(1)) == []
+
+
+@pytest.mark.parametrize(
+    ("value", "rate", "acceleration", "time"),
+    [
+        (1.0, -1.0, 0.0, 1.0),
+        (1.0, 1.0, 1.0, None),
+        (1.0, -1.0, 1.0, None),
+        (1.0, -2.0, 2.0, None),
+        (1.5, -2.0, 1.0, 1.0),
+        (0.0, 1.0, -2.0, 1.0),
+        (0.0, -1.0, 5.0, 0.0),
+        (0.0, 0.0, -1.0, 0.0),
+        (0.0, 0.0, 1.0, None),
+        (0.0, 1.0, 1.0, None),
+        (2.0, 0.0, -1.0, 2.0),
+        (2.0, 3.0, -1.0, 3 + math.sqrt(13)),
+        (1e-300, -1.0, 1e-300, 1e-300),
+    ],
+)
+def test_when_a_margin_is_left(value: float, rate: float, acceleration: float, time: float | None) -> None:
+    with precision():
+        found = exit_time(exact(value), exact(rate), exact(acceleration))
+        assert (None if found is None else float(found)) == (time if time is None else pytest.approx(time, rel=1e-15))
+
+
+def test_an_unsampled_chain_costs_no_samples() -> None:
+    chain = ChainOnWedge((1.0, 2.0), (0.5, 0.6), 9.81, 3.0, 0.7, 1.0)
+    assert chain.answer().work.samples == 0
+    assert chain.answer(np.linspace(0, 100, 11)).work.samples < 11
