@@ -8,9 +8,10 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from core.bodies.exact import SMALLEST, tensor_pairs
+from core.bodies.exact import SMALLEST, exact_matrix, exact_vector, tensor_pairs
 from core.bodies.mass_properties import About, MassProperties, diagonal
 from core.bodies.principal_inertia import EPSILON
+from core.bodies.recentred import Recentred
 from core.bodies.validity import TOLERANCE
 from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
@@ -18,6 +19,9 @@ from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Q
 
 POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))
+
+MASS_RANGE = 900
+"""Most binary orders of magnitude between the heaviest and the lightest point: no product of theirs is lost to zero."""
 
 InertiaRow = tuple[InertiaComponent, InertiaComponent, InertiaComponent]
 
@@ -156,25 +160,20 @@ class PointMasses:
         masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
         # Powers of two keep products within range and round nothing.
         heavy = int(np.frexp(masses.max())[1])
-        far = int(np.frexp(np.abs(self.positions).max())[1])
-        m = np.ascontiguousarray(np.ldexp(masses, -heavy))
-        r = np.ascontiguousarray(np.ldexp(self.positions, -far))
-        center = np.zeros((2, 4))
-        first_moments(m, r, center)
-        second = np.zeros((2, 3, 3))
-        second_moments(m, r, center, second)
-        exact = [
-            [
-                Fraction(float(second[0, min(i, j), max(i, j)])) + Fraction(float(second[1, min(i, j), max(i, j)]))
-                for j in range(3)
-            ]
-            for i in range(3)
+        m = np.ldexp(masses, -heavy)
+        if float(m.min()) < 2.0**-MASS_RANGE:
+            raise InvalidParameter("masses", f"not differ by more than a factor of 2^{MASS_RANGE}")
+        local = Recentred.on(self.positions)
+        first, second = np.zeros((2, 4)), np.zeros((2, 3, 3))
+        first_moments(m, local.high, local.low, first)
+        second_moments(m, local.high, local.low, first, second)
+        kilograms = Fraction(2) ** heavy
+        mass, *shift = exact_vector(*first)
+        center = [o + u * c for o, u, c in zip(local.reference, local.unit, shift, strict=True)]
+        products = [
+            [kilograms * local.unit[i] * local.unit[j] * x for j, x in enumerate(row)]
+            for i, row in enumerate(exact_matrix(*second))
         ]
-        trace = exact[0][0] + exact[1][1] + exact[2][2]
-        unit = Fraction(2) ** (heavy + 2 * far)
-        inertia = [[unit * ((trace if i == j else 0) - exact[i][j]) for j in range(3)] for i in range(3)]
-        com = [Fraction(float(center[0, k])) + Fraction(float(center[1, k])) for k in range(4)]
-        found = MassProperties.from_exact(
-            com[0] * Fraction(2) ** heavy, [x * Fraction(2) ** far for x in com[1:]], inertia
-        )
-        return replace(found, about=self.about)
+        trace = products[0][0] + products[1][1] + products[2][2]
+        inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+        return replace(MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about)

@@ -70,17 +70,17 @@ function draw() {
   const { moments: I, spin: w } = state;
   const twiceEnergy = I.reduce((sum, Ii, i) => sum + Ii * w[i] * w[i], 0);
   const axes = I.map((Ii) => Math.sqrt(twiceEnergy / Ii) || 1e-9);
-  const size = canvas.width, scale = 0.44 * size / Math.max(...axes);
+  const { width, height } = canvas, scale = 0.43 * Math.min(width / Math.max(axes[0], axes[1]), height / Math.max(...axes));
   const [ct, st, cp, sp] = [Math.cos(view.turn), Math.sin(view.turn), Math.cos(view.tilt), Math.sin(view.tilt)];
-  // Turn about the vertical, tilt about the horizontal, look along the depth.
+  // Turn about the vertical, then look down on it by the tilt.
   const project = ([x, y, z]) => {
     const u = ct * x - st * y, v = st * x + ct * y;
-    return [size / 2 + scale * u, size / 2 - scale * (cp * z - sp * v), cp * v + sp * z];
+    return [width / 2 + scale * u, height / 2 - scale * (cp * z + sp * v)];
   };
   // The half of the surface that faces the viewer: its normal there has a component towards the eye.
   const faces = (p) => {
     const n = p.map((x, i) => x / (axes[i] * axes[i]));
-    return cp * (st * n[0] + ct * n[1]) + sp * n[2] <= 0;
+    return sp * n[2] >= cp * (st * n[0] + ct * n[1]);
   };
   const line = (points, front, back, width) => {
     for (const side of [false, true]) {
@@ -93,7 +93,7 @@ function draw() {
       pen.strokeStyle = side ? front : back; pen.lineWidth = side ? width : width * 0.6; pen.stroke();
     }
   };
-  pen.clearRect(0, 0, size, size);
+  pen.clearRect(0, 0, width, height);
   pen.lineCap = "round";
   const at = (a, b) => [axes[0] * Math.cos(a) * Math.cos(b), axes[1] * Math.cos(a) * Math.sin(b), axes[2] * Math.sin(a)];
   const around = [...Array(97).keys()].map((i) => 2 * Math.PI * i / 96);
