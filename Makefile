@@ -3,7 +3,7 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 ENV := .venv
 BIN := $(ENV)/bin
 
-.PHONY: serve test check environment openapi benchmarks peers clean
+.PHONY: serve test check environment openapi record peers clean
 
 serve: environment
 	$(BIN)/python -m service
@@ -26,6 +26,21 @@ $(ENV)/made: requirements-dev.lock
 openapi: environment
 	$(BIN)/python -m service --openapi > docs/openapi.json
 
+record: environment
+	$(BIN)/python -m benchmarks.method_record
+
+# Peers are installed here and nowhere else.
+PEERS := .venv-peers
+
+peers: $(PEERS)/made
+	$(PEERS)/bin/python -m benchmarks.free_rotation
+
+$(PEERS)/made: requirements-dev.lock benchmarks/peers.txt
+	$(PYTHON) -m venv $(PEERS)
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-dev.lock
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r benchmarks/peers.txt
+	touch $@
+
 clean:
-	rm -rf $(ENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(ENV) $(PEERS) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find core service -name __pycache__ -prune -exec rm -rf {} +

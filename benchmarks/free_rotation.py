@@ -2,7 +2,7 @@
 
     make peers          (needs heyoka, which only this benchmark installs)
 
-Fairness: every peer runs compiled and warmed up, at its best setting for the error in question; heyoka's Taylor integrator
+Fairness: every peer runs compiled and warmed up, at its best setting for the error in question; heyoka's integrator
 is built once and only propagated. Ours includes everything from moments and spin to samples.
 """
 
@@ -19,14 +19,13 @@ import mpmath
 import numpy as np
 
 from benchmarks.machine import RESULTS, described, medians
-from core.bodies.mass_properties import PrincipalInertia
+from core.bodies.mass_properties import PrincipalInertia, diagonal
+from core.double_double import Scaled
 from core.integration.solve import solve
 from core.rotation.closed_form import FreeRotation
 from core.rotation.constants_of_motion import constants_of_motion
-from core.double_double import Scaled
 from core.rotation.sampling import sample_components
 from core.rotation.torque_free import TorqueFree
-from core.bodies.mass_properties import diagonal
 from tests.oracles.free_rotation import reference_angular_velocity
 
 SAMPLES = 10_000
@@ -97,7 +96,11 @@ def case_rows(case: str) -> dict[str, Any]:
     runs |= slow
     base = times_taken["closed form"]
     return {
-        name: {"milliseconds": 1e3 * times_taken[name], "ratio": times_taken[name] / base, "error": error(run(), case, times)}
+        name: {
+            "milliseconds": 1e3 * times_taken[name],
+            "ratio": times_taken[name] / base,
+            "error": error(run(), case, times),
+        }
         for name, run in runs.items()
     }
 
@@ -115,13 +118,19 @@ def kernel_rows() -> dict[str, Any]:
         period = 4 / motion.rate / motion.time_scale
         for periods in (1.0, 1e9):
             times = np.linspace(0, periods * period, SAMPLES)
-            runs[f"{name}, {periods:g} periods"] = lambda m=motion, t=times: sample_components(m, t, out[0], out[1], out[2])
+            runs[f"{name}, {periods:g} periods"] = lambda m=motion, t=times: sample_components(
+                m, t, out[0], out[1], out[2]
+            )
         i, w = np.array(moments), np.array(start)
-        runs[f"set-up, {name}"] = lambda i=i, w=w: constants_of_motion(i, nothing, w, nothing, False, Scaled(0.0, 0.0, 0))
+        runs[f"set-up, {name}"] = lambda i=i, w=w: constants_of_motion(
+            i, nothing, w, nothing, False, Scaled(0.0, 0.0, 0)
+        )
     spent = medians(runs, 25)
     write = spent["three doubles written"]
     return {
-        name: {"microseconds": 1e6 * t} if name.startswith("set-up") else {"nanoseconds per sample": 1e9 * t / SAMPLES, "ratio": t / write}
+        name: {"microseconds": 1e6 * t}
+        if name.startswith("set-up")
+        else {"nanoseconds per sample": 1e9 * t / SAMPLES, "ratio": t / write}
         for name, t in spent.items()
     }
 

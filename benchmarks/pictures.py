@@ -1,6 +1,6 @@
 """Make docs/pictures/t-handle.svg from the answer to the README's question: omega(t) and its polhode.
 
-    python -m benchmarks.pictures
+python -m benchmarks.pictures
 """
 
 from __future__ import annotations
@@ -34,9 +34,13 @@ def curves(times: np.ndarray, states: np.ndarray) -> list[str]:
         parts.append(polyline(x, middle - height * states[:, k], colour))
         parts.append(f'<text x="{left + 10 + 40 * k}" y="18" fill="{colour}">{name}</text>')
     for t in range(0, int(times[-1]) + 1, 5):
-        parts.append(f'<text x="{left + width * t / times[-1]:.0f}" y="288" text-anchor="middle" fill="#555">{t} s</text>')
+        parts.append(
+            f'<text x="{left + width * t / times[-1]:.0f}" y="288" text-anchor="middle" fill="#555">{t} s</text>'
+        )
     for rate in (-10, 0, 10):
-        parts.append(f'<text x="{left - 6}" y="{middle - height * rate + 4:.0f}" text-anchor="end" fill="#555">{rate}</text>')
+        parts.append(
+            f'<text x="{left - 6}" y="{middle - height * rate + 4:.0f}" text-anchor="end" fill="#555">{rate}</text>'
+        )
     return parts
 
 

@@ -220,7 +220,8 @@ def check(instance: Any) -> None:
     InvalidParameter
         Naming the field, as a path from `instance`, and the rule it breaks.
     """
-    for name, hint in _hints(type(instance)).items():
+    owner: Any = type(instance)
+    for name, hint in _hints(owner).items():
         _check((name,), hint, getattr(instance, name))
 
 

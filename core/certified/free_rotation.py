@@ -179,28 +179,12 @@ class CertifiedRotation:
             return None
         return self._number(lambda: 1 / _of(self.start).frequency, digits)
 
-    def enclosures(self, times: Sequence[Number], digits: int) -> list[tuple[arb, arb, arb]]:
-        """Return balls around the angular velocity, each of a radius below 10^-digits of the largest rate.
-
-        They are exact about what they say at whatever precision they are used.
-        """
-        instants = exact_numbers(times, ("times",))
-
-        def evaluators() -> Callable[[int], tuple[arb, arb, arb]]:
-            if not self.turns:
-                x, y, z = (enclosed(w) for w in self.angular_velocity_at_start)
-                return lambda i: (x, y, z)
-            motion = TurningMotion(self.start)
-            floor = floor_below(motion.largest_rate, digits) + digits * (FLOOR_IN_DIGITS - 1)
-
-            def row(i: int) -> tuple[arb, arb, arb]:
-                w = motion.angular_velocity(enclosed(instants[i]))
-                decimals(w, 1, floor)
-                return w
-
-            return row
-
-        return each_determined(evaluators, len(instants), self._bits(digits, instants))
+    def largest_rate(self, digits: int) -> str:
+        """Return the largest norm of the angular velocity in the whole motion (rad/s)."""
+        if self.turns:
+            return self._number(lambda: _of(self.start).largest_rate, digits)
+        square = sum((w * w for w in self.angular_velocity_at_start), Fraction(0))
+        return self._number(lambda: enclosed(square).sqrt(), digits)
 
     def _number(self, evaluate: Callable[[], arb | None], digits: int) -> str:
         check_digits(digits)
