@@ -11,15 +11,21 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-def refuse_unless_closed(vertices: Floats, faces: Integers) -> None:
-    """Refuse a triangulated surface that does not enclose a volume on a known side.
+def closed(vertices: Floats, faces: Integers) -> Integers:
+    """Return the faces if they enclose a volume on a known side, and refuse them otherwise.
 
     Parameters
     ----------
     vertices : ndarray, shape (n, 3)
-        Used only to say whether vertices coincide.
+        Vertices at equal places count as one where the faces do not close by their indices alone, as in files that
+        give each triangle corners of its own.
     faces : ndarray, shape (m, 3)
         Indices of vertices.
+
+    Returns
+    -------
+    ndarray, shape (m, 3)
+        The faces, by indices that close; an array that cannot be written.
 
     Raises
     ------
@@ -30,16 +36,29 @@ def refuse_unless_closed(vertices: Floats, faces: Integers) -> None:
         an edge; if two neighbours run along their edge in the same direction.
     """
     _refuse_wrong_indices(faces, len(vertices))
+    if _closes(faces, len(vertices)):
+        return faces
+    # Adding zero joins -0 to 0.
+    _, kept, place = np.unique(vertices + 0.0, axis=0, return_index=True, return_inverse=True)
+    joined: Integers = kept[place.reshape(-1)][faces]
+    joined.setflags(write=False)
+    # A face of which two corners coincide has no area, and closes nothing.
+    solid = np.flatnonzero((joined != joined[:, (1, 2, 0)]).all(axis=1))
+    if not _closes(joined[solid], len(vertices)):
+        _refuse_repeated_faces(joined[solid], solid)
+        _refuse_edges(joined[solid], solid)
+    return joined
+
+
+def _closes(faces: Integers, vertices: int) -> bool:
     # An edge and the direction in which a face runs along it are one whole number, so one sort pairs all neighbours.
     start, end = _directed_edges(faces)
-    keys = (np.minimum(start, end) * len(vertices) + np.maximum(start, end)) * 2 + (start > end)
+    keys = (np.minimum(start, end) * vertices + np.maximum(start, end)) * 2 + (start > end)
     keys.sort()
-    if keys.size % 2 == 0:
-        forward, backward = keys[0::2], keys[1::2]
-        if not (forward & 1).any() and (backward == forward + 1).all() and (np.diff(forward) > 0).all():
-            return
-    _refuse_repeated_faces(faces)
-    _refuse_edges(vertices, faces)
+    if keys.size == 0 or keys.size % 2:
+        return False
+    forward, backward = keys[0::2], keys[1::2]
+    return not (forward & 1).any() and bool((backward == forward + 1).all()) and bool((np.diff(forward) > 0).all())
 
 
 def _directed_edges(faces: Integers) -> tuple[Integers, Integers]:
@@ -61,62 +80,56 @@ def _refuse_wrong_indices(faces: Integers, vertices: int) -> None:
         )
 
 
-def _refuse_repeated_faces(faces: Integers) -> None:
+def _refuse_repeated_faces(faces: Integers, numbers: Integers) -> None:
     # Written from its smallest index on, a face is the same row whichever corner it was started from.
     turned = (np.argmin(faces, axis=1)[:, None] + np.arange(3)) % 3
     rows = np.take_along_axis(faces, turned, axis=1)
-    order = np.lexsort((rows[:, 2], rows[:, 1], rows[:, 0]))
-    same = (rows[order[1:]] == rows[order[:-1]]).all(axis=1)
-    if same.any():
-        # The sort is stable, so the second of two equal rows is the later face.
-        later = order[1:][same]
-        i = int(later.min())
-        first = int(order[np.nonzero((rows[order] == rows[i]).all(axis=1))[0][0]])
+    _, first, place = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    repeated = np.flatnonzero(first[place.reshape(-1)] != np.arange(len(rows)))
+    if repeated.size:
+        i = repeated[0]
         raise InvalidParameter(
-            ("faces", i),
-            f"differ from faces/{first}: it is the same face again",
-            remedy=f"give each face once; {later.size} are repeated",
+            ("faces", int(numbers[i])),
+            f"differ from faces/{numbers[first[place.reshape(-1)[i]]]}: it is the same face again",
+            remedy=f"give each face once; {repeated.size} are repeated",
         )
 
 
-def _refuse_edges(vertices: Floats, faces: Integers) -> None:
+def _refuse_edges(faces: Integers, numbers: Integers) -> None:
     start, end = _directed_edges(faces)
-    keys = np.minimum(start, end) * len(vertices) + np.maximum(start, end)
+    keys = np.minimum(start, end) * (1 + int(faces.max(initial=0))) + np.maximum(start, end)
     order = np.argsort(keys, kind="stable")
     begins = np.flatnonzero(np.diff(keys[order], prepend=-1))
     count = np.diff(begins, append=keys.size)
-    direction = np.add.reduceat(np.where(start < end, 1, -1)[order], begins)
-    crowded, alike = count > 2, (count == 2) & (direction != 0)
-    single = count == 1
+    direction = np.add.reduceat(np.where(start < end, 1, -1)[order], begins) if keys.size else count
+    single, crowded, alike = count == 1, count > 2, (count == 2) & (direction != 0)
 
-    def first_of(kind: NDArray[np.bool_]) -> tuple[int, str]:
+    def one_of(kind: NDArray[np.bool_]) -> str:
         # The edge that comes first in the list of faces, not in the order of keys.
         edges = order[begins[kind]]
         e = int(edges[np.argmin(edges % len(faces))])
-        return e % len(faces), f"from vertex {start[e]} to {end[e]}"
+        return f"one is of faces/{numbers[e % len(faces)]}, from vertex {start[e]} to {end[e]}"
 
-    edges = len(begins)
+    if not keys.size:
+        raise OpenMesh("faces", "close: every face has corners that coincide")
     if single.any():
-        face, where = first_of(single)
-        merged = len(vertices) - len(np.unique(vertices + 0.0, axis=0))
+        more = np.count_nonzero(crowded)
         raise OpenMesh(
             "faces",
-            f"close: {np.count_nonzero(single)} of {edges} edges belong to one face only "
-            f"(one is of faces/{face}, {where}), {np.count_nonzero(crowded)} to more than two",
-            remedy=f"merge the vertices that coincide ({merged} of them do)" if merged else "close the holes",
+            f"close: {np.count_nonzero(single)} of {count.size} edges belong to one face only ({one_of(single)})"
+            + (f", and {more} to more than two" if more else ""),
+            remedy="close the holes of the surface",
         )
     if crowded.any():
-        face, where = first_of(crowded)
         raise InvalidParameter(
             "faces",
-            f"meet in pairs: {np.count_nonzero(crowded)} of {edges} edges belong to more than two faces "
-            f"(one is of faces/{face}, {where})",
-            remedy="give surfaces that touch in an edge vertices of their own, and leave inner walls out",
+            f"meet in pairs: {np.count_nonzero(crowded)} of {count.size} edges belong to more than two faces "
+            f"({one_of(crowded)})",
+            remedy="leave inner walls out, and keep surfaces apart that touch in an edge",
         )
-    face, where = first_of(alike)
     raise InvalidParameter(
         "faces",
-        f"all run counter-clockwise as seen from outside: at {np.count_nonzero(alike)} of {edges} edges both faces run "
-        f"in the same direction (one is of faces/{face}, {where})",
+        f"all run counter-clockwise as seen from outside: at {np.count_nonzero(alike)} of {count.size} edges both faces "
+        f"run in the same direction ({one_of(alike)})",
         remedy="reverse the order of vertices in the faces that are turned over",
     )

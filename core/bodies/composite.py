@@ -2,48 +2,94 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from fractions import Fraction
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal
 
 from core import bodies
-from core.bodies.exact import exact_vector, parallel_axis, rotated, rotation
-from core.bodies.mass_properties import MassProperties
-from core.bodies.measured import PointMasses
+from core.bodies.mass_moments import MassMoments
+from core.bodies.mass_properties import About, MassProperties
+from core.bodies.mesh import Mesh
 from core.bodies.uniform import Uniform
-from core.errors import InvalidParameter
-from core.quantities import Position, Quaternion, check
+from core.bodies.validity import Condition
+from core.errors import InvalidParameter, Path, UnphysicalInertia
+from core.notices import Notice
+from core.quantities import Position, Quaternion, check, members_of
 
 MOST_PARTS = 1000
+"""Bodies of a composite, composites among the parts opened."""
+
 DEEPEST = 8
+"""Levels of composites within composites, the outermost included."""
+
+
+@dataclass(frozen=True)
+class Count:
+    """How many entries a tuple may have."""
+
+    at_least: int
+    at_most: int
+
+    def check(self, path: Path, value: object) -> None:
+        """Raise `InvalidParameter` unless `value` is a tuple or list of such a length."""
+        if not isinstance(value, (tuple, list)):
+            raise InvalidParameter(path, "be a list")
+        if not self.at_least <= len(value) <= self.at_most:
+            raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(value)}")
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        # The upper end is stated here as well, so that no more entries than these are ever built.
+        return {**handler(source), "max_length": self.at_most}
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
+        return {**handler(schema), "minItems": self.at_least, "maxItems": self.at_most}
 
 
 @dataclass(frozen=True)
 class Part:
     """A body in its place within a composite.
 
+    A point r of the body comes to lie at position + R r, with R the rotation of the attitude: the body is turned about
+    its own origin and then moved.
+
     Attributes
     ----------
     body : Body
-        A solid or mesh of negative mass or density is a hole.
+        Of known mass and centre of mass. A solid or mesh of negative mass or density is a hole.
     position : tuple of 3 floats
         Of the origin of the part's frame, in the composite's frame (m).
     attitude : tuple of 4 floats
         Quaternion [w, x, y, z] from the part's axes to the composite's; any length but zero.
+    hole : bool
+        Whether the body is taken away instead of added: for bodies that have no negative mass to give.
     """
 
     body: bodies.Body
     position: Position = (0.0, 0.0, 0.0)
     attitude: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    hole: bool = False
 
     def __post_init__(self) -> None:
         check(self)
+        if not isinstance(self.body, members_of(bodies.Body)):
+            raise InvalidParameter("body", "be a body")
+        if not isinstance(self.hole, bool):
+            raise InvalidParameter("hole", "be true or false")
+        if self.hole and isinstance(self.body, Uniform) and self.body.is_hole:
+            raise InvalidParameter(
+                "hole",
+                "be false for a body of negative mass or density, which is a hole already",
+                remedy="leave hole out, or give the mass or density of what is taken away as positive",
+            )
         if not any(self.attitude):
             raise InvalidParameter(
                 "attitude", "not be zero", remedy="give a unit quaternion [w, x, y, z]; [1, 0, 0, 0] is no turn"
             )
-        if isinstance(self.body, PointMasses) and self.body.about == "origin":
-            raise InvalidParameter(("body", "about"), 'be "center-of-mass" for a part of a composite')
+        if getattr(self.body, "about", "center-of-mass") != "center-of-mass":
+            raise InvalidParameter(
+                ("body", "about"),
+                'be "center-of-mass" for a part of a composite',
+                remedy="pin the outermost composite instead",
+            )
 
 
 @dataclass(frozen=True)
@@ -54,19 +100,34 @@ class Composite:
     ----------
     parts : sequence of Part
         At most 1000 bodies in all, nested at most 8 deep.
+    about : {"center-of-mass", "origin"}
+        The point about which the body turns. A free body turns about its centre of mass; "origin" is one pinned there.
     """
 
-    parts: tuple[Part, ...]
+    parts: Annotated[tuple[Part, ...], Count(1, MOST_PARTS)]
+    about: About = "center-of-mass"
     kind: Literal["composite"] = "composite"
 
     def __post_init__(self) -> None:
         check(self)
-        if not self.parts:
-            raise InvalidParameter("parts", "have at least 1 entry")
+        object.__setattr__(self, "parts", tuple(self.parts))
+        for i, part in enumerate(self.parts):
+            if not isinstance(part, Part):
+                raise InvalidParameter(("parts", i), "be a part: a body, its position and its attitude")
+            if isinstance(part.body, Composite) and part.body.depth >= DEEPEST:
+                raise InvalidParameter(
+                    ("parts", i, "body"),
+                    f"be nested at most {DEEPEST} composites deep, the outermost included",
+                    remedy="list its parts one level higher",
+                )
         if self.count > MOST_PARTS:
-            raise InvalidParameter("parts", f"hold at most {MOST_PARTS} bodies in all, not {self.count}")
-        if self.depth > DEEPEST:
-            raise InvalidParameter("parts", f"be nested at most {DEEPEST} deep")
+            raise InvalidParameter(
+                "parts",
+                f"hold at most {MOST_PARTS} bodies in all, not {self.count}",
+                remedy="give many small bodies as point-masses or as a mesh",
+            )
+        if self.about not in ("center-of-mass", "origin"):
+            raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
 
     @property
     def count(self) -> int:
@@ -79,67 +140,77 @@ class Composite:
         return 1 + max(part.body.depth if isinstance(part.body, Composite) else 0 for part in self.parts)
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body, by the parallel-axis theorem in rational arithmetic.
+        """Return what the mechanics needs to know of the body.
+
+        A hole that reaches outside of what it is cut from can leave a tensor that no matter has: it is answered with a
+        warning, and refused if a principal moment is negative, as no motion is then defined.
 
         Raises
         ------
         InvalidParameter
-            If a part's mass or centre of mass is not known, or the holes weigh as much as the parts.
+            If a part's mass or centre of mass is not known, the holes weigh as much as the parts, or a figure leaves
+            the range of doubles.
+        UnphysicalInertia
+            If a principal moment is negative.
         """
-        placed = [_place(part, i) for i, part in enumerate(self.parts)]
-        mass = sum((part.mass for part in placed), Fraction(0))
-        if mass <= 0:
-            raise InvalidParameter(
-                "parts", f"weigh more than the holes: the mass is {float(mass):.6g} kg", remedy="take away less"
+        moments, warnings, conditions = _moments_of_parts(self)
+        found = MassProperties.from_exact(*moments.properties(), warnings=warnings, conditions=conditions)
+        if any(condition.name == "positive-moments" for condition in found.validity.violations):
+            raise UnphysicalInertia(
+                "parts",
+                "have no negative principal moment together, and have "
+                f"{float(found.principal.moments[0]):.6g} kg m^2: a hole is larger than what it is cut from",
+                remedy="let each hole lie inside of what it is cut from",
             )
-        center = [sum((part.mass * part.center[k] for part in placed), Fraction(0)) / mass for k in range(3)]
-        inertia = [[Fraction(0)] * 3 for _ in range(3)]
-        for part in placed:
-            offset = [x - c for x, c in zip(part.center, center, strict=True)]
-            moved = parallel_axis(part.mass, offset, part.inertia)
-            inertia = [
-                [x + y for x, y in zip(row, more, strict=True)] for row, more in zip(inertia, moved, strict=True)
-            ]
-        found = MassProperties.from_exact(
-            mass,
-            center,
-            inertia,
-            warnings=tuple(
-                notice.inside("parts", i, "body") for i, part in enumerate(placed) for notice in part.own.warnings
-            ),
-            conditions=tuple(condition for part in placed for condition in part.own.conditions),
-        )
-        return found.judged("parts")
+        return replace(found, about=self.about).judged("parts")
 
 
-@dataclass(frozen=True)
-class _Placed:
-    own: MassProperties
-    mass: Fraction
-    center: list[Fraction]
-    inertia: list[list[Fraction]]
+_Moments = tuple[MassMoments, tuple[Notice, ...], tuple[Condition, ...]]
 
 
-def _place(part: Part, i: int) -> _Placed:
-    """Return a part's mass properties in the composite's frame; those of a hole are negative."""
-    body, sign = part.body, 1
-    if isinstance(body, Uniform) and body.is_hole:
-        body, sign = body.filled(), -1
-    try:
-        own = body.mass_properties()
-    except InvalidParameter as fault:
-        raise fault.inside("parts", i, "body") from None
-    if own.mass is None or own.center_of_mass is None:
+def _moments_of_parts(composite: Composite) -> _Moments:
+    """Return the moments of mass about the composite's origin, what was noticed, and what the report says."""
+    total = MassMoments()
+    warnings: list[Notice] = []
+    conditions: list[Condition] = []
+    for i, part in enumerate(composite.parts):
+        try:
+            moments, noticed, reported = _moments(part.body)
+        except InvalidParameter as fault:
+            raise fault.inside("parts", i, "body") from None
+        placed = moments.turned(part.attitude).moved(part.position)
+        total += -placed if part.hole else placed
+        warnings += [notice.inside("parts", i, "body") for notice in noticed]
+        conditions += reported
+    if not total.massive:
         raise InvalidParameter(
-            ("parts", i, "body"),
-            "have a known mass and centre of mass",
-            remedy="give an inertia-tensor with mass and center_of_mass",
+            "parts",
+            "weigh more than the holes among them",
+            remedy="add what the holes are cut from; a composite that is a hole as a whole is a part with hole: true",
         )
-    turn = rotation(part.attitude)
-    at = exact_vector(own.center_of_mass, own.center_of_mass_tail)
-    center = [
-        Fraction(p) + sum((r * x for r, x in zip(row, at, strict=True)), Fraction(0))
-        for p, row in zip(part.position, turn, strict=True)
-    ]
-    inertia = [[sign * x for x in row] for row in rotated(own.exact_inertia, turn)]
-    return _Placed(own, sign * own.exact_mass, center, inertia)
+    return total, tuple(warnings), tuple(conditions)
+
+
+def _moments(body: Any) -> _Moments:
+    """Return the moments of mass of a body about its own origin; those of a hole are negative."""
+    if isinstance(body, Composite):
+        return _moments_of_parts(body)
+    if isinstance(body, Uniform):
+        shape = body.shape()
+        mass = body.weigh(shape)
+        exact = MassMoments.of(mass, shape.center_of_mass, [[mass * x for x in row] for row in shape.inertia])
+        if not isinstance(body, Mesh):
+            return exact, (), ()
+        solid = body.filled() if body.is_hole else body
+        own = solid.mass_properties()
+        return exact, own.warnings, own.conditions
+    own = body.mass_properties()
+    for name, known in (("mass", own.mass), ("center_of_mass", own.center_of_mass)):
+        if known is None:
+            raise InvalidParameter(
+                (),
+                f"have a known {name} to be a part of a composite",
+                remedy="give an inertia-tensor with mass and center_of_mass, or another kind of body",
+            )
+    exact = MassMoments.of(own.exact_mass, own.exact_center_of_mass, own.exact_inertia)
+    return exact, own.warnings, own.conditions

@@ -8,7 +8,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from core.bodies.composite import AbstractBody, Composite, Part
+from core.bodies import Body
+from core.bodies.composite import Composite, Part
 from core.bodies.measured import PointMasses, PrincipalMoments
 from core.bodies.solids import Cuboid, Cylinder, Ellipsoid
 
@@ -37,7 +38,7 @@ def t_handle() -> Composite:
     The bar is 100 mm long and 12 mm thick, the stem 50 mm long and 10 mm thick. The narrow gap between the stem's flat
     end and the bar's round side is not filled.
     """
-    bar, stem = Cylinder(0.006, 0.1, density=STEEL), Cylinder(0.005, 0.05, density=STEEL)
+    bar, stem = Cylinder(radius=0.006, height=0.1, density=STEEL), Cylinder(radius=0.005, height=0.05, density=STEEL)
     # A quarter turn about x takes z to -y.
     return Composite((Part(bar), Part(stem, (0.0, 0.006 + 0.025, 0.0), (1.0, 1.0, 0.0, 0.0))))
 
@@ -47,7 +48,7 @@ def coin() -> Cylinder:
 
     Council Regulation (EU) No 729/2014, annex I.
     """
-    return Cylinder(0.02325 / 2, 0.00233, mass=0.0075)
+    return Cylinder(radius=0.02325 / 2, height=0.00233, mass=0.0075)
 
 
 def american_football() -> Composite:
@@ -61,12 +62,17 @@ def american_football() -> Composite:
     outer, inner = (radius, radius, half_length), (radius - wall, radius - wall, half_length - wall)
     filled, hollow = math.prod(outer), math.prod(inner)
     density = 14.5 * ounce / (4 / 3 * math.pi * (filled - hollow))
-    return Composite((Part(Ellipsoid(outer, density=density)), Part(Ellipsoid(inner, density=density), hole=True)))
+    return Composite(
+        (
+            Part(Ellipsoid(semi_axes=outer, density=density)),
+            Part(Ellipsoid(semi_axes=inner, density=density), hole=True),
+        )
+    )
 
 
 def deck_of_cards() -> Cuboid:
     """Return a deck of 52 poker cards: 88 x 63 x 16 mm, 94 g."""
-    return Cuboid((0.088, 0.063, 0.016), mass=0.094)
+    return Cuboid(edges=(0.088, 0.063, 0.016), mass=0.094)
 
 
 def phone() -> Cuboid:
@@ -74,7 +80,7 @@ def phone() -> Cuboid:
 
     iPhone 15, technical specifications by its maker (2023).
     """
-    return Cuboid((0.1476, 0.0716, 0.0078), mass=0.171)
+    return Cuboid(edges=(0.1476, 0.0716, 0.0078), mass=0.171)
 
 
 def earth() -> PrincipalMoments:
@@ -86,7 +92,7 @@ def earth() -> PrincipalMoments:
     return PrincipalMoments((8.010083e37, 8.010260e37, 8.036481e37))
 
 
-EXAMPLES: Mapping[str, AbstractBody] = MappingProxyType(
+EXAMPLES: Mapping[str, Body] = MappingProxyType(
     {
         "t-handle-points": t_handle_points(),
         "t-handle": t_handle(),

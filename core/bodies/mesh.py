@@ -1,7 +1,8 @@
-"""Solids bounded by triangles: exact integrals over the surface, about the centre of mass."""
+"""A uniform solid inside a closed surface of triangles."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -10,53 +11,36 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from core.bodies.closed_surface import closed
 from core.bodies.mass_properties import MassProperties
+from core.bodies.recentred import Recentred
 from core.bodies.uniform import Shape, Uniform
 from core.bodies.validity import Condition
-from core.errors import InvalidParameter, OpenMesh
+from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
 from core.quantities import Quantity, Rows
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 VERTICES = Rows(3, Quantity("m"), at_least=4)
 FACES = Rows(3, Quantity("1", at_least=0), at_least=4, whole=True)
 
-UNRESOLVED = 2.0**-90
-"""A volume below this share of the cube of the mesh's extent is not told from that of a flat sheet."""
-
-
-@dataclass(frozen=True)
-class MeshReport:
-    """What a closed mesh is.
-
-    Attributes
-    ----------
-    vertices, triangles : int
-        As given.
-    volume : float
-        Enclosed (m^3); positive.
-    inward : bool
-        Whether the triangles were wound clockwise as seen from outside, so that their signs had to be turned.
-    """
-
-    vertices: int
-    triangles: int
-    volume: float
-    inward: bool
-
 
 @dataclass(frozen=True, eq=False)
 class Mesh(Uniform):
-    """A uniform solid bounded by triangles.
+    """A uniform solid given by its surface, a list of triangles.
 
-    The surface must be closed and wound alike throughout: counter-clockwise as seen from outside. Shells wound the other
-    way round inside are cavities. Whether it intersects itself is not examined.
+    Every edge belongs to exactly two triangles, which run along it in opposite directions. Several closed surfaces may
+    stand apart or, turned inwards, bound cavities. It is not checked whether triangles pass through each other: a
+    region that is enclosed twice counts twice.
 
     Attributes
     ----------
     vertices : array_like, shape (n, 3)
-        (m); kept as an array that cannot be written. Vertices at equal places count as one.
-    faces : array_like, shape (m, 3)
-        Indices of vertices, from 0; kept as an array that cannot be written.
+        In body axes (m); kept as an array that cannot be written. Vertices at equal places count as one.
+    faces : array_like of int, shape (m, 3)
+        Indices of the vertices of each triangle, from 0, counter-clockwise as seen from outside.
     """
 
     vertices: Annotated[Any, VERTICES]
@@ -64,105 +48,137 @@ class Mesh(Uniform):
     kind: Literal["mesh"] = "mesh"
 
     def validate(self) -> None:
-        """Store vertices and faces as arrays; refuse indices that lead nowhere."""
+        """Keep vertices and faces as arrays; refuse a surface that is not closed or not oriented."""
         object.__setattr__(self, "vertices", VERTICES.read(("vertices",), self.vertices))
         object.__setattr__(self, "faces", FACES.read(("faces",), self.faces))
-        if int(self.faces.max()) >= len(self.vertices):
-            i, j = (int(k) for k in np.argwhere(self.faces >= len(self.vertices))[0])
-            raise InvalidParameter(("faces", i, j), f"be less than {len(self.vertices)}, the number of vertices")
+        assert self._closed.size
 
     @cached_property
-    def _integrals(self) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
-        """Signed volume, centre of mass, second moments about it; exact to about 30 digits.
+    def _closed(self) -> Integers:
+        return closed(self.vertices, self.faces)
+
+    @cached_property
+    def _solid(self) -> _Solid:
+        return _Solid.inside(self.vertices, self._closed)
+
+    def shape(self) -> Shape:
+        """Return volume, centre of mass and inertia per mass.
 
         Raises
         ------
-        OpenMesh
-            If edges belong to an odd number of triangles.
         InvalidParameter
-            If neighbouring triangles are wound differently, or no volume is enclosed.
+            If the surface encloses no volume.
         """
-        # Compiled code is fetched only for the bodies that need it.
-        from core.bodies.mesh_integrals import mesh_integrals
-
-        _require_closed(self.vertices, self.faces)
-        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
-        # Halved first, as the sum and the difference of two doubles may exceed their range.
-        middle, half = low / 2 + high / 2, float((high / 2 - low / 2).max())
-        exponent = int(np.frexp(half)[1])
-        scaled = np.ldexp(self.vertices, -exponent)
-        out = np.zeros((2, 10))
-        mesh_integrals(scaled, self.faces, np.ldexp(middle, -exponent), out)
-        volume, *rest = (Fraction(float(v)) + Fraction(float(t)) for v, t in out.T)
-        if half == 0.0 or abs(volume) <= UNRESOLVED:
-            raise InvalidParameter("faces", "enclose a volume greater than 0, not a flat sheet")
-        unit = Fraction(2) ** exponent
-        xx, yy, zz, xy, xz, yz = (unit**5 * s for s in rest[3:])
-        return unit**3 * volume, [unit * c for c in rest[:3]], [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-
-    def shape(self) -> Shape:
-        """Return volume, centre of mass and inertia per mass."""
-        volume, center, second = self._integrals
-        trace = second[0][0] + second[1][1] + second[2][2]
-        inertia = [[((trace if i == j else 0) - second[i][j]) / volume for j in range(3)] for i in range(3)]
-        return Shape(abs(volume), 0, center, inertia)
-
-    @property
-    def report(self) -> MeshReport:
-        """Closedness (an open mesh raises), orientation and volume."""
-        volume = self._integrals[0]
-        return MeshReport(len(self.vertices), len(self.faces), float(abs(volume)), volume < 0)
+        products = self._solid.products
+        trace = products[0][0] + products[1][1] + products[2][2]
+        inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+        return Shape(self._solid.volume, 0, self._solid.centroid, inertia)
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body; a mesh wound inwards is turned and warned of."""
+        """Return what the mechanics needs to know of the body.
+
+        Raises
+        ------
+        InvalidParameter
+            If the surface encloses no volume, or a figure lies outside the range of doubles.
+        UnphysicalInertia
+            If no matter has the moments that were found, so that the surface must pass through itself or a part of it
+            is turned inwards outside of the others.
+        """
         found = super().mass_properties()
-        report = self.report
-        wound = "inwards, and were turned" if report.inward else "outwards"
+        volume = float(self._solid.volume)
         conditions = (
-            Condition("closed-mesh", True, f"{report.triangles} triangles enclose a volume"),
-            Condition("outward-mesh", True, f"the triangles were wound {wound}"),
-            Condition("positive-volume", True, f"the volume is {report.volume:.6g} m^3"),
+            Condition("closed-surface", True, f"each of {3 * len(self.faces) // 2} edges belongs to two faces"),
+            Condition("consistent-orientation", True, "neighbouring faces run along their edge in opposite directions"),
+            Condition("positive-volume", True, f"the volume is {volume:.6g} m^3; self-intersection is not looked for"),
         )
-        inverted = Notice(
-            "inverted-mesh",
-            "the triangles are wound clockwise as seen from outside; the signs of their volumes were turned",
-            ("faces",),
-        )
-        return found.told((inverted,) if report.inward else (), conditions)
+        failed = "; ".join(condition.detail for condition in found.validity.violations)
+        if failed:
+            raise UnphysicalInertia(
+                "faces",
+                f"bound a solid: no matter has the moments that were found (not so: {failed})",
+                remedy="turn separate surfaces outwards, and take apart surfaces that pass through each other",
+            )
+        return found.told(self._solid.notices, conditions)
 
 
-def _require_closed(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> None:
-    """Raise unless every edge is run through as often one way as the other: the surface then has no boundary."""
-    open_edges, unlike = _boundary(faces, len(vertices))
-    if open_edges or unlike:
-        # Triangles that do not share indices may still share places, as in the STL format. Adding zero joins -0 to 0.
-        place = np.unique(vertices + 0.0, axis=0, return_inverse=True)[1].reshape(-1)
-        open_edges, unlike = _boundary(place[faces], len(vertices))
-    if open_edges:
-        raise OpenMesh(
-            "faces",
-            f"enclose a volume: {open_edges} edges belong to an odd number of triangles",
-            remedy="close the holes of the mesh",
-        )
-    if unlike:
-        raise InvalidParameter(
-            "faces",
-            f"be wound alike: {unlike} edges are run through in the same direction by their triangles",
-            remedy="wind every triangle counter-clockwise as seen from outside",
+@dataclass(frozen=True)
+class _Solid:
+    """Volume (m^3), centroid (m) and mean of d_i d_j over the solid, d from the centroid (m^2)."""
+
+    volume: Fraction
+    centroid: Sequence[Fraction]
+    products: Sequence[Sequence[Fraction]]
+    notices: tuple[Notice, ...]
+
+    @classmethod
+    def inside(cls, vertices: Floats, faces: Integers) -> _Solid:
+        # Compiled code is fetched only for the bodies that need it.
+        from core.bodies.surface_integrals import connected_surfaces, faces_without_area, signed_tetrahedra
+
+        surface = np.empty(len(vertices), dtype=np.int64)
+        surfaces = connected_surfaces(faces, surface)
+        used = surface >= 0
+        # A vertex that no face uses may lie anywhere; another's place keeps it out of the box.
+        local = Recentred.on(np.where(used[:, None], vertices, vertices[faces[0, 0]]))
+        sums, volumes = np.zeros((2, 10)), np.zeros(surfaces)
+        magnitude = signed_tetrahedra(local.high, local.low, faces, surface, sums, volumes)
+        # What any of the sums below may be wrong by, as coordinates are at most 1: each face rounds its own share, and
+        # every addition the sum so far.
+        rounding = Fraction(2) ** -102 * (len(faces) + 64) * Fraction(magnitude)
+        exact = [Fraction(float(h)) + Fraction(float(t)) for h, t in sums.T]
+        if abs(exact[0]) <= rounding:
+            raise InvalidParameter(
+                "faces", "enclose a volume, and that of this surface is zero to within the rounding of its sum"
+            )
+        notices = [*_flat(*faces_without_area(local.high, faces))]
+        if exact[0] < 0:
+            exact, volumes = [-x for x in exact], -volumes
+            notices.append(
+                Notice(
+                    "inverted-mesh",
+                    "the faces run clockwise as seen from outside; all of them were taken the other way round",
+                    ("faces",),
+                )
+            )
+        notices += _inward(volumes, magnitude)
+
+        volume = exact[0] / 6
+        noise = rounding / volume
+        mean = [_resolved(x / 24 / volume, noise) for x in exact[1:4]]
+        xx, yy, zz, xy, xz, yz = (x / 120 / volume for x in exact[4:])
+        about_middle = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+        about_mean = [[about_middle[i][j] - mean[i] * mean[j] for j in range(3)] for i in range(3)]
+        u = local.unit
+        return cls(
+            volume * u[0] * u[1] * u[2],
+            [o + s * c for o, s, c in zip(local.reference, u, mean, strict=True)],
+            [
+                [u[i] * u[j] * (about_mean[i][j] if i == j else _resolved(about_mean[i][j], noise)) for j in range(3)]
+                for i in range(3)
+            ],
+            tuple(notices),
         )
 
 
-def _boundary(faces: NDArray[np.int64], count: int) -> tuple[int, int]:
-    """Return how many edges belong to an odd number of triangles, and how many others have unequal directions."""
-    start, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
-    proper = start != end
-    start, end = start[proper], end[proper]
-    key = np.minimum(start, end) * count + np.maximum(start, end)
-    order = np.argsort(key, kind="stable")
-    key, sign = key[order], np.where(start < end, 1, -1)[order]
-    if key.size == 0:
-        return 0, 0
-    first = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
-    net, uses = np.add.reduceat(sign, first), np.diff(np.r_[first, key.size])
-    odd = uses % 2 == 1
-    return int(odd.sum()), int(((net != 0) & ~odd).sum())
+def _resolved(number: Fraction, rounding: Fraction) -> Fraction:
+    """Return a sum whose terms cancel, or zero where all of its digits, and its sign, would be those of rounding."""
+    return number if abs(number) > rounding else Fraction(0)
+
+
+def _flat(count: int, first: int) -> list[Notice]:
+    if not count:
+        return []
+    detail = f"{count} faces have no area and add nothing (the first is faces/{first})"
+    return [Notice("degenerate-faces", detail, ("faces", int(first)))]
+
+
+def _inward(volumes: Floats, magnitude: float) -> list[Notice]:
+    inward = int(np.count_nonzero(volumes < -1e-14 * magnitude))
+    if not inward:
+        return []
+    detail = (
+        f"{inward} of {volumes.size} closed surfaces are turned inwards and taken as cavities; "
+        "whether they lie inside the others is not checked"
+    )
+    return [Notice("inward-surfaces", detail, ("faces",))]

@@ -3,7 +3,7 @@
 By the divergence theorem the integral over the solid is the sum over the faces of the integral over the tetrahedron
 that a face (a, b, c) spans with a reference point at the origin, signed by D = a . (b x c):
 
-    volume D/6,   x_i: D (a + b + c)_i / 24,   x_i x_j: D (s_i s_j + a_i a_j + b_i b_j + c_i c_j) / 120,   s = a + b + c.
+    1: D/6,   x_i: D s_i / 24,   x_i x_j: D (s_i s_j + a_i a_j + b_i b_j + c_i c_j) / 120,   s = a + b + c.
 
 References
 ----------

@@ -97,7 +97,8 @@ class FreeAttitude:
         """Return a bound of the error of `sample`: how far it may turn a unit vector wrongly, inputs taken as exact."""
         motion, horizon = self.rotation.motion, self.rotation.horizon(times)
         if motion.regime == REST:
-            return UNIT_ROUNDOFF
+            # Four components rounded by 2^-54 at most: a distance of 2^-53, and a vector is turned by twice as much.
+            return 2.0 * UNIT_ROUNDOFF
         if motion.regime == STEADY:
             return ATTITUDE_ERROR
         turned = math.pi * self._turns(horizon)
