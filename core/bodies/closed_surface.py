@@ -129,7 +129,7 @@ def _refuse_edges(faces: Integers, numbers: Integers) -> None:
         )
     raise InvalidParameter(
         "faces",
-        f"all run counter-clockwise as seen from outside: at {np.count_nonzero(alike)} of {count.size} edges both faces "
-        f"run in the same direction ({one_of(alike)})",
+        f"all run counter-clockwise as seen from outside: at {np.count_nonzero(alike)} of {count.size} edges both "
+        f"faces run in the same direction ({one_of(alike)})",
         remedy="reverse the order of vertices in the faces that are turned over",
     )

@@ -38,7 +38,8 @@ class Mesh(Uniform):
     Attributes
     ----------
     vertices : array_like, shape (n, 3)
-        In body axes (m); kept as an array that cannot be written. Vertices at equal places count as one.
+        In body axes (m); kept as an array that cannot be written. Vertices at equal places count as one, and those that
+        no face uses are left out.
     faces : array_like of int, shape (m, 3)
         Indices of the vertices of each triangle, from 0, counter-clockwise as seen from outside.
     """

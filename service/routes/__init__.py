@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from service.routes.bodies import BODIES
 from service.routes.rotation import ROTATION
+from service.routes.scenes import questions as about_scenes
 from service.routing import Question
 
 
 def questions() -> tuple[Question, ...]:
     """Return every question that can be asked, in the order of the documentation."""
-    return (*BODIES, *ROTATION)
+    return (*BODIES, *ROTATION, *about_scenes())

@@ -15,6 +15,7 @@ from core.integration.methods import Method
 from core.integration.methods.method import AbstractMethod, Family, Invariance
 from core.quantities import members_of
 from service.problems import registry
+from service.routes.scenes import CATALOGUE
 from service.routing import Page, Reply
 from service.schemas import SIGNATURE, View
 
@@ -113,4 +114,5 @@ def catalogues() -> tuple[Page, ...]:
             constant(lambda: {"methods": methods()}),
             Methods,
         ),
+        CATALOGUE,
     )
