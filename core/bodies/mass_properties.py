@@ -22,7 +22,7 @@ from core.bodies.exact import (
     vector_pairs,
 )
 from core.bodies.principal_inertia import ZEROS, PrincipalInertia, Symmetry
-from core.bodies.validity import Condition, Validity
+from core.bodies.validity import Condition, Validity, moments_of_matter
 from core.errors import NotApplicable
 from core.notices import Notice
 
@@ -64,6 +64,11 @@ class MassProperties:
     about: About = "center-of-mass"
     warnings: tuple[Notice, ...] = ()
     conditions: tuple[Condition, ...] = ()
+
+    def __post_init__(self) -> None:
+        for array in (self.inertia, self.inertia_tail, self.center_of_mass, self.center_of_mass_tail):
+            if array is not None:
+                array.setflags(write=False)
 
     @classmethod
     def from_exact(
@@ -168,9 +173,9 @@ class MassProperties:
 
     def judged(self, field: str) -> MassProperties:
         """Return the same, with a warning at `field` if no distribution of positive mass has these moments."""
-        failed = "; ".join(condition.detail for condition in self.validity.violations)
-        if not failed:
+        if moments_of_matter(self.principal):
             return self
+        failed = "; ".join(condition.detail for condition in self.validity.violations)
         notice = Notice(
             "unphysical-inertia",
             f"no distribution of positive mass has these moments of inertia (not so: {failed}); "

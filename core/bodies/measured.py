@@ -93,18 +93,31 @@ class InertiaTensor:
         ------
         UnphysicalInertia
             If a principal moment is negative beyond rounding.
+        InvalidParameter
+            If a principal moment is too large for a double.
         """
         given = [[Fraction(x) for x in row] for row in self.tensor]
         inertia, tail = tensor_pairs([[(given[i][j] + given[j][i]) / 2 for j in range(3)] for i in range(3)])
         center = None if self.center_of_mass is None else np.array(self.center_of_mass)
         properties = MassProperties(inertia, tail, self.mass, center)
-        lowest, _, highest = (float(x) for x in properties.principal.moments)
+        try:
+            lowest, _, highest = (float(x) for x in properties.principal.moments)
+        except InvalidParameter as fault:
+            raise fault.inside("tensor") from None
         if lowest < -TOLERANCE * abs(highest):
             raise UnphysicalInertia(
                 "tensor",
                 f"have no negative principal moment, and has {lowest:.6g} kg m^2",
                 remedy="check the signs of the off-diagonal components: I_xy = -(integral of x y dm)",
             )
+        if lowest < 0.0:
+            # A difference of components of a needle's tensor: its sign is that of their rounding.
+            notice = Notice(
+                "moment-below-rounding",
+                f"the smallest principal moment, {lowest:.6g} kg m^2, is zero to within the rounding of the components",
+                ("tensor",),
+            )
+            properties = properties.told((notice,))
         differing = max(abs(given[i][j] - given[j][i]) for i, j in ((0, 1), (0, 2), (1, 2)))
         if differing:
             notice = Notice(

@@ -10,6 +10,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from core.errors import InvalidParameter
+
 Floats = NDArray[np.float64]
 Symmetry = Literal["spherical", "oblate", "prolate", "triaxial", "linear", "point"]
 
@@ -47,6 +49,11 @@ class PrincipalInertia:
         Otherwise moments are right to about 1e-30 of the largest (decoupled ones to 1e-31 of themselves) and
         those of a graded tensor to their own size. A moment below that resolution is stated as zero: its
         digits, and its sign, would be those of rounding.
+
+        Raises
+        ------
+        InvalidParameter
+            If a moment is too large for a double.
         """
         tail = ZEROS if inertia_tail is None else inertia_tail
         if inertia[0, 1] == 0.0 and inertia[0, 2] == 0.0 and inertia[1, 2] == 0.0:
@@ -65,12 +72,15 @@ class PrincipalInertia:
         values, tails, vectors, vector_tails = jacobi(a, e)
         unresolved = np.abs(values) <= _resolution(a, vectors)
         values[unresolved], tails[unresolved] = 0.0, 0.0
-        return cls._sorted(
-            [math.ldexp(float(x), exponent) for x in values],
-            [math.ldexp(float(x), exponent) for x in tails],
-            vectors,
-            vector_tails,
-        )
+        try:
+            moments = [math.ldexp(float(x), exponent) for x in values]
+        except OverflowError:
+            raise InvalidParameter(
+                (),
+                "have principal moments within the range of doubles, up to 1.8e308 kg m^2",
+                remedy="use units in which the numbers are nearer to one",
+            ) from None
+        return cls._sorted(moments, [math.ldexp(float(x), exponent) for x in tails], vectors, vector_tails)
 
     @classmethod
     def _sorted(

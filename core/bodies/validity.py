@@ -69,37 +69,35 @@ class Validity:
         return tuple(condition for condition in self.report if not condition.holds)
 
 
-def _moments(principal: PrincipalInertia) -> list[Condition]:
-    low, middle, high = (float(x) for x in principal.moments)
+def moments_of_matter(principal: PrincipalInertia) -> bool:
+    """Return whether matter can have these moments, without writing the report."""
+    return all(excess <= TOLERANCE for excess, _ in _excesses(principal))
+
+
+def _excesses(principal: PrincipalInertia) -> list[tuple[float, tuple[float, ...]]]:
+    """Return the excess of each condition and the moments concerned: the sign first, then the three inequalities."""
+    low, middle, high = principal.moments.tolist()
     # Of magnitudes and of shares, so that neither signs nor the ends of the double range spoil it.
     size = max(abs(low), abs(high)) or 1.0
     a, b, c = low / size, middle / size, high / size
     trace = abs(a) + abs(b) + abs(c) or 1.0
-    least = -a / trace
-    found = [
-        Condition(
-            "positive-moments",
-            least <= TOLERANCE,
-            f"no principal moment is negative: the smallest is {low:.6g} kg m^2",
-            least,
-            TOLERANCE,
-            (low,),
-        )
+    return [
+        (-a / trace, (low,)),
+        ((c - a - b) / trace, (high, low, middle)),
+        ((b - a - c) / trace, (middle, low, high)),
+        ((a - b - c) / trace, (low, middle, high)),
     ]
-    for (x, one), (y, other), (z, largest) in (
-        ((a, low), (b, middle), (c, high)),
-        ((a, low), (c, high), (b, middle)),
-        ((b, middle), (c, high), (a, low)),
-    ):
-        excess = (z - x - y) / trace
-        found.append(
-            Condition(
-                "triangle-inequality",
-                excess <= TOLERANCE,
-                f"{largest:.6g} <= {one:.6g} + {other:.6g} kg m^2",
-                excess,
-                TOLERANCE,
-                (largest, one, other),
+
+
+def _moments(principal: PrincipalInertia) -> list[Condition]:
+    found = []
+    for excess, moments in _excesses(principal):
+        if len(moments) == 1:
+            name, detail = (
+                "positive-moments",
+                f"no principal moment is negative: the smallest is {moments[0]:.6g} kg m^2",
             )
-        )
+        else:
+            name, detail = "triangle-inequality", "{:.6g} <= {:.6g} + {:.6g} kg m^2".format(*moments)
+        found.append(Condition(name, excess <= TOLERANCE, detail, excess, TOLERANCE, moments))
     return found

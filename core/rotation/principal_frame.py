@@ -52,6 +52,16 @@ class PrincipalFrame:
         """Sign of each principal axis along its body axis, where they are aligned."""
         return [float(self.axes[row, k]) for k, row in enumerate(self.rows)]
 
+    def to_body(self, vectors: Floats) -> Floats:
+        """Return vectors given by principal components, shape (n, 3), in body axes, exactly where axes are aligned."""
+        if not self.aligned:
+            turned: Floats = vectors @ self.axes.T
+            return turned
+        body = np.empty_like(vectors)
+        for k, (row, sign) in enumerate(zip(self.rows, self.signs, strict=True)):
+            body[:, row] = sign * vectors[:, k]
+        return body
+
     def components(self, vector: Floats) -> tuple[Floats, Floats]:
         """Return a vector's principal components and their tails, each of shape (3,), exact where axes are aligned."""
         if self.aligned:

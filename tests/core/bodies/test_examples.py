@@ -74,11 +74,14 @@ def test_a_coin_and_a_football_are_symmetric() -> None:
     assert coin.mass == 0.0075
     assert football.symmetry == "prolate"
     assert football.mass == pytest.approx(14.5 * 0.45359237 / 16, rel=1e-13)
-    # A solid ellipsoid of the same mass and size would be easier to turn, a shell of no thickness harder.
-    long, short = 11.125 * 0.0254 / 2, 21.125 * 0.0254 / (2 * math.pi)
+    # A surface without thickness in the middle of the wall, summed over hoops, is the same within the wall's share.
+    a, c = 21.125 * 0.0254 / (2 * math.pi) - 0.002, 11.125 * 0.0254 / 2 - 0.002
+    t = (np.arange(20000) + 0.5) * math.pi / 20000
+    hoops = np.sin(t) * np.hypot(c * np.sin(t), a * np.cos(t))
+    weight = football.mass * hoops / hoops.sum()
     low, middle, _ = football.principal.moments
-    assert 2 / 5 * football.mass * short**2 < low < 2 / 3 * football.mass * short**2
-    assert (long**2 + short**2) / 5 * football.mass < middle < (long**2 + short**2) / 3 * football.mass
+    assert low == pytest.approx((weight * (a * np.sin(t)) ** 2).sum(), rel=0.01)
+    assert middle == pytest.approx((weight * ((a * np.sin(t)) ** 2 / 2 + (c * np.cos(t)) ** 2)).sum(), rel=0.01)
 
 
 def test_a_deck_of_cards_and_a_phone_have_three_moments() -> None:
@@ -95,5 +98,5 @@ def test_the_earth() -> None:
     # Dynamical ellipticity (C - A)/A, and Euler's period in sidereal days, as commonly given.
     assert (high - equatorial) / equatorial == pytest.approx(0.00328455, rel=2e-5)
     assert equatorial / (high - equatorial) == pytest.approx(304.46, rel=2e-5)
-    # (B - A)/A by the gravity coefficients C22 and S22: 7.260e-6 M R^2 (Liu and Chao, Geophys. J. Int. 106 (1991), 699).
+    # B - A by the gravity coefficients C22 and S22, 7.260e-6 M R^2: Liu and Chao, Geophys. J. Int. 106 (1991), 699.
     assert middle - low == pytest.approx(7.260e-6 * 5.9722e24 * 6378137.0**2, rel=5e-3)

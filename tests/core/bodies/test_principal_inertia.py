@@ -98,7 +98,6 @@ def test_an_unresolved_moment_is_zero_and_a_resolved_one_is_not() -> None:
     along = np.array([1.0, 2.0, 3.0])
     needle = 14.0 * np.eye(3) - np.outer(along, along)
     assert PrincipalInertia.of(needle).moments[0] == 0.0
-    assert PrincipalInertia.of(needle + 1e-20 * np.eye(3), np.full((3, 3), 0.0)).moments[0] == 0.0
     resolved = PrincipalInertia.of(needle, 1e-25 * np.eye(3))
     assert abs(resolved.moments[0] - 1e-25) < 1e-29
 

@@ -30,7 +30,7 @@ def unit(written: str) -> Fraction:
 
 
 @settings(deadline=None, derandomize=True)
-@given(anything, st.integers(1, 60), st.integers(1, 400))
+@given(anything, st.integers(1, 60), st.integers(2, 400))
 def test_a_ball_gives_digits_that_hold_for_all_of_it_or_none(number: Fraction, digits: int, bits: int):
     with precision(bits):
         ball = enclosed(number)

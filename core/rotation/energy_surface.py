@@ -1,0 +1,226 @@
+"""The ellipsoid of constant kinetic energy in angular-velocity space: semi-axes, a watertight mesh, a grid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.bodies.mass_properties import MassProperties
+from core.errors import BudgetExceeded, InvalidParameter
+from core.integration.system import Floats
+
+Faces = NDArray[np.int64]
+
+FINEST = 400
+"""Largest resolution of a mesh or grid: about 640000 triangles, or 400 x 800 points."""
+
+
+@dataclass(frozen=True)
+class MeshQuality:
+    """How well triangles stand for the ellipsoid.
+
+    Attributes
+    ----------
+    watertight : bool
+        Whether every edge belongs to two triangles that run along it in opposite directions.
+    euler_characteristic : int
+        Vertices less edges plus faces; 2 for a closed surface without holes.
+    volume_ratio : float
+        Volume inside the triangles over that of the ellipsoid, below one.
+    smallest_angle : float
+        Of any triangle on the unit sphere before scaling (rad).
+    """
+
+    watertight: bool
+    euler_characteristic: int
+    volume_ratio: float
+    smallest_angle: float
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Vertices, shape (n, 3), and faces, shape (m, 3), counter-clockwise seen from outside."""
+
+    vertices: Floats
+    faces: Faces
+    quality: MeshQuality
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyEllipsoid:
+    """The surface w.I.w = 2E.
+
+    Attributes
+    ----------
+    semi_axes : ndarray, shape (3,)
+        sqrt(2E/I_i) along the principal axes, moments ascending (rad/s).
+    axes : ndarray, shape (3, 3)
+        Columns are the principal axes in body axes.
+    energy : float
+        J.
+    """
+
+    semi_axes: Floats
+    axes: Floats
+    energy: float
+
+    @classmethod
+    def of(cls, body: MassProperties, energy: float) -> EnergyEllipsoid:
+        """Return the ellipsoid of a body at an energy greater than 0 (J).
+
+        Raises
+        ------
+        InvalidParameter
+            If the energy is not positive, a moment is zero, or a semi-axis leaves the range of doubles.
+        """
+        if not (math.isfinite(energy) and energy > 0.0):
+            raise InvalidParameter("energy", "be finite and greater than 0 J")
+        principal = body.principal_of_motion
+        if not principal.moments[0] > 0.0:
+            raise InvalidParameter(
+                "body", "have three moments of inertia greater than 0 for its energy surface to close"
+            )
+        # 2E/I with exponents apart, an even one for the root.
+        axes = []
+        for moment in principal.moments.tolist():
+            (e, p), (i, q) = math.frexp(2.0 * energy if energy < 1e308 else energy), math.frexp(moment)
+            exponent = p - q + (0 if energy < 1e308 else 1)
+            odd = exponent % 2
+            axes.append(_ldexp(math.sqrt(e / i * 2.0**odd), (exponent - odd) // 2))
+        return cls(np.array(axes), principal.axes, energy)
+
+    @classmethod
+    def through(cls, body: MassProperties, angular_velocity: Floats) -> EnergyEllipsoid:
+        """Return the ellipsoid on which an angular velocity, shape (3,), lies.
+
+        Raises
+        ------
+        InvalidParameter
+            If the body is at rest, or the energy leaves the range of doubles.
+        """
+        largest = float(np.max(np.abs(angular_velocity)))
+        if largest == 0.0:
+            raise InvalidParameter("angular_velocity", "not be zero: at rest there is no energy surface")
+        principal = body.principal_of_motion
+        rate, size = math.frexp(largest)[1], math.frexp(float(principal.moments[2]))[1]
+        w = principal.axes.T @ np.ldexp(angular_velocity, -rate)
+        i = np.ldexp(principal.moments, -size)
+        mantissa, exponent = math.frexp(0.5 * float((i * w * w).sum()))
+        return cls.of(body, _ldexp(mantissa, exponent + size + 2 * rate, "angular_velocity"))
+
+    def points(self, directions: Floats) -> Floats:
+        """Return the points of the surface, in body axes, that unit vectors, shape (n, 3), are scaled to."""
+        scaled = directions * self.semi_axes
+        # One correction takes the rounding of the direction's length out of the energy.
+        shape = scaled / self.semi_axes
+        scaled *= 1.5 - 0.5 * (shape * shape).sum(axis=1, keepdims=True)
+        points: Floats = scaled @ self.axes.T
+        return points
+
+    def triangles(self, resolution: int) -> TriangleMesh:
+        """Return an icosahedron whose edges are cut into `resolution` parts, put on the sphere and scaled.
+
+        Raises
+        ------
+        InvalidParameter
+            If the resolution is below 1.
+        BudgetExceeded
+            If it is above 400.
+        """
+        _check_resolution(resolution, 1)
+        directions, faces = _geodesic_sphere(resolution)
+        return TriangleMesh(self.points(directions), faces, _quality(directions, faces))
+
+    def grid(self, resolution: int) -> tuple[Floats, Floats, Floats]:
+        """Return x, y and z, each of shape (2 resolution, resolution), over longitude and colatitude.
+
+        Colatitude runs from 0 to pi along rows, longitude from 0 to 2 pi down columns, both ends included.
+        """
+        _check_resolution(resolution, 2)
+        colatitude, longitude = np.linspace(0.0, np.pi, resolution), np.linspace(0.0, 2.0 * np.pi, 2 * resolution)
+        # The seam closes and the poles are points, exactly.
+        cosine, sine = np.cos(longitude), np.sin(longitude)
+        cosine[-1], sine[-1] = cosine[0], sine[0]
+        ring = np.sin(colatitude)
+        ring[0] = ring[-1] = 0.0
+        sphere = np.stack(
+            [np.outer(cosine, ring), np.outer(sine, ring), np.outer(np.ones(2 * resolution), np.cos(colatitude))],
+            axis=-1,
+        )
+        points = self.points(sphere.reshape(-1, 3)).reshape(sphere.shape)
+        return points[..., 0], points[..., 1], points[..., 2]
+
+
+def _ldexp(mantissa: float, exponent: int, name: str = "energy") -> float:
+    if not -1021 <= exponent <= 1023:
+        raise InvalidParameter(
+            name, "give an energy and semi-axes within the range of doubles", remedy="choose other units"
+        )
+    return math.ldexp(mantissa, exponent)
+
+
+def _check_resolution(resolution: int, least: int) -> None:
+    if resolution < least:
+        raise InvalidParameter("resolution", f"be at least {least}")
+    if resolution > FINEST:
+        raise BudgetExceeded(
+            "subdivisions", resolution, FINEST, path=("resolution",), remedy="ask for a coarser surface"
+        )
+
+
+def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
+    """Return unit vectors and faces of an icosahedron with every edge cut into `parts`, corners shared."""
+    g = 0.5 * (1.0 + math.sqrt(5.0))
+    corners = np.array(
+        [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g),
+         (g, 0, -1), (g, 0, 1),
+         (-g, 0, -1), (-g, 0, 1)]
+    )  # fmt: skip
+    solid = [
+        (0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
+        (11, 10, 2), (10, 7, 6), (7, 1, 8),
+        (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1),
+    ]  # fmt: skip
+    numbers: dict[tuple[tuple[int, int], ...], int] = {}
+    weights: list[tuple[tuple[int, int], ...]] = []
+    faces = []
+    for a, b, c in solid:
+        local = np.empty((parts + 1, parts + 1), dtype=np.int64)
+        for i in range(parts + 1):
+            for j in range(parts + 1 - i):
+                # A vertex is known by its whole-number weights on the corners, whichever face it is met from.
+                key = tuple(sorted((corner, n) for corner, n in ((a, parts - i - j), (b, i), (c, j)) if n))
+                if key not in numbers:
+                    numbers[key] = len(weights)
+                    weights.append(key)
+                local[i, j] = numbers[key]
+        for i in range(parts):
+            for j in range(parts - i):
+                faces.append((local[i, j], local[i + 1, j], local[i, j + 1]))
+                if i + j < parts - 1:
+                    faces.append((local[i + 1, j], local[i + 1, j + 1], local[i, j + 1]))
+    mixed = np.array([sum((n * corners[corner] for corner, n in key), np.zeros(3)) for key in weights])
+    return mixed / np.sqrt((mixed * mixed).sum(axis=1))[:, None], np.array(faces, dtype=np.int64)
+
+
+def _quality(directions: Floats, faces: Faces) -> MeshQuality:
+    a, b, c = (directions[faces[:, k]] for k in range(3))
+    # The volume ratio is the same for sphere and ellipsoid, which differ by a linear map.
+    inside = float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    there = {(int(p), int(q)) for p, q in edges}
+    watertight = len(there) == len(edges) and all((q, p) in there for p, q in there)
+
+    def angle(x: Floats, y: Floats, z: Floats) -> float:
+        u, v = y - x, z - x
+        return float(np.min(np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v))))
+
+    return MeshQuality(
+        watertight,
+        len(directions) - len(edges) // 2 + len(faces),
+        inside / (4.0 / 3.0 * math.pi),
+        min(angle(a, b, c), angle(b, c, a), angle(c, a, b)),
+    )

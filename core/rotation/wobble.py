@@ -1,0 +1,133 @@
+"""The free wobble of a nearly spherical planet: from its period to its asymmetry and ellipticity, and back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import sqrt
+from typing import Literal
+
+from core.errors import InvalidParameter
+
+Day = Literal["sidereal", "solar"]
+
+SOLAR_DAY_IN_ROTATIONS = 1.00273790935
+"""Rotations of the Earth in a mean solar day (S. Aoki et al., Astronomy and Astrophysics 105 (1982) 359)."""
+
+
+@dataclass(frozen=True)
+class EarthFigures:
+    """What is measured of the Earth, to stand beside a model.
+
+    Attributes
+    ----------
+    axis_ratio : float
+        Equatorial over polar radius, WGS 84 (a = 6378137 m, 1/f = 298.257223563).
+    asymmetry : float
+        (C - A)/A, from the dynamical ellipticity H = (C - A)/C = 0.0032737949 (IAU 2006 precession) by H/(1 - H).
+    rigid_period_sidereal, rigid_period_solar : float
+        Period of the wobble if the Earth were rigid (days).
+    observed_period_solar : float
+        Chandler's period (days).
+    """
+
+    axis_ratio: float = 1.00336409
+    asymmetry: float = 0.00328455
+    rigid_period_sidereal: float = 304.46
+    rigid_period_solar: float = 303.62
+    observed_period_solar: float = 433.0
+    why: str = (
+        "A rigid Earth would wobble in 304 sidereal days; it is observed to take about 433. The Earth yields: its "
+        "elastic mantle and its oceans follow the wobbling axis and lengthen the period, its fluid core, which does not "
+        "take part, shortens it. The wobble is damped and kept alive by ocean and atmosphere, so its path is no circle. "
+        "A density that is not uniform changes none of this: every tensor of inertia has principal axes."
+    )
+
+
+EARTH = EarthFigures()
+
+
+@dataclass(frozen=True)
+class Wobble:
+    """A wobble and the body that has it.
+
+    Attributes
+    ----------
+    period : float
+        In days of the kind `day`.
+    day : {"sidereal", "solar"}
+    rotations : float
+        The period in rotations of the body, which is 1/asymmetry.
+    asymmetry : float
+        (I1 - I)/I of the moment about the axis of figure and the other two.
+    ellipticity : float
+        Major over minor axis, a/c, if the density is a spherically symmetric one, scaled along the axis.
+    flattening : float
+        (a - c)/a.
+    earth : EarthFigures
+    """
+
+    period: float
+    day: Day
+    rotations: float
+    asymmetry: float
+    ellipticity: float
+    flattening: float
+    earth: EarthFigures = EARTH
+
+
+def from_period(period: float, day: Day = "sidereal") -> Wobble:
+    """Return the oblate body whose axis wobbles with a period.
+
+    Euler's equations give the body rate (I1 - I)/I w for a spin w about the axis of figure, so the asymmetry is one over
+    the period in rotations. For a density f(x^2/a^2 + y^2/a^2 + z^2/c^2), I1 ~ 2a^2 and I ~ a^2 + c^2, so that
+    a/c = sqrt((1 + e)/(1 - e)).
+
+    Parameters
+    ----------
+    period : float
+        In days, more than one rotation, as a wider asymmetry is no body's.
+    day : {"sidereal", "solar"}
+        A sidereal day is one rotation.
+
+    Raises
+    ------
+    InvalidParameter
+        If no body wobbles so.
+    """
+    unit = Fraction(SOLAR_DAY_IN_ROTATIONS) if day == "solar" else Fraction(1)
+    if not 0.0 < period < float("inf"):
+        raise InvalidParameter("period", "be finite and greater than 0 days")
+    rotations = Fraction(period) * unit
+    if rotations <= 1:
+        raise InvalidParameter(
+            "period",
+            "be more than one rotation: (I1 - I)/I < 1 for every oblate body",
+            remedy="give the period in days",
+        )
+    return _wobble(period, day, rotations)
+
+
+def from_ellipticity(ellipticity: float, day: Day = "sidereal") -> Wobble:
+    """Return the wobble of a body with a given ratio a/c of its axes, greater than 1; the inverse of `from_period`.
+
+    Raises
+    ------
+    InvalidParameter
+        If the ratio is not greater than 1.
+    """
+    if not 1.0 < ellipticity < float("inf"):
+        raise InvalidParameter("ellipticity", "be finite and greater than 1: a/c of an oblate body")
+    # e = (r^2 - 1)/(r^2 + 1), with r^2 - 1 = (r - 1)(r + 1) formed exactly.
+    r = Fraction(ellipticity)
+    rotations = (r * r + 1) / ((r - 1) * (r + 1))
+    unit = Fraction(SOLAR_DAY_IN_ROTATIONS) if day == "solar" else Fraction(1)
+    return _wobble(float(rotations / unit), day, rotations)
+
+
+def _wobble(period: float, day: Day, rotations: Fraction) -> Wobble:
+    asymmetry = 1 / rotations
+    ellipticity = sqrt((rotations + 1) / (rotations - 1))
+    # 1 - c/a = (1 - c^2/a^2)/(1 + c/a), and c^2/a^2 = (1 - e)/(1 + e).
+    flattening = float(2 * asymmetry / (1 + asymmetry)) / (1.0 + 1.0 / ellipticity)
+    return Wobble(period, day, float(rotations), float(asymmetry), ellipticity, flattening)

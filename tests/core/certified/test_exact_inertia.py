@@ -1,0 +1,86 @@
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.certified.exact_inertia import ExactInertia, cross
+from core.errors import InvalidParameter
+
+small = st.integers(-9, 9)
+
+
+def test_point_masses_give_their_tensor_exactly():
+    # Source: sum of m (r.r 1 - r r^T) about the centre of mass, worked by hand for three masses.
+    inertia = ExactInertia.of_point_masses(["0.1", "0.2", "0.1"], [(0, 0, 0), (1, 0, 0), (0, 2, "0.5")])
+    center = [Fraction(1, 2), Fraction(1, 2), Fraction(1, 8)]
+    points = [(Fraction(1, 10), (0, 0, 0)), (Fraction(1, 5), (1, 0, 0)), (Fraction(1, 10), (0, 2, Fraction(1, 2)))]
+    for i in range(3):
+        for j in range(3):
+            expected = Fraction(0)
+            for m, p in points:
+                d = [Fraction(x) - c for x, c in zip(p, center, strict=True)]
+                expected += m * ((sum(x * x for x in d) if i == j else 0) - d[i] * d[j])
+            assert inertia.tensor[i][j] == expected
+
+
+def test_point_masses_about_the_origin_keep_their_offset():
+    points = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    assert ExactInertia.of_point_masses(1, points, about_origin=True).tensor[0] == (2, 0, 0)
+    assert ExactInertia.of_point_masses("1", points).tensor[0] == (Fraction(4, 3), Fraction(1, 3), Fraction(1, 3))
+
+
+@settings(deadline=None, derandomize=True)
+@given(st.lists(st.tuples(small, small, small), min_size=4, max_size=6, unique=True))
+def test_moments_are_roots_of_the_cubic(points):
+    try:
+        inertia = ExactInertia.of_point_masses(1, points)
+    except InvalidParameter:
+        return
+    moments = np.linalg.eigvalsh(np.array(inertia.tensor, dtype=float))
+    product = np.prod(moments)
+    assert float(inertia.determinant_at(Fraction(0))) == pytest.approx(product, rel=1e-9)
+    assert float(inertia.minors) == pytest.approx(moments[0] * moments[1] + moments[2] * (moments[0] + moments[1]))
+    if inertia.rational_moments is not None:
+        assert [float(x) for x in inertia.rational_moments] == pytest.approx(moments)
+        assert all(inertia.determinant_at(x) == 0 for x in inertia.rational_moments)
+    gaps = np.diff(moments) > 1e-6 * moments[2]
+    assert inertia.equal_moments == 3 - int(gaps.sum())
+
+
+def test_a_double_moment_is_recognised_in_oblique_axes():
+    inertia = ExactInertia.of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, 2]])
+    assert inertia.rational_moments == (1, 1, 4)
+    assert inertia.equal_moments == 2
+    missed = ExactInertia.of_tensor([[2, 1, 1], [1, 2, 1], [1, 1, "2.0000000000000000000000000000001"]])
+    assert missed.rational_moments is None
+    assert missed.equal_moments == 1
+    assert ExactInertia.of_moments(["0.3", "0.3", "0.3"]).equal_moments == 3
+
+
+@pytest.mark.parametrize(
+    ("build", "path"),
+    [
+        (lambda: ExactInertia.of_moments([1, 0, 1]), ("moments", 1)),
+        (lambda: ExactInertia.of_moments([1, 2]), ("moments",)),
+        (lambda: ExactInertia.of_moments([1, 2, "x"]), ("moments", 2)),
+        (lambda: ExactInertia.of_tensor([[1, 2, 0], [2, 1, 0], [0, 0, 1]]), ("body",)),
+        (lambda: ExactInertia.of_tensor([[1, 0.1, 0], [0.2, 1, 0], [0, 0, 1]]), ("tensor", 1, 0)),
+        (lambda: ExactInertia.of_tensor([[1, 0], [0, 1]]), ("tensor",)),
+        (lambda: ExactInertia.of_point_masses(1, [(0, 0, 0), (1, 1, 1)]), ("body",)),
+        (lambda: ExactInertia.of_point_masses([1, -1], [(0, 0, 0), (1, 1, 1)]), ("masses", 1)),
+        (lambda: ExactInertia.of_point_masses([1], [(0, 0, 0), (1, 1, 1)]), ("masses",)),
+        (lambda: ExactInertia.of_point_masses(1, []), ("positions",)),
+    ],
+)
+def test_what_is_no_body_is_refused(build, path):
+    with pytest.raises(InvalidParameter) as caught:
+        build()
+    assert caught.value.path == path
+
+
+def test_momentum_and_cross_product():
+    inertia = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
+    assert inertia.momentum((Fraction(1), Fraction(2), Fraction(3))) == (4, 7, 15)
+    assert cross((Fraction(1), Fraction(0), Fraction(0)), (Fraction(0), Fraction(1), Fraction(0))) == (0, 0, 1)
