@@ -47,7 +47,10 @@ class Quantity:
             return
         if isinstance(value, bool) or not isinstance(value, Real):
             raise InvalidParameter(path, "be a number")
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:
+            raise InvalidParameter(path, "be within the range of doubles") from None
         unit = "" if self.unit == "1" else f" {self.unit}"
         if not isfinite(number):
             raise InvalidParameter(path, "be finite")

@@ -63,9 +63,19 @@ def openapi(app: FastAPI) -> dict[str, Any]:
     document = app.openapi()
     problem = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
     document["components"]["schemas"] |= problem.pop("$defs") | {"ProblemDocument": problem}
-    for schema in document["components"]["schemas"].values():
-        _require_tag(schema)
+    for reference in _told_apart(document):
+        _require_tag(document["components"]["schemas"][reference.rsplit("/", 1)[1]])
     return document
+
+
+def _told_apart(node: Any) -> set[str]:
+    """Return the references to all members of unions that are told apart by a field."""
+    if isinstance(node, list):
+        return set().union(*map(_told_apart, node))
+    if not isinstance(node, dict):
+        return set()
+    own = node.get("discriminator", {}).get("mapping", {}) if "oneOf" in node else {}
+    return set(own.values()).union(*map(_told_apart, node.values()))
 
 
 def _require_tag(schema: dict[str, Any]) -> None:

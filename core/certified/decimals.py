@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 
 from flint import arb, fmpz
 
@@ -17,6 +18,9 @@ SHARE = 100
 
 FLOOR_IN_DIGITS = 2
 """A component that is this many times the printed digits below the largest norm is given as far as that place."""
+
+DEEPEST = 2000
+"""Where a component is known not to be zero, its digits are given from so many places below the largest norm."""
 
 _TEN = [fmpz(10) ** k for k in range(64)]
 
@@ -48,6 +52,9 @@ def decimal(ball: arb, digits: int, floor: int | None = None) -> str:
         return "0"
     if not ball.is_finite():
         raise Undetermined
+    if floor is not None and abs(ball) < _far_below(floor):
+        # Without an expansion in decimals, which of a number like exp(-10^9) would have as many digits.
+        return f"0e{floor}"
     mid, rad, exponent = ball.mid_rad_10exp(digits + SPARE_DIGITS)
     negative = mid < 0
     size = -mid if negative else mid
@@ -98,6 +105,12 @@ def numeral(whole: int, place: int, digits: int, negative: bool) -> str:
         return f"{sign}{written[:point]}.{written[point:]}" if place else sign + written
     fraction = f".{written[1:]}" if len(written) > 1 else ""
     return f"{sign}{written[0]}{fraction}e{exponent}"
+
+
+@lru_cache(maxsize=64)
+def _far_below(floor: int) -> arb:
+    """Return a hundredth of the last place, or a little less: an exact number."""
+    return (arb(10) ** (floor - 2)).lower()
 
 
 def place_of(size: arb) -> int:

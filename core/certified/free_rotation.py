@@ -9,7 +9,7 @@ from functools import cached_property
 
 from flint import arb
 
-from core.certified.decimals import FLOOR_IN_DIGITS, decimal, decimal_of_fraction, decimals, floor_below
+from core.certified.decimals import DEEPEST, FLOOR_IN_DIGITS, decimal, decimal_of_fraction, decimals, floor_below
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact_numbers
 from core.certified.exact_start import ExactStart, Regime
@@ -26,10 +26,9 @@ class CertifiedRotation:
     """A body that turns freely, its inertia and its start taken as exact.
 
     Every numeral that is returned has the number of significant digits asked for and differs from the true value by at
-    most 0.51 units of its last digit. ``"0"`` is exactly zero. Numbers of which it is not known beforehand whether
-    they are zero (components of an attitude, and of an angular velocity where the principal axes are not the body
-    axes) are given at most as far as twice so many digits below the largest norm: one that vanishes to there reads
-    ``"0e-60"``.
+    most 0.51 units of its last digit. ``"0"`` is exactly zero. Components are given as far as twice so many digits
+    below the largest norm: one that vanishes to there, exactly or not, reads ``"0e-60"``. Along principal axes, where
+    it is known which components vanish, angular velocities go 2000 places deeper.
 
     Attributes
     ----------
@@ -70,10 +69,10 @@ class CertifiedRotation:
     def angular_velocity(self, times: Sequence[Number], digits: int) -> Rows:
         """Return the angular velocity in body axes, n rows of 3 numerals.
 
-        Each component has its own `digits` significant digits. Along principal axes this is always possible: at t = 0
-        the components are the given rational numbers, and at any other time a component that is not identically zero is
-        a transcendental number (Schneider; Lindemann where the functions are elementary), so some precision tells it
-        from zero.
+        Each component has its own `digits` significant digits, also next to a change of its sign. Along principal axes
+        some precision always tells it from zero: at t = 0 the components are the given rational numbers, and at any
+        other time a component that is not identically zero is a transcendental number (Schneider; Lindemann where the
+        functions are elementary).
 
         Parameters
         ----------
@@ -130,7 +129,9 @@ class CertifiedRotation:
         def turning() -> Callable[[int], Rows]:
             motion = TurningMotion(self.start)
             points = [enclosed(t) for t in instants]
-            floor = None if self.inertia.diagonal else floor_below(motion.largest_rate, digits)
+            floor = floor_below(motion.largest_rate, digits)
+            if self.inertia.diagonal:
+                floor -= DEEPEST
             q0 = _normalised(attitude or IDENTITY)
             turned = None if attitude is None else motion.attitudes(q0)
 

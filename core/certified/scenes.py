@@ -25,12 +25,13 @@ from core.errors import InvalidParameter, MechanicsError, NotApplicable
 from core.integration.system import Model
 from core.notices import Notice
 from core.scenes.answer import HORIZON, MOTION, ConstrainedSystem
-from core.scenes.enclosure import BITS
+from core.scenes.enclosure import BITS, sign
 from core.scenes.friction import Friction
 from core.scenes.rod_in_hole import RodInHole
-from core.scenes.string_samples import ShaftMotion
+from core.scenes.unwinding_shafts import UnwindingShafts
 
-MOST_SAMPLES = 100_000
+LARGEST = Fraction(10**300)
+"""The scenes check the ranges of their parameters as doubles."""
 
 SceneType = TypeVar("SceneType", bound=ConstrainedSystem)
 
@@ -130,7 +131,7 @@ class _Question:
             points = [enclosed(t) for t in self.instants or ()]
             horizon = max((float(t) for t in self.instants), default=0.0) if self.instants is not None else float("inf")
             motion = scene.motion(horizon)
-            _refuse_rounded(motion)
+            _refuse_rounded(scene, motion)
             end = motion.end
             last = None if self.instants is None else enclosed(max((*self.instants, Fraction(0))))
             over = end is not None and (last is None or not end.time > last)
@@ -195,8 +196,19 @@ def _wanted(
     return outputs
 
 
-def _refuse_rounded(motion: Any) -> None:
-    if isinstance(motion, ShaftMotion) and motion._unresolved > 0:
+def _refuse_rounded(scene: ConstrainedSystem, motion: Any) -> None:
+    """Refuse what a scene takes for zero though exactly it is not."""
+    if not isinstance(scene, UnwindingShafts):
+        return
+    slips = [
+        Fraction(v) - Fraction(r) * Fraction(w)
+        for v, r, w in zip(scene.velocities, scene.radii, scene.spins, strict=True)
+    ]
+    taken = scene._given
+    pairs = [(sum(slips), taken.opening)]
+    if scene.friction is not None:
+        pairs += list(zip(slips, taken.slips, strict=True))
+    if sign(motion.phases.cut) > 0 or any(exactly != 0 and sign(ball) == 0 for exactly, ball in pairs):
         raise NotApplicable(
             "velocities and spins agree with a taut string only to rounding, or jerks become too weak to be told apart",
             path=("digits",),
@@ -217,4 +229,7 @@ def _exactly(value: Any, path: tuple[str | int, ...]) -> Any:
         return tuple(_exactly(entry, (*path, i)) for i, entry in enumerate(value))
     if value is None or path[-1] in ("kind", "hole"):
         return value
-    return exact(value, path)
+    number = exact(value, path)
+    if abs(number) > LARGEST or 0 < abs(number) < 1 / LARGEST:
+        raise InvalidParameter(path, "be zero or have a magnitude between 1e-300 and 1e300")
+    return number

@@ -205,8 +205,7 @@ class TurningMotion:
         """Return cosine and sine of psi/2, up to a common positive factor."""
         if self.separatrix:
             x, z = self._at_zero
-            s, c = (phase / 2).sinh_cosh()
-            real, imag = c, -self.side * x / (self.L + z) * s
+            real, imag = ONE, -self.side * x / (self.L + z) * (phase / 2).tanh()
             sin, cos = (self.L / (2 * self.moments[1] * self.p) * phase).sin_cos()
         else:
             sin, cos = (self._half_turns * phase).sin_cos_pi()

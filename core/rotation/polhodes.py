@@ -62,10 +62,8 @@ def polhode(body: MassProperties, angular_velocity: Floats, count: int = 256) ->
     if motion.regime in (REST, STEADY):
         return Polhode(regime, False, angular_velocity.reshape(1, 3).copy())
     cosine, sine = _circle(count)
-    if motion.regime == SEPARATRIX:
-        along = cosine
-    else:
-        along = np.sqrt(cosine * cosine + motion.m1 * (sine * sine))
+    on_separatrix = motion.regime == SEPARATRIX
+    along = cosine if on_separatrix else np.sqrt(cosine * cosine + motion.m1 * (sine * sine))
     c, d = (0, 2) if motion.circled == 2 else (2, 0)
     principal = np.empty((count + 1, 3))
     principal[:, c], principal[:, 1], principal[:, d] = motion.A_c * cosine, motion.A_b * sine, motion.A_d * along
@@ -73,7 +71,7 @@ def polhode(body: MassProperties, angular_velocity: Floats, count: int = 256) ->
 
 
 def separatrix(body: MassProperties, energy: float, count: int = 256) -> tuple[Polhode, ...]:
-    """Return the separatrix of an energy (J): two ellipses that cross at the middle axis, none if two moments are equal.
+    """Return the separatrix of an energy (J): two ellipses that cross at the middle axis, none if moments are equal.
 
     From D_B = 0: A_b^2 = 2E/B, A_a^2 = B (C - B) A_b^2 / (A (C - A)), A_c^2 = B (B - A) A_b^2 / (C (C - A)).
     """

@@ -38,8 +38,8 @@ class EarthFigures:
     observed_period_solar: float = 433.0
     why: str = (
         "A rigid Earth would wobble in 304 sidereal days; it is observed to take about 433. The Earth yields: its "
-        "elastic mantle and its oceans follow the wobbling axis and lengthen the period, its fluid core, which does not "
-        "take part, shortens it. The wobble is damped and kept alive by ocean and atmosphere, so its path is no circle. "
+        "elastic mantle and its oceans follow the wobbling axis and lengthen the period; its fluid core "
+        "does not take part and shortens it. The wobble is damped and kept alive by ocean and atmosphere: its path is no circle. "
         "A density that is not uniform changes none of this: every tensor of inertia has principal axes."
     )
 
@@ -79,8 +79,8 @@ class Wobble:
 def from_period(period: float, day: Day = "sidereal") -> Wobble:
     """Return the oblate body whose axis wobbles with a period.
 
-    Euler's equations give the body rate (I1 - I)/I w for a spin w about the axis of figure, so the asymmetry is one over
-    the period in rotations. For a density f(x^2/a^2 + y^2/a^2 + z^2/c^2), I1 ~ 2a^2 and I ~ a^2 + c^2, so that
+    Euler's equations give the body rate (I1 - I)/I w for a spin w about the axis of figure, so the asymmetry is one
+    over the period in rotations. For a density f(x^2/a^2 + y^2/a^2 + z^2/c^2), I1 ~ 2a^2 and I ~ a^2 + c^2, so that
     a/c = sqrt((1 + e)/(1 - e)).
 
     Parameters

@@ -67,7 +67,7 @@ class ChainOnWedge(ConstrainedSystem):
     def __post_init__(self) -> None:
         check(self)
         if self.position > self.length:
-            raise InvalidParameter("position", f"be at most the length {self.length:g} m of the chain")
+            raise InvalidParameter("position", f"be at most the length {float(self.length):g} m of the chain")
         if not any((*self.masses, self.linear_density)):
             raise InvalidParameter("masses", "not all be 0 where the chain has no mass either")
 

@@ -41,7 +41,7 @@ class Friction:
         check(self)
         for i in (0, 1):
             if self.kinetic[i] > self.static[i]:
-                raise InvalidParameter(("kinetic", i), f"be at most the static coefficient {self.static[i]:g}")
+                raise InvalidParameter(("kinetic", i), f"be at most the static coefficient {float(self.static[i]):g}")
 
 
 def with_friction(friction: Friction, constants: Constants, state: State) -> Drive:

@@ -77,7 +77,7 @@ class RodInHole(ConstrainedSystem):
         if self.hole not in ("half-cylinder", "cylinder"):
             raise InvalidParameter("hole", "be 'half-cylinder' or 'cylinder'")
         if self.length >= 2 * self.hole_radius:
-            raise InvalidParameter("length", f"be less than the diameter {2 * self.hole_radius:g} m of the hole")
+            raise InvalidParameter("length", f"be less than the diameter {float(2 * self.hole_radius):g} m of the hole")
         if self.angle is not None and self.hole == "half-cylinder":
             with precision():
                 rim = self._rim_angle

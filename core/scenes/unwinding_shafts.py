@@ -96,7 +96,7 @@ class UnwindingShafts(ConstrainedSystem):
                 )
             at, length = self.positions, self.slope_lengths
             if at is not None and length is not None and at[i] > length[i]:
-                raise InvalidParameter(("positions", i), f"be at most the length {length[i]:g} m of its slope")
+                raise InvalidParameter(("positions", i), f"be at most the length {float(length[i]):g} m of its slope")
 
     def figures(self) -> Mapping[str, Callable[[], Any]]:
         """Return forces and accelerations right after t = 0 (after the jerk, if the string is jerked then)."""

@@ -64,6 +64,39 @@ def test_leaves_and_needles(edges: tuple[float, float, float]) -> None:
     assert found.validity.physical
 
 
+def askew(thickness: float) -> tuple[Vertices, Faces]:
+    """Return a leaf that lies in no plane of coordinates, its corners rounded to doubles."""
+    vertices, faces = cuboid((1.0, 1.3, thickness))
+    turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
+    return (np.array(vertices) @ (turn * np.linalg.det(turn)).T).tolist(), faces
+
+
+@pytest.mark.parametrize("thickness", [1e-3, 1e-6, 1e-9, 1e-12, 1e-14, 1e-15])
+def test_a_leaf_askew_is_as_right_as_is_said(thickness: float) -> None:
+    vertices, faces = askew(thickness)
+    found = Mesh(vertices, faces, density=1.0).mass_properties()
+    volume, _, inertia = exact_properties(vertices, faces)
+    error = abs(found.exact_mass / volume - 1)
+    size = max(abs(x) for row in inertia for x in row)
+    error = max(error, *(abs(found.exact_inertia[i][j] - inertia[i][j]) / size for i in range(3) for j in range(3)))
+    said = [float(n.detail.split("right to ")[1].split(" ")[0]) for n in found.warnings if n.code == "thin-mesh"]
+    assert bool(said) == (thickness < 1e-14)
+    assert error < (said[0] if said else 2.0**-53)
+    assert error < 1e-31 / thickness
+
+
+def test_a_leaf_no_thicker_than_the_rounding_of_its_sum_is_refused() -> None:
+    k = 30000
+    # Whole numbers of determinant 1, of a size of 1e9.
+    edges = np.array([[1, 0, 0], [k, 1, 0], [k, k, 1]]) @ np.array([[1, k, k], [0, 1, k], [0, 0, 1]])
+    vertices = [[0.0, 0.0, 0.0], *edges.astype(float).tolist()]
+    faces = TETRAHEDRON
+    assert exact_properties(vertices, faces)[0] == Fraction(1, 6)
+    with pytest.raises(InvalidParameter, match="zero to within the rounding") as caught:
+        Mesh(vertices, faces, density=1.0).mass_properties()
+    assert caught.value.path == ("faces",)
+
+
 coordinate = st.floats(-1, 1, allow_subnormal=False)
 corners = st.lists(st.lists(coordinate, min_size=3, max_size=3), min_size=4, max_size=4)
 
@@ -260,6 +293,15 @@ def test_a_part_turned_inwards_outside_of_the_others_is_refused_where_no_matter_
     with pytest.raises(UnphysicalInertia) as caught:
         Mesh(vertices, both, density=1.0).mass_properties()
     assert caught.value.path == ("faces",)
+
+
+@pytest.mark.parametrize("field", ["mass", "density"])
+def test_a_hole_is_a_mesh_but_no_body(field: str) -> None:
+    hole = Mesh(BLOCK, SIDES, **{field: -2.0})
+    assert hole.is_hole
+    with pytest.raises(InvalidParameter) as caught:
+        hole.mass_properties()
+    assert caught.value.path == (field,)
 
 
 def test_out_of_the_range_of_doubles() -> None:

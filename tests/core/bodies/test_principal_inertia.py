@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.principal_inertia import PrincipalInertia
+from core.errors import InvalidParameter
 
 CONTEXT = mp.mp.clone()
 CONTEXT.dps = 80
@@ -125,3 +126,41 @@ def test_arrays_cannot_be_written() -> None:
     found = PrincipalInertia.of(np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]))
     with pytest.raises(ValueError, match="read-only"):
         found.moments[0] = 0.0
+
+
+@settings(deadline=None, max_examples=80)
+@given(st.integers(0, 2**32), st.integers(4, 60), st.booleans())
+def test_nearly_equal_moments(seed: int, bits: int, lower: bool) -> None:
+    rng = np.random.default_rng(seed)
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    near = 1.0 + 2.0**-bits
+    tensor = axes @ np.diag([1.0, near, 1.7] if lower else [0.3, 1.0, near]) @ axes.T
+    tensor = np.triu(tensor) + np.triu(tensor, 1).T
+    found, errors = judge(tensor, np.zeros((3, 3)))
+    assert max(errors) < 1e-30
+    gap = found.moments[1] - found.moments[0] if lower else found.moments[2] - found.moments[1]
+    assert gap == pytest.approx(2.0**-bits, abs=4e-15)
+
+
+@settings(deadline=None, max_examples=80)
+@given(st.integers(0, 2**32), st.sampled_from([(0, 1), (0, 2), (1, 2)]), st.floats(-40, 0))
+def test_one_product_of_inertia_and_tails(seed: int, place: tuple[int, int], size: float) -> None:
+    rng = np.random.default_rng(seed)
+    tensor, tail = np.diag(rng.uniform(0.5, 2.0, 3)), np.zeros((3, 3))
+    i, j = place
+    tensor[i, j] = tensor[j, i] = 10.0**size * rng.uniform(-0.4, 0.4)
+    tail = tensor * symmetric(rng) * 2.0**-56
+    found, errors = judge(tensor, tail)
+    assert max(errors) < 1e-30
+    alone = 3 - i - j
+    column = int(np.argmax(np.abs(found.axes[alone])))
+    assert found.moments[column] == tensor[alone, alone]
+    assert found.moments_tail[column] == tail[alone, alone]
+    assert not found.axes[[i, j], column].any()
+
+
+def test_moments_beyond_the_range_of_doubles_are_refused() -> None:
+    tensor = 1.7e308 * (1.5 * np.eye(3) - 0.5)
+    with pytest.raises(InvalidParameter, match="range of doubles"):
+        PrincipalInertia.of(tensor)
+    assert PrincipalInertia.of(tensor / 4).moments[2] == pytest.approx(1.5 / 4 * 1.7e308, rel=1e-15)

@@ -89,6 +89,8 @@ def test_what_cannot_be_told_from_zero_is_given_to_a_place_or_not_at_all():
         assert decimal(arb("0.6e-20"), 16, -20) == "1e-20"
         with pytest.raises(Undetermined):
             decimal(arb("nan"), 16, -20)
+        # Expanded in decimals this would have 400 million digits.
+        assert decimal((arb(-(10**9))).exp(), 16, -20) == "0e-20"
 
 
 def test_a_rounding_that_the_ball_straddles_is_within_the_statement():

@@ -1,0 +1,312 @@
+"""Which rotations of a free body last: every equilibrium with its eigenvalues, and what is proved about it.
+
+About principal axis i at the rate W, with j and k the other two, small disturbances of the angular velocity grow as
+
+    lambda^2 = W^2 (I_i - I_j)(I_k - I_i) / (I_j I_k),   and lambda = 0 along the axis:
+
+a centre on the axes of largest and smallest moment, a saddle on the middle one. The differences are formed exactly.
+A centre of the linear equation proves nothing by itself; the energy-Casimir method does: on an extreme axis the energy
+has a strict extremum among the angular velocities of the same |L|.
+
+References
+----------
+J. E. Marsden, T. S. Ratiu, "Introduction to Mechanics and Symmetry", 2nd ed., sections 1.7 and 15.9. V. I. Arnold,
+"Mathematical Methods of Classical Mechanics", section 29. R. N. Bracewell, O. K. Garriott, "Rotation of artificial
+earth satellites", Nature 182 (1958) 760 (the major-axis rule).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from core.bodies.exact import exact_vector
+from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmetry
+from core.errors import InvalidParameter, NotApplicable
+from core.integration.system import Floats
+from core.notices import Notice
+from core.quantities import AngularRate, Quantity
+from core.rotation.closed_form import FreeRotation
+from core.rotation.exact_figures import double, square_root
+from core.rotation.principal_frame import PrincipalFrame
+
+Kind = Literal["center", "saddle", "degenerate"]
+Attitude = Literal["orbital", "unstable"]
+Eigenvalue = tuple[float, float]
+
+_finite_rate = Quantity("rad s^-1")
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A constant angular velocity.
+
+    Attributes
+    ----------
+    axis : ndarray, shape (3,), or None
+        Unit vector in body axes; None for the state of rest.
+    moment : float or None
+        About this axis (kg m^2).
+    eigenvalues : tuple of (real, imaginary), or None
+        Of the linearised equation for the angular velocity: a pair and the zero along the axis (1/s). None where they
+        leave the range of double precision.
+    kind : {"center", "saddle", "degenerate"}
+    stable : bool
+        Whether the angular velocity stays as near as one likes to this one if it starts near enough (Lyapunov).
+    growth_rate : float or None
+        Exponential rate of a small disturbance, 0 where none grows exponentially (1/s).
+    drift_rate : float or None
+        Where a disturbance grows linearly: its rate of change per unit of disturbance (1/s); otherwise 0.
+    linearly_stable : bool
+        Whether disturbances of the linearised equation stay bounded.
+    attitude : {"orbital", "unstable"}
+        The attitude of a stable rotation is stable only as an orbit: a slightly different rate leads it ahead or behind.
+    survives_dissipation : bool
+        Whether a body that loses energy inside, at constant angular momentum, can end here: the axis of largest
+        moment, or one of several that share it.
+    reason : str
+    """
+
+    axis: Floats | None
+    moment: float | None
+    eigenvalues: tuple[Eigenvalue, Eigenvalue, Eigenvalue] | None
+    kind: Kind
+    stable: bool
+    growth_rate: float | None
+    drift_rate: float | None
+    linearly_stable: bool
+    attitude: Attitude
+    survives_dissipation: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class Flip:
+    """What becomes of a disturbed rotation about the middle axis.
+
+    Attributes
+    ----------
+    disturbance : tuple of 2 floats
+        Rates added along the axes of smallest and largest moment (rad/s).
+    interval : float or None
+        Between sign changes of the component along the middle axis (s).
+    reason : str
+    """
+
+    disturbance: tuple[AngularRate, AngularRate]
+    interval: float | None
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """All equilibria of a free body at one rate.
+
+    Attributes
+    ----------
+    symmetry : str
+        Class of the principal moments about the point about which the body turns.
+    rate : float
+        rad/s.
+    equilibria : tuple of Equilibrium
+        About the three principal axes in ascending order of moments, and the state of rest. Where moments are equal,
+        every axis in their plane (of a sphere, in space) is an equilibrium, of which the ones listed stand for all.
+    flip : Flip or None
+        If a disturbance was given.
+    warnings : tuple of Notice
+    """
+
+    symmetry: Symmetry
+    rate: float
+    equilibria: tuple[Equilibrium, ...]
+    flip: Flip | None = None
+    warnings: tuple[Notice, ...] = ()
+
+
+def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float, float] | None = None) -> Stability:
+    """Return every equilibrium of a free body, whether it is stable, in which sense, and why.
+
+    Parameters
+    ----------
+    body : MassProperties
+    rate : float
+        Of the rotations about the principal axes (rad/s).
+    disturbance : tuple of 2 floats, optional
+        Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: the
+        interval of its flips is then given (rad/s).
+
+    Raises
+    ------
+    InvalidParameter
+        If the rate or the disturbance is not finite, or a moment of inertia is not positive.
+    NotApplicable
+        If a disturbance is given and the body has no middle axis.
+    AccuracyUnreachable
+        If the disturbance is smaller than doubles resolve.
+    """
+    _finite_rate.check(("rate",), rate)
+    inertia = body.principal_of_motion
+    if not inertia.moments[0] > 0.0:
+        rule = "have three moments of inertia greater than 0 to rotate freely"
+        raise InvalidParameter("body", rule, remedy="give a body with extent in at least two directions")
+    moments, warnings = _moments(inertia)
+    found = [_about(moments, k, Fraction(rate)) for k in range(3)]
+    shown = [_stated(e, inertia, k) for k, e in enumerate(found)]
+    outside = [
+        Notice("out-of-range", "eigenvalues leave the range of double precision and are null", ("equilibria", k))
+        for k, e in enumerate(shown)
+        if e.eigenvalues is None or e.drift_rate is None
+    ]
+    flip = None if disturbance is None else _flip(inertia, moments, float(rate), disturbance)
+    inherited = [notice.inside("body") for notice in body.warnings]
+    equilibria = (*shown, _rest())
+    return Stability(inertia.symmetry, float(rate), equilibria, flip, (*inherited, *warnings, *outside))
+
+
+class _Found(NamedTuple):
+    """An equilibrium in exact figures."""
+
+    kind: Kind
+    square: Fraction
+    drift: Fraction
+    stable: bool
+    linearly_stable: bool
+    dissipates: bool
+    reason: str
+
+
+def _about(moments: list[Fraction], axis: int, rate: Fraction) -> _Found:
+    own, (low, high) = moments[axis], (moments[n] for n in range(3) if n != axis)
+    square = rate**2 * (own - low) * (high - own) / (low * high)
+    survives = own == moments[2]
+    after = _DISSIPATION[survives]
+    if rate == 0:
+        return _Found("degenerate", square, Fraction(0), True, True, survives, _REST)
+    if low == own == high:
+        return _Found("degenerate", square, Fraction(0), True, True, True, _SPHERE)
+    if own in (low, high):
+        other = high if own == low else low
+        drift = abs(rate * (other - own)) / own
+        return _Found("degenerate", square, drift, False, False, survives, f"{_PLANE} {after}")
+    if square > 0:
+        return _Found("saddle", square, Fraction(0), False, False, False, f"{_SADDLE} {after}")
+    size = "largest" if survives else "smallest"
+    extremum = "least" if survives else "greatest"
+    reason = _CENTER.format(size=size, extremum=extremum)
+    return _Found("center", square, Fraction(0), True, True, survives, f"{reason} {after}")
+
+
+_CENTER = (
+    "The moment is the {size}: a disturbance circles the axis (eigenvalues +-i times a rate). That is only linear; "
+    "stability is proved by the energy-Casimir method, the energy being strictly {extremum} here for the given |L|. The "
+    "attitude is stable as an orbit only."
+)
+_SADDLE = (
+    "The moment lies between the other two: a disturbance grows exponentially, which the linearised equation "
+    "proves also for the full one, and the body turns over again and again."
+)
+_PLANE = (
+    "Two moments are equal and the spin lies in their plane, where every axis is an equilibrium: the three eigenvalues "
+    "are zero but form a Jordan block, so that a rate along the third axis makes the spin drift round the plane "
+    "linearly. It is unstable as a point, yet the motion is bounded: the ring of all such spins is stable."
+)
+_SPHERE = (
+    "The three moments are equal: every angular velocity is constant, so that a disturbance neither grows nor decays "
+    "(neutral: Lyapunov stable, not asymptotically). The attitude is stable as an orbit only. Dissipation has nothing to "
+    "act upon, as the energy is the same on every axis."
+)
+_REST = (
+    "Nothing turns: a small angular velocity stays small because its energy does, though the linearised equation is "
+    "zero and says nothing. The attitude is unstable: the slightest rate carries it round."
+)
+_DISSIPATION = {
+    True: "With energy lost inside at constant angular momentum the body ends here (major-axis rule).",
+    False: "With energy lost inside at constant angular momentum the body leaves it for the axis of largest moment.",
+}
+
+
+def _stated(found: _Found, inertia: PrincipalInertia, k: int) -> Equilibrium:
+    size = double(square_root(abs(found.square)))
+    drift = double(found.drift)
+    pair: tuple[Eigenvalue, Eigenvalue] | None
+    if size is None:
+        pair, growth = None, None if found.kind == "saddle" else 0.0
+    elif found.kind == "saddle":
+        pair, growth = ((size, 0.0), (-size, 0.0)), size
+    else:
+        pair, growth = ((0.0, size), (0.0, -size if size else 0.0)), 0.0
+    axis: Floats = inertia.axes[:, k].copy()
+    if axis[np.argmax(np.abs(axis))] < 0.0:
+        axis = 0.0 - axis
+    axis.setflags(write=False)
+    return Equilibrium(
+        axis,
+        float(inertia.moments[k]),
+        None if pair is None else (*pair, (0.0, 0.0)),
+        found.kind,
+        found.stable,
+        growth,
+        drift,
+        found.linearly_stable,
+        "orbital" if found.stable and found.reason != _REST else "unstable",
+        found.dissipates,
+        found.reason,
+    )
+
+
+def _rest() -> Equilibrium:
+    zero = (0.0, 0.0)
+    return Equilibrium(
+        None, None, (zero, zero, zero), "degenerate", True, 0.0, 0.0, True, "unstable", False, _REST
+    )  # fmt: skip
+
+
+def _moments(inertia: PrincipalInertia) -> tuple[list[Fraction], list[Notice]]:
+    """Return the moments as they count, and what is to be said of those that are nearly equal.
+
+    Along body axes they are the client's own and differ if they differ. Those of a turned tensor carry the rounding of
+    its components, and the sign of a smaller difference would be that of rounding.
+    """
+    exact = exact_vector(inertia.moments, inertia.moments_tail)
+    distinct = {"triaxial": 3, "oblate": 2, "prolate": 2, "linear": 2, "spherical": 1}[inertia.symmetry]
+    if len(set(exact)) == distinct:
+        return exact, []
+    if PrincipalFrame(inertia.axes, inertia.axes_tail).aligned:
+        detail = (
+            "moments differ by less than 16 units in the last place of the largest; the difference is taken as given, "
+            "and half a unit in a moment may change the kind of an equilibrium"
+        )
+        return exact, [Notice("moments-nearly-equal", detail, ("body",))]
+    low, middle, high = exact
+    if distinct == 1:
+        merged = [sum(exact, Fraction(0)) / 3] * 3
+    elif inertia.symmetry == "oblate":
+        merged = [(low + middle) / 2] * 2 + [high]
+    else:
+        merged = [low] + [(middle + high) / 2] * 2
+    detail = "moments differ by less than 16 units in the last place of the largest and are taken as equal"
+    return merged, [Notice("moments-equal-within-rounding", detail, ("body",))]
+
+
+def _flip(inertia: PrincipalInertia, moments: list[Fraction], rate: float, disturbance: tuple[float, float]) -> Flip:
+    if len(disturbance) != 2:
+        raise InvalidParameter("disturbance", "be two rates, along the axes of smallest and largest moment")
+    for n, x in enumerate(disturbance):
+        _finite_rate.check(("disturbance", n), x)
+    if len(set(moments)) < 3:
+        raise NotApplicable(
+            "two moments are equal, so that there is no middle axis to be disturbed",
+            path=("disturbance",),
+            remedy="leave out the disturbance",
+        )
+    given = (float(disturbance[0]), float(disturbance[1]))
+    # A body along its principal axes moves as this one does; in them the disturbance is exact.
+    along = replace(inertia, axes=np.eye(3), axes_tail=np.zeros((3, 3)))
+    rotation = FreeRotation(along, np.array([given[0], rate, given[1]]))
+    interval = rotation.flip_interval
+    if interval is not None:
+        return Flip(given, interval, f"it turns over every half period; {rotation.model.why}")
+    return Flip(given, None, f"it never turns over; {rotation.model.why}")

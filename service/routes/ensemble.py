@@ -1,0 +1,134 @@
+"""Questions about many free rotations of one body."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from core.bodies import Body
+from core.errors import InvalidParameter
+from core.integration.budget import Budget
+from core.integration.methods import Method
+from core.quantities import AngularVelocity, Energy, Tolerance
+from core.rotation.ensemble import ensemble
+from core.rotation.initial_states import initial_states
+from service.routes.bodies import properties_of, reading_price
+from service.routes.rotation import AccuracyView, ModelView, WorkView
+from service.routes.surfaces import SOURCE_BODY, Count, Seed
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
+
+
+class Sample(Request):
+    """Starts of one energy, drawn uniformly over the scaled sphere."""
+
+    energy: Energy
+    count: Count
+    seed: Seed = 0
+
+
+class EnsembleRequest(Request):
+    """A body, its starts, and the times at which every motion is wanted."""
+
+    body: Body
+    angular_velocities: Annotated[list[AngularVelocity], Field(min_length=1)] | None = Field(
+        default=None, description="Starts at t = 0, in body axes (rad/s); these or a sample."
+    )
+    sample: Sample | None = None
+    times: Times
+    accuracy: Tolerance = 1e-9
+    method: Method | None = None
+
+
+class MemberView(View):
+    """One motion."""
+
+    model: ModelView
+    method: str
+    period: float | None
+    accuracy: AccuracyView
+    work: WorkView
+    ended: str
+
+
+class EnsembleAnswer(Envelope):
+    """Samples of every motion."""
+
+    error: float = Field(description="Largest stated error of any member.")
+    seed: int | None = Field(description="Of the sample, null if the starts were given.")
+    members: list[MemberView]
+    time: list[float]
+    angular_velocity: list[list[Vector]] = Field(description="(member, time, component), in body axes (rad/s).")
+
+
+def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
+    """Answer with the samples of every motion."""
+    body = properties_of(question.body)
+    times = sample_times(question.times, budget)
+    many = ensemble(
+        body, _starts(question, body), times, accuracy=question.accuracy, method=question.method, budget=budget
+    )
+    warnings = {(notice.code, notice.detail): notice for member in many.members for notice in member.warnings}
+    return {
+        "error": many.error,
+        "seed": None if question.sample is None else question.sample.seed,
+        "members": [
+            {
+                "model": member.model,
+                "method": member.method,
+                "period": member.period,
+                "accuracy": member.accuracy,
+                "work": member.work,
+                "ended": member.ended,
+            }
+            for member in many.members
+        ],
+        "time": many.time,
+        "angular_velocity": many.angular_velocity,
+        "warnings": (*(notice.inside("body") for notice in body.warnings), *warnings.values()),
+    }
+
+
+def _starts(question: EnsembleRequest, body: Any) -> Any:
+    if (question.angular_velocities is None) == (question.sample is None):
+        raise InvalidParameter(
+            "angular_velocities",
+            "be given, or sample, and not both",
+            remedy="give one of angular_velocities and sample",
+        )
+    if question.sample is not None:
+        return initial_states(body, question.sample.energy, question.sample.count, question.sample.seed)
+    return np.array(question.angular_velocities)
+
+
+def price(question: EnsembleRequest, budget: Budget) -> float:
+    """Return the predicted time (s)."""
+    members = question.sample.count if question.sample is not None else len(question.angular_velocities or ())
+    samples = sample_count(question.times, budget) * members
+    return reading_price(question, budget) + 3e-4 * members + (1e-7 if question.method is None else 1e-5) * samples
+
+
+ENSEMBLE = (
+    Question(
+        "/v1/rotation/ensemble",
+        "rotation_ensemble",
+        "Many free rotations of one body, from given starts or a sample of one energy",
+        "rotation",
+        EnsembleRequest,
+        EnsembleAnswer,
+        answer_ensemble,
+        price,
+        examples={
+            "sample": Example(
+                "three of the source's random starts",
+                {
+                    "body": SOURCE_BODY,
+                    "sample": {"energy": 1.0, "count": 3, "seed": 0},
+                    "times": {"start": 0.0, "stop": 20.0, "count": 11},
+                },
+            ),
+        },
+    ),
+)

@@ -1,0 +1,228 @@
+"""Questions about the energy ellipsoid, the polhodes on it and starts drawn from it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from core.bodies import Body
+from core.bodies.mass_properties import MassProperties
+from core.errors import BudgetExceeded, InvalidParameter
+from core.integration.budget import Budget
+from core.quantities import AngularVelocity, Energy
+from core.rotation.energy_surface import EnergyEllipsoid
+from core.rotation.initial_states import initial_states
+from core.rotation.polhodes import Polhode, polhode, separatrix
+from service.routes.bodies import properties_of, reading_price
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Matrix, Request, Vector, View
+
+Count = Annotated[int, Field(ge=1, le=10**9)]
+Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
+
+
+class Drawn(Request):
+    """Starts to be drawn uniformly over the scaled sphere."""
+
+    count: Count
+    seed: Seed = 0
+
+
+class EllipsoidRequest(Request):
+    """A body and the energy of its rotation, or a state that has it."""
+
+    body: Body
+    energy: Energy | None = Field(default=None, description="Kinetic energy (J); this or angular_velocity.")
+    angular_velocity: AngularVelocity | None = Field(default=None, description="A state of that energy (rad/s).")
+    resolution: Count = Field(
+        default=16, description="Parts of each edge of an icosahedron, or points from pole to pole."
+    )
+    layout: Literal["triangles", "grid"] = "triangles"
+    polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through these starts.")
+    separatrix: bool = Field(default=False, description="Draw the separatrix.")
+    points: Count = Field(default=256, description="Points of each curve.")
+
+
+class QualityView(View):
+    """How well the triangles stand for the ellipsoid."""
+
+    watertight: bool
+    euler_characteristic: int
+    volume_ratio: float = Field(description="Volume inside the triangles over that of the ellipsoid.")
+    smallest_angle: float = Field(description="Of any triangle on the sphere before scaling (rad).")
+
+
+class MeshView(View):
+    """Triangles, counter-clockwise seen from outside."""
+
+    vertices: list[Vector]
+    faces: list[Annotated[list[int], Field(min_length=3, max_length=3)]]
+    quality: QualityView
+
+
+class GridView(View):
+    """Coordinates over longitude (down) and colatitude (along), both ends included."""
+
+    x: list[list[float]]
+    y: list[list[float]]
+    z: list[list[float]]
+
+
+class PolhodeView(View):
+    """One curve; the last point is the first if it is closed."""
+
+    regime: str
+    closed: bool
+    points: list[Vector]
+
+
+class EllipsoidAnswer(Envelope):
+    """The surface w.I.w = 2E in body axes (rad/s)."""
+
+    energy: float
+    semi_axes: Vector = Field(description="Along the principal axes, moments ascending (rad/s).")
+    axes: Matrix = Field(description="Columns are the principal axes in body axes; written row by row.")
+    mesh: MeshView | None = None
+    grid: GridView | None = None
+    polhodes: list[PolhodeView] | None = None
+    separatrix: list[PolhodeView] | None = Field(default=None, description="Empty if two moments are equal.")
+
+
+class StatesRequest(Request):
+    """A body, an energy, and how many starts to draw."""
+
+    body: Body
+    energy: Energy
+    count: Count
+    seed: Seed = 0
+
+
+class StatesAnswer(Envelope):
+    """Angular velocities of one energy, in body axes."""
+
+    angular_velocities: list[Vector]
+    energy: float
+    seed: int
+
+
+def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
+    """Answer with the surface and what is asked for on it."""
+    body = properties_of(question.body)
+    surface = _surface(question, body)
+    answer: Answer = {
+        "energy": surface.energy,
+        "semi_axes": surface.semi_axes,
+        "axes": surface.axes,
+        "warnings": tuple(notice.inside("body") for notice in body.warnings),
+    }
+    if question.layout == "triangles":
+        mesh = surface.triangles(question.resolution)
+        answer["mesh"] = {"vertices": mesh.vertices, "faces": mesh.faces, "quality": mesh.quality}
+    else:
+        x, y, z = surface.grid(question.resolution)
+        answer["grid"] = {"x": x, "y": y, "z": z}
+    if question.polhodes is not None:
+        starts = initial_states(body, surface.energy, question.polhodes.count, question.polhodes.seed)
+        answer["polhodes"] = [_curve(polhode(body, start, question.points)) for start in starts]
+    elif question.angular_velocity is not None:
+        answer["polhodes"] = [_curve(polhode(body, np.array(question.angular_velocity), question.points))]
+    if question.separatrix:
+        answer["separatrix"] = [_curve(curve) for curve in separatrix(body, surface.energy, question.points)]
+    return answer
+
+
+def _surface(question: EllipsoidRequest, body: MassProperties) -> EnergyEllipsoid:
+    if (question.energy is None) == (question.angular_velocity is None):
+        raise InvalidParameter(
+            "energy", "be given, or angular_velocity, and not both", remedy="give one of energy and angular_velocity"
+        )
+    if question.energy is not None:
+        return EnergyEllipsoid.of(body, question.energy)
+    return EnergyEllipsoid.through(body, np.array(question.angular_velocity))
+
+
+def _curve(curve: Polhode) -> dict[str, Any]:
+    return {"regime": curve.regime, "closed": curve.closed, "points": curve.points}
+
+
+def ellipsoid_price(question: EllipsoidRequest, budget: Budget) -> float:
+    """Return the predicted time (s), or refuse more points than one answer may have."""
+    curves = question.polhodes.count if question.polhodes is not None else 1
+    points = curves * question.points
+    if points > budget.samples:
+        path = ("polhodes", "count") if question.polhodes is not None else ("points",)
+        remedy = "ask for fewer curves, or for fewer points on each"
+        raise BudgetExceeded("points", points, budget.samples, path=path, remedy=remedy)
+    return reading_price(question, budget) + 1e-6 * points + 2e-4 * curves + 3e-5 * min(question.resolution, 1000) ** 2
+
+
+def states(question: StatesRequest, budget: Budget) -> Answer:
+    """Answer with starts of one energy."""
+    body = properties_of(question.body)
+    return {
+        "angular_velocities": initial_states(body, question.energy, question.count, question.seed),
+        "energy": question.energy,
+        "seed": question.seed,
+        "warnings": tuple(notice.inside("body") for notice in body.warnings),
+    }
+
+
+def states_price(question: StatesRequest, budget: Budget) -> float:
+    """Return the predicted time of drawing starts (s)."""
+    return reading_price(question, budget) + 1e-7 * question.count
+
+
+SOURCE_BODY = {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}
+
+SURFACES = (
+    Question(
+        "/v1/rotation/energy-ellipsoid",
+        "energy_ellipsoid",
+        "The energy ellipsoid as a mesh or a grid, with polhodes and separatrix",
+        "rotation",
+        EllipsoidRequest,
+        EllipsoidAnswer,
+        energy_ellipsoid,
+        ellipsoid_price,
+        examples={
+            "triangles": Example(
+                "a coarse mesh with five polhodes and the separatrix",
+                {
+                    "body": SOURCE_BODY,
+                    "energy": 1.0,
+                    "resolution": 2,
+                    "polhodes": {"count": 5, "seed": 1},
+                    "separatrix": True,
+                    "points": 16,
+                },
+            ),
+            "grid": Example(
+                "the source's grid and the polhode through a state",
+                {
+                    "body": SOURCE_BODY,
+                    "angular_velocity": [0.4, 1.0, 0.7],
+                    "resolution": 6,
+                    "layout": "grid",
+                    "points": 16,
+                },
+            ),
+        },
+    ),
+    Question(
+        "/v1/rotation/initial-states",
+        "initial_states",
+        "Starts of one energy, drawn uniformly over the scaled sphere",
+        "rotation",
+        StatesRequest,
+        StatesAnswer,
+        states,
+        states_price,
+        examples={
+            "thirty": Example(
+                "the source's thirty starts", {"body": SOURCE_BODY, "energy": 1.0, "count": 30, "seed": 0}
+            )
+        },
+    ),
+)

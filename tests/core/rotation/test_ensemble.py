@@ -1,0 +1,37 @@
+"""Many starts in one call are the same as one call for each."""
+
+import numpy as np
+import pytest
+
+from core.bodies.mass_properties import diagonal
+from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
+from core.integration.budget import Budget
+from core.integration.solve import solve
+from core.rotation.ensemble import ensemble
+from core.rotation.initial_states import initial_states
+from core.rotation.torque_free import TorqueFree
+
+
+def test_the_source_s_thirty_starts():
+    body, times = diagonal((2.0, 1.0, 0.5)), np.linspace(0, 20, 10_000)
+    starts = initial_states(body, 1.0, 30, 0)
+    many = ensemble(body, starts, times)
+    assert many.angular_velocity.shape == (30, 10_000, 3)
+    assert many.error < 1e-15
+    for k in (0, 13, 29):
+        assert np.array_equal(many.angular_velocity[k], solve(TorqueFree(body, starts[k]), times).state)
+
+
+def test_limits_name_what_is_too_much():
+    body = diagonal((1.0, 2.0, 3.0))
+    with pytest.raises(BudgetExceeded):
+        ensemble(body, np.ones((3, 3)), np.linspace(0, 1, 4), budget=Budget(samples=11))
+    with pytest.raises(InvalidParameter):
+        ensemble(body, np.ones((0, 3)), np.linspace(0, 1, 4))
+
+
+def test_a_member_s_fault_names_the_member():
+    starts = np.array([[1.0, 1.0, 1.0], [1e-300, 1.0, 1e-300]])
+    with pytest.raises(AccuracyUnreachable) as caught:
+        ensemble(diagonal((1.0, 2.0, 3.0)), starts, np.zeros(1))
+    assert caught.value.path == ("angular_velocities", 1)
