@@ -1,12 +1,12 @@
-"""The period of a free body as an experiment: integrate, wait until the motion is back near its start, compare with theory.
+"""The period of a free body as an experiment: integrate until the motion is back near its start, compare with theory.
 
-The first return to a ball around the start is not the period. It differs by three amounts that add up exactly: the ball is
-entered early, the grid of samples sees it late, and the method is not where the motion is.
+The first return to a ball around the start is not the period. It differs by three amounts that add up exactly: the ball
+is entered early, the grid of samples sees it late, and the method is not where the motion is.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Annotated
 
@@ -82,8 +82,8 @@ class MeasuredPeriod:
     relative_difference : float or None
         ``time/theory - 1``.
     from_tolerance, from_grid, from_method : float or None
-        Their sum is ``time - theory``: how much before (negative) the end of the period the true motion comes within the
-        tolerance; how much later the next sample is; how much later the method's samples come within it (s).
+        Their sum is ``time - theory``: how much before (negative) the end of the period the true motion comes within
+        the tolerance; how much later the next sample is; how much later the method's samples come within it (s).
     crossing : Crossing or None
         The method's own period.
     error : float
@@ -163,8 +163,8 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
     if time is not None and theory is not None and exact_back is not None:
         entry = _entry(rotation, float(times[exact_back - 1]), float(times[exact_back]), measure.tolerance)
         on_grid = float(times[exact_back])
-        found = _with(found, from_tolerance=entry - theory, from_grid=on_grid - entry, from_method=time - on_grid)
-    return _with(found, explanation=_in_words(found, measure, distances))
+        found = replace(found, from_tolerance=entry - theory, from_grid=on_grid - entry, from_method=time - on_grid)
+    return replace(found, explanation=_in_words(found, measure, distances))
 
 
 def first_return(distances: Floats, tolerance: float) -> int | None:
@@ -212,10 +212,6 @@ def _crossing(system: TorqueFree, times: Floats, states: Floats, back: int) -> C
     )
 
 
-def _with(found: MeasuredPeriod, **changes: object) -> MeasuredPeriod:
-    return MeasuredPeriod(**{**found.__dict__, **changes})  # type: ignore[arg-type]
-
-
 def _in_words(found: MeasuredPeriod, measure: Measure, distances: Floats) -> str:
     kind = measure.method.kind
     if found.time is None:
@@ -226,8 +222,8 @@ def _in_words(found: MeasuredPeriod, measure: Measure, distances: Floats) -> str
             )
         out = int(np.argmax(distances >= measure.tolerance))
         return (
-            f"Having left the start, no sample of {kind} comes within {measure.tolerance:g} rad/s of it again; the nearest "
-            f"is {distances[out:].min():.6g} rad/s away. "
+            f"Having left the start, no sample of {kind} comes within {measure.tolerance:g} rad/s of it again; the "
+            f"nearest is {distances[out:].min():.6g} rad/s away. "
             + (
                 "The motion has no period."
                 if found.theory is None
@@ -236,7 +232,8 @@ def _in_words(found: MeasuredPeriod, measure: Measure, distances: Floats) -> str
             )
         )
     said = [
-        f"Sample {found.grid_point}, at t = {found.time!r} s, is the first within {measure.tolerance:g} rad/s of the start."
+        f"Sample {found.grid_point}, at t = {found.time!r} s, is the first within {measure.tolerance:g} rad/s of the "
+        "start."
     ]
     if found.theory is None or found.relative_difference is None:
         said.append("The motion has no period: what came back is the method, or a tolerance that is too large.")
@@ -254,8 +251,9 @@ def _in_words(found: MeasuredPeriod, measure: Measure, distances: Floats) -> str
         f"{abs(found.from_method):.4g} s {later} than the exact motion" if found.from_method else "at that sample too"
     )
     said.append(
-        f"Three amounts add up to that. Tolerance: the exact motion enters the ball {-found.from_tolerance:.4g} s before "
-        f"its period ends. Grid: the next sample is {found.from_grid:.4g} s after that. Method: {kind} is in it {method}."
+        f"Three amounts add up to that. Tolerance: the exact motion enters the ball {-found.from_tolerance:.4g} s "
+        f"before its period ends. Grid: the next sample is {found.from_grid:.4g} s after that. Method: {kind} is in it "
+        f"{method}."
     )
     largest = max(abs(found.from_tolerance), abs(found.from_grid), abs(found.from_method))
     if abs(difference) < 0.5 * largest:

@@ -39,8 +39,8 @@ class EarthFigures:
     why: str = (
         "A rigid Earth would wobble in 304 sidereal days; it is observed to take about 433. The Earth yields: its "
         "elastic mantle and its oceans follow the wobbling axis and lengthen the period; its fluid core "
-        "does not take part and shortens it. The wobble is damped and kept alive by ocean and atmosphere: its path is no circle. "
-        "A density that is not uniform changes none of this: every tensor of inertia has principal axes."
+        "does not take part and shortens it. The wobble is damped and kept alive by ocean and atmosphere: its path "
+        "is no circle. A density that is not uniform changes none of this: every tensor of inertia has principal axes."
     )
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -10,14 +12,15 @@ from pydantic import Field
 from core.bodies import Body
 from core.bodies.principal_inertia import Symmetry
 from core.integration.budget import Budget
-from core.quantities import AngularVelocity
+from core.quantities import AngularRate, AngularVelocity
 from core.rotation.measurement import Measure, MeasuredPeriod, measure_period
-from core.rotation.precession import Cones, precession
+from core.rotation.precession import Precession, Regime, precession
+from core.rotation.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
 from service.routes.bodies import properties_of, reading_price
-from service.routes.rotation import T_HANDLE, ModelView
+from service.routes.rotation import T_HANDLE
 from service.routing import Answer, Example, Question
-from service.schemas import Envelope, Request, Vector
+from service.schemas import Envelope, Request, Vector, View
 
 
 class PrecessionRequest(Request):
@@ -33,37 +36,89 @@ class PrecessionRequest(Request):
 class PrecessionAnswer(Envelope):
     """Rates and angles; null where the motion has no such thing."""
 
-    model: ModelView
     symmetry: Symmetry
-    regime: str
+    regime: Regime = Field(description="Of the angular velocity in the body.")
     axis: Vector | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
     body_rate: float | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
     space_rate: float | None = Field(description="L/I (rad/s).")
     period: float | None = Field(description="Of the angular velocity in the body (s).")
     flip_interval: float | None = Field(description="Between sign changes along the middle axis (s).")
-    cones: Cones | None = Field(description="Half-angles (rad).")
-    nutation: tuple[float, float] | None = Field(description="Least and largest angle of axis and momentum (rad).")
-    mean_precession_rate: float | None = Field(description="Of the axis about the angular momentum (rad/s).")
+    axis_to_angular_momentum: float | None = Field(description="rad")
+    axis_to_angular_velocity: float | None = Field(description="Half-angle of the body cone (rad).")
+    angular_momentum_to_angular_velocity: float | None = Field(description="Half-angle of the space cone (rad).")
+    order_of_directions: str | None = Field(description="Which of the three directions lies between the others.")
     precession_per_period: float | None = Field(description="Not reduced modulo 2 pi (rad).")
+    mean_precession_rate: float | None = Field(description="Of the axis about the angular momentum (rad/s).")
+    absent: dict[str, str] = Field(description="Why a figure is null.")
     measured: MeasuredPeriod | None = None
 
 
-FIGURES = (
-    "model", "symmetry", "regime", "axis", "body_rate", "space_rate", "period", "flip_interval", "cones", "nutation",
-    "mean_precession_rate", "precession_per_period",
-)  # fmt: skip
+class StabilityRequest(Request):
+    """A body, and how fast it turns about its principal axes."""
+
+    body: Body
+    rate: AngularRate = Field(default=1.0, description="About each principal axis in turn (rad/s).")
+    disturbance: tuple[AngularRate, AngularRate] | None = Field(
+        default=None,
+        description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
+        "the interval of its flips is then answered (rad/s).",
+    )
+
+
+class EquilibriumView(View):
+    """A constant angular velocity, and what becomes of one near it."""
+
+    axis: Vector | None = Field(description="In body axes; null for the state of rest.")
+    moment: float | None
+    eigenvalues: list[tuple[float, float]] | None = Field(description="Real and imaginary parts (1/s).")
+    kind: Literal["center", "saddle", "degenerate"]
+    stable: bool = Field(description="In the sense of Lyapunov, of the angular velocity.")
+    growth_rate: float | None = Field(description="Exponential rate of a small disturbance (1/s).")
+    drift_rate: float | None = Field(description="Linear rate per unit of disturbance (1/s).")
+    linearly_stable: bool
+    attitude: Literal["orbital", "unstable"] = Field(description="In which sense the attitude is stable.")
+    survives_dissipation: bool
+    reason: str
+
+
+class StabilityAnswer(Envelope):
+    """Every equilibrium of a free body at one rate."""
+
+    symmetry: Symmetry
+    rate: float
+    equilibria: list[EquilibriumView]
+    flip: Flip | None
+
+
+def _fields(found: Any) -> Answer:
+    """Return what core found, field by field, mappings as JSON objects."""
+    return {
+        entry.name: dict(value) if isinstance(value, Mapping) else value
+        for entry in fields(found)
+        for value in (getattr(found, entry.name),)
+    }
 
 
 def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
     """Answer with the figures and, if asked for, the measurement."""
     body = properties_of(question.body)
-    system = TorqueFree(body, np.array(question.angular_velocity))
-    found = precession(system.closed_form())
-    answer: Answer = {name: getattr(found, name) for name in FIGURES}
-    answer["warnings"] = (*(notice.inside("body") for notice in body.warnings), *found.warnings)
+    start = np.array(question.angular_velocity)
+    found: Precession = precession(body, start)
+    answer = _fields(found)
     if question.measure is not None:
-        answer["measured"] = measure_period(system, question.measure, budget)
+        answer["measured"] = measure_period(TorqueFree(body, start), question.measure, budget)
     return answer
+
+
+def answer_stability(question: StabilityRequest, budget: Budget) -> Answer:
+    """Answer with every equilibrium."""
+    found = stability(properties_of(question.body), question.rate, question.disturbance)
+    return _fields(found) | {"equilibria": [_fields(equilibrium) for equilibrium in found.equilibria]}
+
+
+def stability_price(question: StabilityRequest, budget: Budget) -> float:
+    """Return the predicted time (s)."""
+    return reading_price(question, budget) + 3e-4
 
 
 def price(question: PrecessionRequest, budget: Budget) -> float:
@@ -108,6 +163,24 @@ PRECESSION = (
                         "tolerance": 0.035,
                     },
                 },
+            ),
+        },
+    ),
+    Question(
+        "/v1/rotation/stability",
+        "stability",
+        "Every equilibrium of a free body: eigenvalues, kind, stability and the reason",
+        "rotation",
+        StabilityRequest,
+        StabilityAnswer,
+        answer_stability,
+        stability_price,
+        examples={
+            "t-handle": Example(
+                "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}
+            ),
+            "coin": Example(
+                "two equal moments", {"body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]}, "rate": 1.0}
             ),
         },
     ),

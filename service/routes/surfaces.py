@@ -36,9 +36,7 @@ class EllipsoidRequest(Request):
     body: Body
     energy: Energy | None = Field(default=None, description="Kinetic energy (J); this or angular_velocity.")
     angular_velocity: AngularVelocity | None = Field(default=None, description="A state of that energy (rad/s).")
-    resolution: Count = Field(
-        default=16, description="Parts of each edge of an icosahedron, or points from pole to pole."
-    )
+    resolution: Count = Field(default=16, description="Parts of an icosahedron's edge, or points from pole to pole.")
     layout: Literal["triangles", "grid"] = "triangles"
     polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through these starts.")
     separatrix: bool = Field(default=False, description="Draw the separatrix.")
