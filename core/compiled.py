@@ -1,12 +1,17 @@
 """The one way in which functions are compiled, and two machine instructions that the compiler does not offer.
 
-Compiled code is kept on disk beside the source, so only the first process after an installation compiles.
+Compiled code is kept on disk, so only the first process after an installation compiles. The compiler by itself would
+notice a change of a function's own file only, and go on calling what it had compiled from another file before that
+changed; so what is kept is kept under a digest of every file that holds compiled functions.
 Floating-point semantics stay strict (no reassociation, no contraction): the error bounds rest on it.
 """
 
 from __future__ import annotations
 
+import hashlib
+import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
@@ -15,6 +20,30 @@ from numba import types
 from numba.extending import intrinsic
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _digest() -> str:
+    """Return a digest of every source file that compiles something."""
+    found = hashlib.sha256(numba.__version__.encode())
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        text = path.read_bytes()
+        if b"core.compiled" in text or path.name == "compiled.py":
+            found.update(text)
+    return found.hexdigest()[:16]
+
+
+def _keep_by_content() -> None:
+    """Let the compiler keep its code under the digest, below its own setting or beside this file.
+
+    Where that cannot be written the compiler's own choice, a directory of the user, stays.
+    """
+    config: Any = numba.config
+    base = Path(config.CACHE_DIR or Path(__file__).parent / "__pycache__")
+    if os.access(base if base.exists() else base.parent, os.W_OK):
+        config.CACHE_DIR = str(base / f"compiled-{_digest()}")
+
+
+_keep_by_content()
 
 
 def kernel(*signatures: object, **options: object) -> Callable[[F], F]:

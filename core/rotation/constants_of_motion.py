@@ -152,6 +152,14 @@ def _motionless(regime: int, start: float, rate: float, quadratic: float) -> Mot
 
 
 @kernel()
+def _rate(f: Scaled) -> tuple[float, float, float]:
+    """Return a rate as a pair and the power of two by which times are to be multiplied, both within range."""
+    e = max(-1000, min(1000, f.exponent))
+    rest = math.ldexp(1.0, f.exponent - e)
+    return f.high * rest, f.low * rest, math.ldexp(1.0, e)
+
+
+@kernel()
 def _difference(i: NDArray[np.float64], it: NDArray[np.float64], j: int, k: int) -> Scaled:
     h, low = dd_sub(i[j], it[j], i[k], it[k])
     return scaled(h, low, 0)
@@ -287,7 +295,7 @@ def constants_of_motion(
     dh, dl = sc_pair(sc_div(sc_abs(W_d), Ad))
     kh, kl = sc_pair(k0)
     k1h, k1l = sc_pair(k1)
-    if abs(p.exponent) > 1000 or (k1.high != 0.0 and k1.exponent < -946):
+    if k1.high != 0.0 and k1.exponent < -946:
         return _motionless(UNREACHABLE, 0.0, 0.0, 0.0)
     ah, al = (sh, sl) if sh >= 0.0 else (-sh, -sl)
     gh, gl = (ch, cl) if ch >= 0.0 else (-ch, -cl)
@@ -331,7 +339,7 @@ def constants_of_motion(
         return Motion(
             SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0],
             _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-            p.high, p.low, math.ldexp(1.0, p.exponent), 0.0, uh, ul, inherited, computed,
+            *_rate(p), 0.0, uh, ul, inherited, computed,
         )  # fmt: skip
     lat = lattice(kh, kl, k1h, k1l)
     # Distance from the nearest quarter period, where |sn(K/2)|^2 = 1/(1 + k').
@@ -363,5 +371,5 @@ def constants_of_motion(
     return Motion(
         PERIODIC, circled, amplitude_c, amplitude_b, amplitude_d, m, m1, p_pair[0],
         lat, _weights(ac, (s * ab[0], s * ab[1]), (s * ad[0], s * ad[1]), lat),
-        f.high, f.low, math.ldexp(1.0, f.exponent), quarter, sign * rh, sign * rl, inherited, computed,
+        *_rate(f), quarter, sign * rh, sign * rl, inherited, computed,
     )  # fmt: skip

@@ -140,7 +140,8 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
     rotation = system.closed_form()
     distances = _distances(run.states, system.initial_state)
     back = first_return(distances, measure.tolerance)
-    exact_back = first_return(_distances(rotation.sample(times), system.initial_state), measure.tolerance)
+    exact = rotation.sample(times)
+    exact_back = first_return(_distances(exact, system.initial_state), measure.tolerance)
 
     theory = rotation.period
     theory = theory if theory is not None and theory < inf else None
@@ -155,7 +156,7 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         from_grid=None,
         from_method=None,
         crossing=_crossing(system, times, run.states, back) if back is not None else None,
-        error=measured(run.states[seen], rotation.sample(times[seen]), times[seen]).largest,
+        error=measured(run.states[seen], exact[seen], times[seen]).largest,
         drifts=dict(drifts(system, run.states[seen])),
         explanation="",
         work=run.work,
@@ -182,6 +183,12 @@ def _distances(states: Floats, start: Floats) -> Floats:
     x, y, z = (states[:, k] - start[k] for k in range(3))
     distances: Floats = np.hypot(np.hypot(x, y), z)
     return distances
+
+
+def _nearest_again(distances: Floats) -> float | None:
+    """Return the least distance after the samples first stopped moving away, None if they never did."""
+    approaching = np.diff(distances) < 0.0
+    return float(distances[1 + int(np.argmax(approaching)) :].min()) if approaching.any() else None
 
 
 def _entry(rotation: FreeRotation, outside: float, inside: float, tolerance: float) -> float:
@@ -220,10 +227,12 @@ def _in_words(found: MeasuredPeriod, measure: Measure, distances: Floats) -> str
                 f"No sample is {measure.tolerance:g} rad/s away from the start (the farthest is "
                 f"{distances.max():.6g} rad/s), so nothing can return; take a smaller tolerance or a longer duration."
             )
-        out = int(np.argmax(distances >= measure.tolerance))
+        nearest = _nearest_again(distances)
+        if nearest is None:
+            return f"The samples of {kind} are still moving away from the start at the end; take a longer duration."
         return (
             f"Having left the start, no sample of {kind} comes within {measure.tolerance:g} rad/s of it again; the "
-            f"nearest is {distances[out:].min():.6g} rad/s away. "
+            f"nearest is {nearest:.6g} rad/s away. "
             + (
                 "The motion has no period."
                 if found.theory is None

@@ -1,284 +1,346 @@
-"""How a free body precesses: rates, periods and cones, without integrating anything.
+"""How a free body precesses: rates, periods and cones, from the initial state alone; nothing is integrated.
 
-A body with two equal moments I and a single one I3 about its axis e: the angular velocity goes round e in the body at
-the signed rate (I3 - I)/I w3, and e goes round the angular momentum L in space at L/I. The angular velocity, L and e stay
-in one plane, and each pair keeps its angle:
+Two equal moments I beside I3, spin w3 along the axis e3 of the third and w_perp across it (regular precession):
 
-    tan(e, L) = I w_perp / (I3 w3)    tan(e, w) = w_perp / w3    tan(L, w) = |I3 - I| w_perp |w3| / 2E
+    body rate   (I3 - I)/I w3                of the angular velocity about e3, seen in the body
+    space rate  L/I                          of e3 about the angular momentum L, seen in space
+    angles      tan(e3, L) = I w_perp / (I3 w3),   tan(e3, w) = w_perp / w3,
+                tan(L, w) = |I3 - I| w_perp |w3| / (I w_perp^2 + I3 w3^2)
 
-With three distinct moments the axis that is circled nutates between two inclinations while it turns about L, by the same
-angle in every period of the angular velocity; modulo a whole turn it is Montgomery's 2 E T/L less the solid angle that L
-encloses in the body.
+Three distinct moments: period 4K/p of the angular velocity, and the angle by which the circled axis turns about L in
+it, whose quotient is the mean precession rate. The angle is right to the last digits; modulo a whole turn it is
+Montgomery's 2 E T/L less the solid angle that L encloses in the body.
 
 References
 ----------
-L. D. Landau, E. M. Lifshitz, "Mechanics", sections 33, 35 to 37. H. Goldstein, "Classical Mechanics", section 5.6.
-R. Montgomery, "How much does the rigid body rotate?", American Journal of Physics 59 (1991) 394.
+L. D. Landau, E. M. Lifshitz, "Mechanics", sections 33 and 37. H. Goldstein, C. Poole, J. Safko, "Classical
+Mechanics", 3rd ed., section 5.6. R. Montgomery, "How much does the rigid body rotate?", American Journal of Physics 59
+(1991) 394.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Literal
+from types import MappingProxyType
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from core.bodies.mass_properties import Symmetry
-from core.integration.system import Floats, Model
+from core.bodies.exact import PI, exact_vector
+from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmetry
+from core.errors import InvalidParameter
+from core.integration.system import Floats
 from core.notices import Notice
 from core.rotation.attitude import FreeAttitude
 from core.rotation.closed_form import FreeRotation
 from core.rotation.constants_of_motion import PERIODIC, REST, SEPARATRIX, STEADY
 from core.rotation.exact_figures import SMALLEST, angle, double, square_root
-from core.rotation.exact_state import ExactState
 
-MomentumLies = Literal[
-    "between the axis and the angular velocity",
-    "beyond the angular velocity from the axis",
-    "along the angular velocity",
-]
+Regime = Literal["rest", "steady", "periodic", "separatrix"]
+_REGIMES: Mapping[int, Regime] = {REST: "rest", STEADY: "steady", PERIODIC: "periodic", SEPARATRIX: "separatrix"}
 
-UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
+_UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 
 
-@dataclass(frozen=True)
-class Cones:
-    """Half-angles of the cones of a symmetric body, in [0, pi] from the direction `axis` (rad).
+@dataclass(frozen=True, eq=False)
+class Precession:
+    """Rates and angles of a precession; None where the motion has no such thing, and `absent` says why.
 
     Attributes
     ----------
-    axis_to_angular_momentum : float or None
-        Of the cone that the axis draws about the angular momentum.
-    axis_to_angular_velocity : float or None
-        Of the body cone, which the angular velocity draws about the axis.
-    angular_momentum_to_angular_velocity : float or None
-        Of the space cone, which the angular velocity draws about the angular momentum; in [0, pi/2).
-    angular_momentum_lies : str
-        For an oblate body between axis and angular velocity, for a prolate one beyond the angular velocity. Where the
-        angle with the axis is obtuse, seen from the opposite direction of the axis.
-    """
-
-    axis_to_angular_momentum: float | None
-    axis_to_angular_velocity: float | None
-    angular_momentum_to_angular_velocity: float | None
-    angular_momentum_lies: MomentumLies
-
-
-@dataclass(frozen=True)
-class FreePrecession:
-    """Rates and angles of one free rotation; None where the motion has no such thing, or where a notice says why.
-
-    Attributes
-    ----------
-    model : Model
-        The branch of the closed form that holds.
     symmetry : str
-        Class of the body, moments within rounding of each other counting as equal.
-    regime : str
-        Of the motion.
-    axis : tuple of 3 floats or None
-        Unit vector in body axes, its largest component positive: the axis of symmetry, or else the axis that is
-        circled or spun about. None at rest and for a body without a distinguished axis.
+        Class of the principal moments about the point about which the body turns.
+    regime : {"rest", "steady", "periodic", "separatrix"}
+        Of the angular velocity in the body.
+    axis : ndarray, shape (3,), or None
+        Unit vector in body axes: the symmetry axis, or the principal axis that the angular velocity circles. It points
+        along the positive side of the body axis that it is nearest to.
     body_rate : float or None
-        Rate at which the angular velocity goes round `axis` in the body, positive by the right-hand rule; bodies of two
-        equal moments (rad/s).
+        Rate at which the angular velocity goes round `axis` in the body, positive in the right-hand sense; symmetric
+        bodies only (rad/s).
     space_rate : float or None
-        Rate at which `axis` goes round the angular momentum in space, L/I, always positive; the same bodies (rad/s).
+        Rate L/I at which the axis goes round the angular momentum; symmetric bodies only. For a spin along the
+        axis it is the rate of an infinitesimal wobble (rad/s).
     period : float or None
         Of the angular velocity in the body (s).
     flip_interval : float or None
-        Between sign changes of the component along the middle axis; bodies of three distinct moments (s).
-    cones : Cones or None
-        Bodies of two equal moments that do not rest.
-    nutation : tuple of 2 floats or None
-        Least and largest angle between `axis` and the angular momentum (rad). On the separatrix the largest is pi/2
-        (or the least, if the axis points away), never quite reached.
-    mean_precession_rate : float or None
-        Rate at which the circled axis turns about the angular momentum: the mean over a period; on the separatrix the
-        limit L/I of the middle axis (rad/s).
+        Between sign changes of the component along the middle axis (s).
+    axis_to_angular_momentum, axis_to_angular_velocity : float or None
+        Angle of the axis with each, from 0 to pi; symmetric bodies only (rad). The second is the half-angle of
+        the body cone if it is acute.
+    angular_momentum_to_angular_velocity : float or None
+        Half-angle of the space cone; symmetric bodies only (rad).
+    order_of_directions : str or None
+        Which of axis, angular momentum and angular velocity lies between the others.
     precession_per_period : float or None
-        Angle by which it turns in one period, not reduced modulo 2 pi (rad).
+        Angle by which the axis turns about the angular momentum in a period, not reduced by whole turns (rad).
+    mean_precession_rate : float or None
+        That angle over the period; on the separatrix the limit that the rate tends to (rad/s).
+    absent : mapping of str to str
+        Why a field is None.
     warnings : tuple of Notice
-        Figures outside the range of doubles, equalities that rest on rounding, and why there is no precession.
     """
 
-    model: Model
     symmetry: Symmetry
-    regime: str
-    axis: tuple[float, float, float] | None
-    body_rate: float | None
-    space_rate: float | None
-    period: float | None
-    flip_interval: float | None
-    cones: Cones | None
-    nutation: tuple[float, float] | None
-    mean_precession_rate: float | None
-    precession_per_period: float | None
+    regime: Regime
+    axis: Floats | None = None
+    body_rate: float | None = None
+    space_rate: float | None = None
+    period: float | None = None
+    flip_interval: float | None = None
+    axis_to_angular_momentum: float | None = None
+    axis_to_angular_velocity: float | None = None
+    angular_momentum_to_angular_velocity: float | None = None
+    order_of_directions: str | None = None
+    precession_per_period: float | None = None
+    mean_precession_rate: float | None = None
+    absent: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
     warnings: tuple[Notice, ...] = ()
 
 
-class _Statement:
-    """States figures as doubles, and notes those that no double holds.
+FIGURES = (
+    "body_rate",
+    "space_rate",
+    "period",
+    "flip_interval",
+    "axis_to_angular_momentum",
+    "axis_to_angular_velocity",
+    "angular_momentum_to_angular_velocity",
+    "precession_per_period",
+    "mean_precession_rate",
+)
+_OF_SYMMETRIC_BODIES = (
+    "body_rate",
+    "space_rate",
+    "axis_to_angular_momentum",
+    "axis_to_angular_velocity",
+    "angular_momentum_to_angular_velocity",
+    "order_of_directions",
+)
+_OF_A_CHANGE = ("period", "flip_interval", "precession_per_period", "mean_precession_rate")
 
-    Attributes
+
+def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
+    """Return how a free body precesses that turns with an angular velocity at t = 0.
+
+    Parameters
     ----------
-    notices : list of Notice
-    """
-
-    def __init__(self) -> None:
-        self.notices: list[Notice] = []
-
-    def __call__(self, name: str, value: Fraction | float | None) -> float | None:
-        number = double(value) if isinstance(value, Fraction) else value
-        if number is not None and (number == 0.0 or SMALLEST <= abs(number) < math.inf):
-            return number
-        self.notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
-        return None
-
-
-def precession(rotation: FreeRotation) -> FreePrecession:
-    """Return everything about the precession of a free body.
+    body : MassProperties
+    angular_velocity : ndarray, shape (3,)
+        In body axes (rad/s).
 
     Raises
     ------
+    InvalidParameter
+        If the angular velocity is not three finite numbers, or a moment of inertia is not positive.
     AccuracyUnreachable
-        If the constants of the motion cannot be held by doubles.
+        If the start is nearer to the separatrix than doubles resolve.
     """
-    state, stated = ExactState.of(rotation), _Statement()
-    regime = rotation.motion.regime
-    turns = regime in (PERIODIC, SEPARATRIX)
-    number = _axis_number(rotation, state)
-    axis, sign = _pointing(rotation.inertia.axes[:, number]) if number is not None else (None, 1)
-
-    period = flip = per_period = mean = None
-    if regime == PERIODIC:
-        duration = rotation.period
-        assert duration is not None
-        period = stated("period", duration)
-        if rotation.flip_interval is not None:
-            flip = stated("flip_interval", rotation.flip_interval)
-        turned = FreeAttitude(rotation, UNTURNED).precession_per_period
-        assert turned is not None
-        per_period = stated("precession_per_period", turned)
-        mean = stated("mean_precession_rate", turned / duration)
-    elif regime == SEPARATRIX:
-        mean = stated("mean_precession_rate", square_root(state.squared_momentum) / state.moments[1])
-
-    body_rate = space_rate = cones = None
-    symmetric = state.symmetry_axis
-    if symmetric is not None and regime != REST:
-        body_rate, space_rate = _symmetric_rates(state, symmetric, sign, stated)
-        cones = _cones(state, symmetric, sign, stated)
-        if space_rate is not None and turns:
-            mean = space_rate
-    elif period is not None and _nearly_symmetric_about(rotation) == number:
-        # The rates of a symmetric body whose moments were rounded apart are the means of the true motion.
-        body_rate = _mean_body_rate(state, number, sign, period) if number is not None else None
-        space_rate = mean
-        stated.notices.append(_equal_within_stated(rotation))
-    return FreePrecession(
-        model=rotation.model,
-        symmetry=rotation.inertia.symmetry,
-        regime=rotation.model.regime,
-        axis=axis,
-        body_rate=body_rate,
-        space_rate=space_rate,
-        period=period,
-        flip_interval=flip,
-        cones=cones,
-        nutation=_nutation(state, rotation.motion.circled, sign, stated) if turns else None,
-        mean_precession_rate=mean,
-        precession_per_period=per_period,
-        warnings=tuple(stated.notices),
-    )
+    given = np.ascontiguousarray(angular_velocity, dtype=np.float64)
+    if given.shape != (3,) or not np.isfinite(given).all():
+        raise InvalidParameter("angular_velocity", "be three finite numbers")
+    rotation = FreeRotation(body.principal_of_motion, given)
+    found = _of(rotation)
+    inherited = tuple(notice.inside("body") for notice in body.warnings)
+    return replace(found, warnings=(*inherited, *found.warnings))
 
 
-def _axis_number(rotation: FreeRotation, state: ExactState) -> int | None:
-    """Return the principal axis that the answer is about, by number in ascending order."""
-    if state.symmetry_axis is not None:
-        return state.symmetry_axis
-    if rotation.motion.regime in (PERIODIC, SEPARATRIX):
-        return rotation.motion.circled
-    along = [k for k in range(3) if state.rates[k] != 0]
-    return along[0] if rotation.motion.regime == STEADY and len(set(state.moments)) == 3 else None
+def _of(rotation: FreeRotation) -> Precession:
+    inertia = rotation.inertia
+    symmetry = inertia.symmetry
+    if not np.any(rotation.angular_velocity):
+        reason = "nothing turns"
+        absent = dict.fromkeys(("axis", *_OF_SYMMETRIC_BODIES, *_OF_A_CHANGE), reason)
+        return Precession(symmetry, "rest", absent=MappingProxyType(absent))
+    if symmetry == "spherical":
+        return _sphere(rotation)
+    if symmetry == "triaxial":
+        return _triaxial(rotation)
+    return _symmetric(rotation)
 
 
-def _pointing(axis: Floats) -> tuple[tuple[float, float, float], int]:
-    """Return an axis with its largest component positive, and the sign that made it so."""
-    sign = 1 if axis[np.argmax(np.abs(axis))] > 0.0 else -1
-    x, y, z = (float(sign * component) + 0.0 for component in axis)
-    return (x, y, z), sign
+class _Figures:
+    """Collects figures, and what is to be said about those that do not exist or leave the range of doubles."""
+
+    def __init__(self) -> None:
+        self.values: dict[str, float | None] = {}
+        self.absent: dict[str, str] = {}
+        self.notices: list[Notice] = []
+
+    def put(self, name: str, value: float | Fraction | None) -> None:
+        """State a figure; None, zero by underflow and infinity are told as out of range."""
+        found = double(value) if isinstance(value, Fraction) else value
+        if found is None or not math.isfinite(found) or 0.0 < abs(found) < SMALLEST:
+            self.lack("leaves the range of double precision", name)
+            self.notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
+            return
+        self.values[name] = found
+
+    def lack(self, reason: str, *names: str) -> None:
+        """State that figures do not exist, unless they were stated."""
+        self.absent.update({name: reason for name in names if name not in self.values and name not in self.absent})
+
+    def answer(
+        self, symmetry: Symmetry, regime: Regime, axis: Floats | None, order_of_directions: str | None = None
+    ) -> Precession:
+        """Return the answer."""
+        figures = {name: self.values.get(name) for name in FIGURES}
+        return Precession(
+            symmetry,
+            regime,
+            axis,
+            order_of_directions=order_of_directions,
+            absent=MappingProxyType(dict(self.absent)),
+            warnings=tuple(self.notices),
+            **figures,
+        )
 
 
-def _symmetric_rates(
-    state: ExactState, number: int, sign: int, stated: _Statement
-) -> tuple[float | None, float | None]:
-    single, equal = state.moments[number], state.moments[1]
-    along = sign * state.rates[number]
-    body_rate = (single - equal) / equal * along
-    if all(state.rates[k] == 0 for k in range(3) if k != number):
-        detail = "the spin lies along the axis of symmetry, so nothing precesses"
-        rate = double(body_rate)
-        if rate is not None:
-            detail += (
-                f"; after a small tilt the angular velocity would go round the axis in the body at {rate:.6g} rad/s"
-            )
-        stated.notices.append(Notice("no-precession", detail))
-        return None, None
-    return stated("body_rate", body_rate), stated("space_rate", square_root(state.squared_momentum) / equal)
+def _sphere(rotation: FreeRotation) -> Precession:
+    figures = _Figures()
+    i, tails = rotation.inertia.moments, rotation.inertia.moments_tail
+    if not (i[0] == i[2] and tails[0] == tails[2]):
+        figures.notices.append(_equal_within_rounding("the three moments"))
+    figures.lack("the three moments are equal, so that every axis is one of symmetry", "axis", *_OF_SYMMETRIC_BODIES)
+    figures.lack("the angular velocity is constant", *_OF_A_CHANGE)
+    return figures.answer("spherical", "steady", None)
 
 
-def _cones(state: ExactState, number: int, sign: int, stated: _Statement) -> Cones:
-    single, equal = state.moments[number], state.moments[1]
-    along = sign * state.rates[number]
-    across = sum((w * w for k, w in enumerate(state.rates) if k != number), Fraction(0))
-    between = (single - equal) ** 2 * along**2 * across
-    if between == 0:
-        lies: MomentumLies = "along the angular velocity"
-    elif single > equal:
-        lies = "between the axis and the angular velocity"
+def _triaxial(rotation: FreeRotation) -> Precession:
+    figures = _Figures()
+    figures.lack("the three moments differ, so that no axis is one of symmetry", *_OF_SYMMETRIC_BODIES)
+    regime = _REGIMES[rotation.motion.regime]
+    if regime == "steady":
+        figures.lack("the spin lies along a principal axis and is constant", *_OF_A_CHANGE)
+        spun = int(np.argmax(np.abs(rotation.start[0])))
+        return figures.answer("triaxial", regime, _oriented(rotation.inertia, spun))
+    if regime == "separatrix":
+        figures.put("mean_precession_rate", _momentum(rotation) / _moments(rotation.inertia)[1])
+        figures.lack("on the separatrix the body tends to the middle axis and never returns", *_OF_A_CHANGE)
+        return figures.answer("triaxial", regime, _oriented(rotation.inertia, 1))
+    _put_periodic(figures, rotation)
+    return figures.answer("triaxial", regime, _oriented(rotation.inertia, rotation.motion.circled))
+
+
+def _put_periodic(figures: _Figures, rotation: FreeRotation) -> None:
+    """State what the elliptic closed form knows of a periodic motion."""
+    turned = FreeAttitude(rotation, _UPRIGHT).precession_per_period
+    motion = rotation.motion
+    figures.put("period", rotation.period)
+    figures.put("precession_per_period", turned)
+    if turned is not None:
+        per_second = Fraction(turned) * Fraction(motion.rate) * Fraction(motion.time_scale) / 4
+        figures.put("mean_precession_rate", per_second)
+    if rotation.flip_interval is None:
+        figures.lack("two moments are equal, so that there is no middle axis", "flip_interval")
     else:
-        lies = "beyond the angular velocity from the axis"
-    direction = -1 if along < 0 else 1
-    return Cones(
-        stated("axis_to_angular_momentum", angle(equal**2 * across, (single * along) ** 2, direction)),
-        stated("axis_to_angular_velocity", angle(across, along**2, direction)),
-        stated("angular_momentum_to_angular_velocity", angle(between, state.twice_energy**2)),
-        lies,
+        figures.put("flip_interval", rotation.flip_interval)
+
+
+class _Split(NamedTuple):
+    """A spin of a symmetric body, along its axis and across it."""
+
+    equal: Fraction
+    single: Fraction
+    along: Fraction
+    across_squared: Fraction
+
+
+def _symmetric(rotation: FreeRotation) -> Precession:
+    inertia = rotation.inertia
+    symmetry = inertia.symmetry
+    k = 2 if symmetry == "oblate" else 0
+    moments = _moments(inertia)
+    pair = (moments[0], moments[1]) if k == 2 else (moments[1], moments[2])
+    w = exact_vector(*rotation.start)
+    axis = _oriented(inertia, k)
+    direction = 1 if np.array_equal(axis, inertia.axes[:, k]) else -1
+    across = sum((x * x for n, x in enumerate(w) if n != k), Fraction(0))
+    split = _Split((pair[0] + pair[1]) / 2, moments[k], direction * w[k], across)
+    figures = _Figures()
+    exactly = pair[0] == pair[1]
+    if not exactly:
+        regime = _REGIMES[rotation.motion.regime]
+        figures.notices.append(_equal_within_rounding("two moments"))
+        if regime == "separatrix" or (regime == "periodic" and rotation.motion.circled != k):
+            return _beyond_symmetry(figures, rotation)
+    else:
+        regime = "steady" if across == 0 or w[k] == 0 else "periodic"
+    _put_regular(figures, split, regime == "periodic")
+    figures.lack("two moments are equal, so that there is no middle axis", "flip_interval")
+    order = _order_of_directions(symmetry, split)
+    if order is None:
+        figures.lack("two of the directions coincide", "order_of_directions")
+    return figures.answer(symmetry, regime, axis, order)
+
+
+def _put_regular(figures: _Figures, s: _Split, periodic: bool) -> None:
+    """State the figures of a regular precession, all of them rational but for square roots and pi."""
+    body_rate = (s.single - s.equal) / s.equal * s.along
+    momentum = square_root(s.equal**2 * s.across_squared + (s.single * s.along) ** 2)
+    space_rate = momentum / s.equal
+    figures.put("space_rate", space_rate)
+    if periodic:
+        period = 2 * PI / abs(body_rate)
+        figures.put("body_rate", body_rate)
+        figures.put("period", period)
+        figures.put("precession_per_period", space_rate * period)
+        figures.put("mean_precession_rate", space_rate)
+    else:
+        figures.lack("the angular velocity is constant in the body", "body_rate", *_OF_A_CHANGE)
+    direction = -1 if s.along < 0 else 1
+    along, across = s.along**2, s.across_squared
+    figures.put("axis_to_angular_momentum", angle(s.equal**2 * across, s.single**2 * along, direction))
+    figures.put("axis_to_angular_velocity", angle(across, along, direction))
+    between = angle((s.single - s.equal) ** 2 * across * along, (s.equal * across + s.single * along) ** 2)
+    figures.put("angular_momentum_to_angular_velocity", between)
+
+
+def _order_of_directions(symmetry: Symmetry, s: _Split) -> str | None:
+    if s.along == 0 or s.across_squared == 0:
+        return None
+    if symmetry == "oblate":
+        return "oblate: the angular momentum lies between the axis and the angular velocity"
+    return "prolate: the angular velocity lies between the axis and the angular momentum"
+
+
+def _beyond_symmetry(figures: _Figures, rotation: FreeRotation) -> Precession:
+    """Return the answer where a difference of moments within rounding decides which axis is circled."""
+    motion, symmetry = rotation.motion, rotation.inertia.symmetry
+    reason = (
+        "the spin lies so near the plane of two nearly equal moments that the body does not move as a symmetric one"
     )
+    figures.lack(reason, *_OF_SYMMETRIC_BODIES)
+    if motion.regime == SEPARATRIX:
+        figures.put("mean_precession_rate", _momentum(rotation) / _moments(rotation.inertia)[1])
+        figures.lack("on the separatrix the body tends to the middle axis and never returns", *_OF_A_CHANGE)
+        return figures.answer(symmetry, "separatrix", _oriented(rotation.inertia, 1))
+    _put_periodic(figures, rotation)
+    return figures.answer(symmetry, "periodic", _oriented(rotation.inertia, motion.circled))
 
 
-def _nutation(state: ExactState, circled: int, sign: int, stated: _Statement) -> tuple[float, float] | None:
-    """Return the extremes of the inclination of the circled axis d.
-
-    tan^2 is I_c |D_d| / (I_d |D_c|) where the middle component is zero and I_b |D_d| / (I_d |D_b|) where it is largest.
-    """
-    d, c = circled, 2 - circled
-    direction = 1 if sign * state.rates[d] > 0 else -1
-    inclined = abs(state.excess(d))
-    first = angle(state.moments[c] * inclined, state.moments[d] * abs(state.excess(c)), direction)
-    second = angle(state.moments[1] * inclined, state.moments[d] * abs(state.excess(1)), direction)
-    one, other = stated("nutation", first), stated("nutation", second)
-    return None if one is None or other is None else (min(one, other), max(one, other))
+def _equal_within_rounding(which: str) -> Notice:
+    detail = f"{which} differ by less than 16 units in the last place of the largest and are taken as equal"
+    return Notice("moments-equal-within-rounding", detail, ("body",))
 
 
-def _nearly_symmetric_about(rotation: FreeRotation) -> int | None:
-    return {"oblate": 2, "prolate": 0, "linear": 0}.get(rotation.inertia.symmetry)
+def _moments(inertia: PrincipalInertia) -> list[Fraction]:
+    return exact_vector(inertia.moments, inertia.moments_tail)
 
 
-def _mean_body_rate(state: ExactState, number: int, sign: int, period: float) -> float:
-    """Return +-2 pi over the period: forward about the axis of largest moment, backward about the smallest."""
-    forward = (number == 2) == (sign * state.rates[number] > 0)
-    return math.copysign(2.0 * math.pi / period, 1.0 if forward else -1.0)
+def _momentum(rotation: FreeRotation) -> Fraction:
+    """Magnitude of the angular momentum."""
+    i, w = _moments(rotation.inertia), exact_vector(*rotation.start)
+    return square_root(sum(((m * x) ** 2 for m, x in zip(i, w, strict=True)), Fraction(0)))
 
 
-def _equal_within_stated(rotation: FreeRotation) -> Notice:
-    low, middle, high = (float(x) for x in rotation.inertia.moments)
-    gap = min((middle - low) / high, (high - middle) / high)
-    return Notice(
-        "nearly-symmetric",
-        f"two moments differ by {gap:.1g} of the largest, no more than rounding explains; the motion is that of three "
-        "distinct moments, and body_rate and space_rate are its means",
-    )
+def _oriented(inertia: PrincipalInertia, k: int) -> Floats:
+    """Return a principal axis, turned to the positive side of the body axis that it is nearest to."""
+    axis: Floats = inertia.axes[:, k].copy()
+    if axis[np.argmax(np.abs(axis))] < 0.0:
+        axis = 0.0 - axis
+    axis.setflags(write=False)
+    return axis

@@ -63,7 +63,7 @@ class Equilibrium:
     linearly_stable : bool
         Whether disturbances of the linearised equation stay bounded.
     attitude : {"orbital", "unstable"}
-        The attitude of a stable rotation is stable only as an orbit: a slightly different rate leads it ahead or behind.
+        The attitude of a stable rotation is stable only as an orbit: a slightly different rate leads it astray in time.
     survives_dissipation : bool
         Whether a body that loses energy inside, at constant angular momentum, can end here: the axis of largest
         moment, or one of several that share it.
@@ -201,8 +201,8 @@ def _about(moments: list[Fraction], axis: int, rate: Fraction) -> _Found:
 
 _CENTER = (
     "The moment is the {size}: a disturbance circles the axis (eigenvalues +-i times a rate). That is only linear; "
-    "stability is proved by the energy-Casimir method, the energy being strictly {extremum} here for the given |L|. The "
-    "attitude is stable as an orbit only."
+    "stability is proved by the energy-Casimir method, the energy being strictly {extremum} here for the given |L|. "
+    "The attitude is stable as an orbit only."
 )
 _SADDLE = (
     "The moment lies between the other two: a disturbance grows exponentially, which the linearised equation "
@@ -215,8 +215,8 @@ _PLANE = (
 )
 _SPHERE = (
     "The three moments are equal: every angular velocity is constant, so that a disturbance neither grows nor decays "
-    "(neutral: Lyapunov stable, not asymptotically). The attitude is stable as an orbit only. Dissipation has nothing to "
-    "act upon, as the energy is the same on every axis."
+    "(neutral: Lyapunov stable, not asymptotically). The attitude is stable as an orbit only. Dissipation has nothing "
+    "to act upon, as the energy is the same on every axis."
 )
 _REST = (
     "Nothing turns: a small angular velocity stays small because its energy does, though the linearised equation is "

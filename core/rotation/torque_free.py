@@ -20,6 +20,9 @@ from core.rotation.closed_form import FreeRotation
 
 PARTS = 3
 
+AT_THE_ORIGIN = 2.0**-48
+"""Distance of the centre of mass from the origin, over the radius of gyration, that rounding of the positions explains."""
+
 
 @kernel(VECTOR_FIELD)
 def _euler_principal(
@@ -75,6 +78,27 @@ def _invariants(
         mx, my, mz = a * x + d * y + e * z, d * x + b * y + f * z, e * x + f * y + c * z
         out[0, n] = 0.5 * (x * mx + y * my + z * mz)
         out[1, n] = math.sqrt(mx * mx + my * my + mz * mz)
+
+
+def pinned_notices(body: MassProperties) -> tuple[Notice, ...]:
+    """Return what is to be said of a body that is held at a point other than its centre of mass; paths lead from it.
+
+    Euler's equations hold about the pin, and the pin's force has no torque about it; any uniform field has one, as its
+    resultant acts at the centre of mass (H. Goldstein, C. Poole, J. Safko, "Classical Mechanics", 3rd ed., sections 1.2
+    and 5.7).
+    """
+    if body.about != "origin" or body.mass is None or body.center_of_mass is None:
+        return ()
+    distance = math.hypot(*(float(x) for x in body.center_of_mass))
+    gyration = math.sqrt(float(body.principal_of_motion.moments[2])) / math.sqrt(body.mass)
+    if distance <= AT_THE_ORIGIN * gyration:
+        return ()
+    detail = (
+        f"the body is held at the origin, {distance:.6g} m from its centre of mass: it turns as answered only without "
+        "gravity and in a smooth pivot that does not accelerate. A body that floats or is thrown turns about its centre "
+        'of mass: leave out about, or give "center-of-mass"'
+    )
+    return (Notice("not-free", detail, ("about",)),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +214,7 @@ class TorqueFree:
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """What an answer about this motion has to say beside its figures; paths lead from the question."""
-        notices = [notice.inside("body") for notice in self.body.warnings]
+        notices = [notice.inside("body") for notice in (*self.body.warnings, *pinned_notices(self.body))]
         for name, value in (("energy", self.energy), ("angular_momentum", self.angular_momentum)):
             if value is None:
                 notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
