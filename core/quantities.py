@@ -77,10 +77,13 @@ class Quantity:
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
         names = {"gt": self.above, "ge": self.at_least, "le": self.at_most, "lt": self.below}
         ends = {name: end for name, end in names.items() if isfinite(end)}
+        if source is int:
+            return {"type": "int", "strict": True, **ends}
         return {"type": "float", "strict": True, "allow_inf_nan": False, **ends}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        return {"type": "number", **self.limits, "x-unit": self.unit}
+        kind = "integer" if schema["type"] == "int" else "number"
+        return {"type": kind, **self.limits, "x-unit": self.unit}
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,11 @@ from core.errors import InvalidParameter, NotApplicable
 from core.quantities import members_of
 
 UNIFORM: dict[str, type[Uniform]] = {
-    member.kind: member for member in members_of(Body) if issubclass(member, Uniform) and hasattr(member, "kind")
+    member.kind: member  # type: ignore[attr-defined]
+    for member in members_of(Body)
+    if issubclass(member, Uniform) and member.mass_properties is Uniform.mass_properties
 }
+"""Solids whose shape is rational; a mesh is summed otherwise."""
 
 
 def exact_body(body: Mapping[str, Any]) -> ExactInertia:

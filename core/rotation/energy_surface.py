@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.integration.system import Floats
+from core.rotation.principal_frame import PrincipalFrame
 
 Faces = NDArray[np.int64]
 
@@ -31,13 +32,16 @@ class MeshQuality:
     volume_ratio : float
         Volume inside the triangles over that of the ellipsoid, below one.
     smallest_angle : float
-        Of any triangle on the unit sphere before scaling (rad).
+        Of any triangle (rad).
+    longest_edge : float
+        Of any triangle (rad/s).
     """
 
     watertight: bool
     euler_characteristic: int
     volume_ratio: float
     smallest_angle: float
+    longest_edge: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,9 +60,10 @@ class EnergyEllipsoid:
     Attributes
     ----------
     semi_axes : ndarray, shape (3,)
-        sqrt(2E/I_i) along the principal axes, moments ascending (rad/s).
+        sqrt(2E/I_i) along the body axes where these are principal, else along the principal axes, moments ascending
+        (rad/s).
     axes : ndarray, shape (3, 3)
-        Columns are the principal axes in body axes.
+        Columns are the axes to which they belong, in body axes.
     energy : float
         J.
     """
@@ -90,6 +95,9 @@ class EnergyEllipsoid:
             exponent = p - q + (0 if energy < 1e308 else 1)
             odd = exponent % 2
             axes.append(_ldexp(math.sqrt(e / i * 2.0**odd), (exponent - odd) // 2))
+        frame = PrincipalFrame(principal.axes, principal.axes_tail)
+        if frame.aligned:
+            return cls(np.array([axes[frame.rows.index(k)] for k in range(3)]), np.eye(3), energy)
         return cls(np.array(axes), principal.axes, energy)
 
     @classmethod
@@ -112,8 +120,11 @@ class EnergyEllipsoid:
         return cls.of(body, _ldexp(mantissa, exponent + size + 2 * rate, "angular_velocity"))
 
     def points(self, directions: Floats) -> Floats:
-        """Return the points of the surface, in body axes, that unit vectors, shape (n, 3), are scaled to."""
-        scaled = directions * self.semi_axes
+        """Return the points of the surface that unit vectors, shape (n, 3), are mapped to, both in body axes.
+
+        The map stretches along the principal axes: where they are the body axes, component i by sqrt(2E/I_i).
+        """
+        scaled = (directions @ self.axes) * self.semi_axes
         # One correction takes the rounding of the direction's length out of the energy.
         shape = scaled / self.semi_axes
         scaled *= 1.5 - 0.5 * (shape * shape).sum(axis=1, keepdims=True)
@@ -132,12 +143,14 @@ class EnergyEllipsoid:
         """
         _check_resolution(resolution, 1)
         directions, faces = _geodesic_sphere(resolution)
-        return TriangleMesh(self.points(directions), faces, _quality(directions, faces))
+        vertices = self.points(directions)
+        return TriangleMesh(vertices, faces, _quality(directions, vertices, faces))
 
     def grid(self, resolution: int) -> tuple[Floats, Floats, Floats]:
         """Return x, y and z, each of shape (2 resolution, resolution), over longitude and colatitude.
 
-        Colatitude runs from 0 to pi along rows, longitude from 0 to 2 pi down columns, both ends included.
+        Colatitude from the body's z axis runs from 0 to pi along rows, longitude from its x axis from 0 to 2 pi down
+        columns, both ends included.
         """
         _check_resolution(resolution, 2)
         colatitude, longitude = np.linspace(0.0, np.pi, resolution), np.linspace(0.0, 2.0 * np.pi, 2 * resolution)
@@ -184,35 +197,54 @@ def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
         (11, 10, 2), (10, 7, 6), (7, 1, 8),
         (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1),
     ]  # fmt: skip
-    numbers: dict[tuple[tuple[int, int], ...], int] = {}
-    weights: list[tuple[tuple[int, int], ...]] = []
+    # Vertices are numbered corners first, then the insides of the edges, then those of the faces, and each is made once.
+    edges = sorted({(min(p, q), max(p, q)) for a, b, c in solid for p, q in ((a, b), (b, c), (c, a))})
+    along = np.arange(1, parts)[:, None]
+    first_of = {edge: len(corners) + k * (parts - 1) for k, edge in enumerate(edges)}
+    mixed = [parts * corners, *((parts - along) * corners[p] + along * corners[q] for p, q in edges)]
+    i, j = (index.ravel() for index in np.meshgrid(np.arange(parts + 1), np.arange(parts + 1), indexing="ij"))
+    i, j = i[i + j <= parts], j[i + j <= parts]
+    inner = (i > 0) & (j > 0) & (i + j < parts)
+    local = np.full((parts + 1, parts + 1), -1, dtype=np.int64)
+    steps = np.arange(1, parts)
+
+    def edge(p: int, q: int) -> Faces:
+        forward = first_of[(min(p, q), max(p, q))] + steps - 1
+        return forward if p < q else forward[::-1]
+
+    upright = i + j < parts
+    inverted = i + j < parts - 1
+    next_inside = len(corners) + len(edges) * (parts - 1)
     faces = []
     for a, b, c in solid:
-        local = np.empty((parts + 1, parts + 1), dtype=np.int64)
-        for i in range(parts + 1):
-            for j in range(parts + 1 - i):
-                # A vertex is known by its whole-number weights on the corners, whichever face it is met from.
-                key = tuple(sorted((corner, n) for corner, n in ((a, parts - i - j), (b, i), (c, j)) if n))
-                if key not in numbers:
-                    numbers[key] = len(weights)
-                    weights.append(key)
-                local[i, j] = numbers[key]
-        for i in range(parts):
-            for j in range(parts - i):
-                faces.append((local[i, j], local[i + 1, j], local[i, j + 1]))
-                if i + j < parts - 1:
-                    faces.append((local[i + 1, j], local[i + 1, j + 1], local[i, j + 1]))
-    mixed = np.array([sum((n * corners[corner] for corner, n in key), np.zeros(3)) for key in weights])
-    return mixed / np.sqrt((mixed * mixed).sum(axis=1))[:, None], np.array(faces, dtype=np.int64)
+        local[0, 0], local[parts, 0], local[0, parts] = a, b, c
+        local[steps, 0], local[0, steps], local[parts - steps, steps] = edge(a, b), edge(a, c), edge(b, c)
+        local[i[inner], j[inner]] = next_inside + np.arange(inner.sum())
+        next_inside += int(inner.sum())
+        mixed.append(
+            np.outer((parts - i - j)[inner], corners[a])
+            + np.outer(i[inner], corners[b])
+            + np.outer(j[inner], corners[c])
+        )
+        p, q = i[upright], j[upright]
+        faces.append(np.stack([local[p, q], local[p + 1, q], local[p, q + 1]], axis=1))
+        p, q = i[inverted], j[inverted]
+        faces.append(np.stack([local[p + 1, q], local[p + 1, q + 1], local[p, q + 1]], axis=1))
+    vertices = np.concatenate(mixed)
+    return vertices / np.sqrt((vertices * vertices).sum(axis=1))[:, None], np.concatenate(faces)
 
 
-def _quality(directions: Floats, faces: Faces) -> MeshQuality:
+def _quality(directions: Floats, vertices: Floats, faces: Faces) -> MeshQuality:
     a, b, c = (directions[faces[:, k]] for k in range(3))
     # The volume ratio is the same for sphere and ellipsoid, which differ by a linear map.
     inside = float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    there = {(int(p), int(q)) for p, q in edges}
-    watertight = len(there) == len(edges) and all((q, p) in there for p, q in there)
+    there = np.sort(edges[:, 0] * len(directions) + edges[:, 1])
+    back = np.sort(edges[:, 1] * len(directions) + edges[:, 0])
+    watertight = bool(np.all(np.diff(there) > 0) and np.array_equal(there, back))
+    # In units in which no product of two lengths leaves the range of doubles.
+    unit = math.ldexp(1.0, math.frexp(float(np.abs(vertices).max()))[1] - 1)
+    a, b, c = (vertices[faces[:, k]] / unit for k in range(3))
 
     def angle(x: Floats, y: Floats, z: Floats) -> float:
         u, v = y - x, z - x
@@ -223,4 +255,5 @@ def _quality(directions: Floats, faces: Faces) -> MeshQuality:
         len(directions) - len(edges) // 2 + len(faces),
         inside / (4.0 / 3.0 * math.pi),
         min(angle(a, b, c), angle(b, c, a), angle(c, a, b)),
+        unit * max(float(np.linalg.norm(x - y, axis=1).max()) for x, y in ((a, b), (b, c), (c, a))),
     )

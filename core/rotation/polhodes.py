@@ -77,7 +77,7 @@ def separatrix(body: MassProperties, energy: float, count: int = 256) -> tuple[P
     """
     _check_count(count)
     principal = body.principal_of_motion
-    middle = float(EnergyEllipsoid.of(body, energy).semi_axes[1])
+    middle = float(np.sort(EnergyEllipsoid.of(body, energy).semi_axes)[1])
     shares = _shares(principal)
     if shares is None:
         return ()

@@ -21,7 +21,7 @@ from core.rotation.closed_form import FreeRotation
 PARTS = 3
 
 AT_THE_ORIGIN = 2.0**-48
-"""Distance of the centre of mass from the origin, over the radius of gyration, that rounding of the positions explains."""
+"""Distance of the centre of mass from the origin, over the radius of gyration, that rounding explains."""
 
 
 @kernel(VECTOR_FIELD)

@@ -80,8 +80,8 @@ class EllipsoidAnswer(Envelope):
     """The surface w.I.w = 2E in body axes (rad/s)."""
 
     energy: float
-    semi_axes: Vector = Field(description="Along the principal axes, moments ascending (rad/s).")
-    axes: Matrix = Field(description="Columns are the principal axes in body axes; written row by row.")
+    semi_axes: Vector = Field(description="sqrt(2E/I) along each of `axes` (rad/s).")
+    axes: Matrix = Field(description="Columns: the body axes if principal, else the principal axes.")
     mesh: MeshView | None = None
     grid: GridView | None = None
     polhodes: list[PolhodeView] | None = None
