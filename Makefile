@@ -3,7 +3,7 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 ENV := .venv
 BIN := $(ENV)/bin
 
-.PHONY: serve test check environment openapi record peers clean
+.PHONY: serve test check environment openapi judge record peers clean
 
 serve: environment
 	$(BIN)/python -m service
@@ -25,6 +25,9 @@ $(ENV)/made: requirements-dev.lock
 
 openapi: environment
 	$(BIN)/python -m service --openapi > docs/openapi.json
+
+judge: environment
+	$(BIN)/python -m tests.core.certified.judge 100000
 
 record: environment
 	$(BIN)/python -m benchmarks.method_record

@@ -15,8 +15,8 @@ from core.rotation.principal_frame import PrincipalFrame
 
 Faces = NDArray[np.int64]
 
-FINEST = 400
-"""Largest resolution of a mesh or grid: about 640000 triangles, or 400 x 800 points."""
+FINEST = 200
+"""Largest resolution of a mesh or grid: 800000 triangles, or 400 x 200 points."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class EnergyEllipsoid:
         InvalidParameter
             If the resolution is below 1.
         BudgetExceeded
-            If it is above 400.
+            If it is above 200.
         """
         _check_resolution(resolution, 1)
         directions, faces = _geodesic_sphere(resolution)
@@ -197,7 +197,7 @@ def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
         (11, 10, 2), (10, 7, 6), (7, 1, 8),
         (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1),
     ]  # fmt: skip
-    # Vertices are numbered corners first, then the insides of the edges, then those of the faces, and each is made once.
+    # Each vertex is made once: first the corners, then the insides of the edges, then those of the faces.
     edges = sorted({(min(p, q), max(p, q)) for a, b, c in solid for p, q in ((a, b), (b, c), (c, a))})
     along = np.arange(1, parts)[:, None]
     first_of = {edge: len(corners) + k * (parts - 1) for k, edge in enumerate(edges)}

@@ -8,7 +8,7 @@ import numpy as np
 
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter, MechanicsError
-from core.integration.budget import Budget
+from core.integration.budget import Budget, rest_of
 from core.integration.methods.method import AbstractMethod
 from core.integration.solve import checked_times, solve
 from core.integration.system import Floats
@@ -56,7 +56,7 @@ def ensemble(
     Raises
     ------
     BudgetExceeded
-        If all members together need more samples than the budget has.
+        If all members together need more samples or evaluations than the budget has.
     MechanicsError
         As `solve`, with the path of the member's start.
     """
@@ -68,10 +68,14 @@ def ensemble(
     if total > budget.samples:
         remedy = "ask for fewer times or fewer starts, or in several questions"
         raise BudgetExceeded("samples", total, budget.samples, path=("times",), remedy=remedy)
-    members = []
+    members: list[Trajectory] = []
+    spent = 0
     for k, start in enumerate(angular_velocities):
         try:
-            members.append(solve(TorqueFree(body, start), instants, accuracy=accuracy, method=method, budget=budget))
+            rest = rest_of(budget, spent)
+            member = solve(TorqueFree(body, start), instants, accuracy=accuracy, method=method, budget=rest)
+            spent += member.work.evaluations + member.work.evaluations_for_error
+            members.append(member)
         except MechanicsError as fault:
             if fault.path[:1] == ("angular_velocity",):
                 fault.path = ("angular_velocities", k, *fault.path[1:])

@@ -95,8 +95,8 @@ def pinned_notices(body: MassProperties) -> tuple[Notice, ...]:
         return ()
     detail = (
         f"the body is held at the origin, {distance:.6g} m from its centre of mass: it turns as answered only without "
-        "gravity and in a smooth pivot that does not accelerate. A body that floats or is thrown turns about its centre "
-        'of mass: leave out about, or give "center-of-mass"'
+        "gravity and in a smooth pivot that does not accelerate. A body that floats or is thrown turns about its "
+        'centre of mass: leave out about, or give "center-of-mass"'
     )
     return (Notice("not-free", detail, ("about",)),)
 

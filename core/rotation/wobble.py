@@ -22,25 +22,40 @@ class EarthFigures:
     Attributes
     ----------
     axis_ratio : float
-        Equatorial over polar radius, WGS 84 (a = 6378137 m, 1/f = 298.257223563).
+        Equatorial over polar radius.
     asymmetry : float
-        (C - A)/A, from the dynamical ellipticity H = (C - A)/C = 0.0032737949 (IAU 2006 precession) by H/(1 - H).
+        (C - A)/A.
+    asymmetry_of_shape : float
+        What (C - A)/A would be with this axis ratio, were the density a scaled sphere's: the Earth's layers are the
+        rounder the deeper they lie.
     rigid_period_sidereal, rigid_period_solar : float
         Period of the wobble if the Earth were rigid (days).
     observed_period_solar : float
         Chandler's period (days).
+    sources : tuple of str
+        Of the measured figures.
+    why : str
+        What explains the difference between the rigid and the observed period.
     """
 
     axis_ratio: float = 1.00336409
     asymmetry: float = 0.00328455
+    asymmetry_of_shape: float = 0.00335843
     rigid_period_sidereal: float = 304.46
     rigid_period_solar: float = 303.62
     observed_period_solar: float = 433.0
+    sources: tuple[str, ...] = (
+        "axis_ratio: World Geodetic System 1984, a = 6378137 m, 1/f = 298.257223563",
+        "asymmetry: H/(1 - H), dynamical ellipticity H = (C - A)/C = 0.0032737949 of the IAU 2000 nutation "
+        "(P. M. Mathews, T. A. Herring, B. A. Buffett, J. Geophys. Res. 107 (2002) B4)",
+        "observed_period_solar: 433.1 +- 1.7 days (R. O. Vicente, C. R. Wilson, J. Geophys. Res. 102 (1997) 20439)",
+    )
     why: str = (
-        "A rigid Earth would wobble in 304 sidereal days; it is observed to take about 433. The Earth yields: its "
-        "elastic mantle and its oceans follow the wobbling axis and lengthen the period; its fluid core "
-        "does not take part and shortens it. The wobble is damped and kept alive by ocean and atmosphere: its path "
-        "is no circle. A density that is not uniform changes none of this: every tensor of inertia has principal axes."
+        "A rigid Earth would wobble in 304 days; it is observed to take about 433. The Earth yields: its elastic "
+        "mantle and its oceans follow the wobbling axis and lengthen the period; its fluid core hardly takes part and "
+        "shortens it. The wobble is damped, and kept alive by ocean and atmosphere, and a yearly forced motion is "
+        "added to it: its path is no circle. Euler's equations are right, for a rigid and isolated body. A density "
+        "that is not uniform changes none of this: every tensor of inertia has principal axes."
     )
 
 

@@ -4,6 +4,7 @@ import itertools
 import math
 from fractions import Fraction
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -43,6 +44,36 @@ def test_mesh_is_watertight_and_outward(resolution):
     assert heights.min() > 0
     exact = 4 / 3 * math.pi * math.prod(math.sqrt(2.0 / i) for i in (2.0, 1.0, 0.5))
     assert heights.sum() / 6 == pytest.approx(mesh.quality.volume_ratio * exact, rel=1e-13)
+
+
+def test_grid_is_the_sphere_stretched_along_the_body_axes():
+    x, y, z = EnergyEllipsoid.of(diagonal((2.0, 1.0, 0.5)), 1.0).grid(20)
+    theta, phi = np.meshgrid(np.linspace(0, np.pi, 20), np.linspace(0, 2 * np.pi, 40))
+    assert x == pytest.approx(math.sqrt(2 / 2.0) * np.sin(theta) * np.cos(phi), abs=1e-15)
+    assert y == pytest.approx(math.sqrt(2 / 1.0) * np.sin(theta) * np.sin(phi), abs=1e-15)
+    assert z == pytest.approx(math.sqrt(2 / 0.5) * np.cos(theta), abs=1e-15)
+    for coordinate in (x, y, z):
+        assert np.array_equal(coordinate[0], coordinate[-1])
+        for pole in (coordinate[:, 0], coordinate[:, -1]):
+            assert np.ptp(pole) == 0.0
+
+
+@pytest.mark.parametrize("moments", [(2.0, 1.0, 0.5), (1e-6, 1.0, 1.0), (1e150, 2e150, 3e150)])
+def test_quality_is_that_of_the_triangles_themselves(moments):
+    mesh = EnergyEllipsoid.of(diagonal(moments), 1.0).triangles(4)
+    smallest, longest = mpmath.pi, mpmath.mpf(0)
+    with mpmath.workdps(40):
+        for face in mesh.faces:
+            corners = [mpmath.matrix([mpmath.mpf(float(x)) for x in mesh.vertices[k]]) for k in face]
+            a, b, c = (mpmath.norm(corners[k] - corners[k - 1]) for k in range(3))
+            longest = max(longest, a, b, c)
+            # The law of cosines.
+            angles = [
+                mpmath.acos((q * q + r * r - p * p) / (2 * q * r)) for p, q, r in ((a, b, c), (b, c, a), (c, a, b))
+            ]
+            smallest = min(smallest, *angles)
+        assert abs(mesh.quality.longest_edge / longest - 1) < 1e-14
+        assert abs(mesh.quality.smallest_angle / smallest - 1) < 1e-13
 
 
 def test_volume_converges_with_the_square_of_the_resolution():

@@ -6,6 +6,7 @@ import pytest
 from core.bodies.mass_properties import diagonal
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
 from core.integration.budget import Budget
+from core.integration.methods import ExplicitEuler
 from core.integration.solve import solve
 from core.rotation.ensemble import ensemble
 from core.rotation.initial_states import initial_states
@@ -28,6 +29,18 @@ def test_limits_name_what_is_too_much():
         ensemble(body, np.ones((3, 3)), np.linspace(0, 1, 4), budget=Budget(samples=11))
     with pytest.raises(InvalidParameter):
         ensemble(body, np.ones((0, 3)), np.linspace(0, 1, 4))
+
+
+def test_all_members_share_one_budget_of_evaluations():
+    body, times = diagonal((1.0, 2.0, 3.0)), np.linspace(0, 10, 11)
+    starts = np.array([[1.0, 0.5, 0.2], [0.2, 1.0, 0.3], [0.1, 0.2, 1.0]])
+    method = ExplicitEuler(0.01)
+    one = ensemble(body, starts[:1], times, method=method).members[0].work
+    each = one.evaluations + one.evaluations_for_error
+    assert each == 1000
+    assert len(ensemble(body, starts, times, method=method, budget=Budget(evaluations=3 * each)).members) == 3
+    with pytest.raises(BudgetExceeded):
+        ensemble(body, starts, times, method=method, budget=Budget(evaluations=3 * each - 1))
 
 
 def test_a_member_s_fault_names_the_member():

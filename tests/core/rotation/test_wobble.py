@@ -26,6 +26,12 @@ def test_it_is_not_the_root_of_the_ratio_of_moments():
 def test_earth_s_figures_agree_with_each_other():
     assert from_period(EARTH.rigid_period_sidereal).asymmetry == pytest.approx(EARTH.asymmetry, rel=2e-5)
     assert from_period(EARTH.rigid_period_solar, "solar").asymmetry == pytest.approx(EARTH.asymmetry, rel=2e-5)
+    assert from_ellipticity(EARTH.axis_ratio).asymmetry == pytest.approx(EARTH.asymmetry_of_shape, abs=5e-9)
+    flattening, dynamical = 1 / 298.257223563, 0.0032737949
+    assert pytest.approx(1 / (1 - flattening), abs=5e-9) == EARTH.axis_ratio
+    assert pytest.approx(dynamical / (1 - dynamical), abs=5e-9) == EARTH.asymmetry
+    # The model's shape for Earth's own asymmetry is not Earth's: its density is not a scaled sphere's.
+    assert from_period(1 / EARTH.asymmetry).ellipticity < EARTH.axis_ratio - 5e-5
 
 
 @given(st.floats(1.001, 1e12), st.sampled_from(["sidereal", "solar"]))
