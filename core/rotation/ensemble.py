@@ -8,7 +8,8 @@ import numpy as np
 
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter, MechanicsError
-from core.integration.budget import Budget, rest_of
+from core.integration.budget import Budget
+from core.integration.error_statements import rest_of
 from core.integration.methods.method import AbstractMethod
 from core.integration.solve import checked_times, solve
 from core.integration.system import Floats

@@ -47,7 +47,7 @@ class EarthFigures:
     sources: tuple[str, ...] = (
         "axis_ratio: World Geodetic System 1984, a = 6378137 m, 1/f = 298.257223563",
         "asymmetry: H/(1 - H), dynamical ellipticity H = (C - A)/C = 0.0032737949 of the IAU 2000 nutation "
-        "(P. M. Mathews, T. A. Herring, B. A. Buffett, J. Geophys. Res. 107 (2002) B4)",
+        "(P. M. Mathews, T. A. Herring, B. A. Buffett, J. Geophys. Res. 107 (2002) 2068)",
         "observed_period_solar: 433.1 +- 1.7 days (R. O. Vicente, C. R. Wilson, J. Geophys. Res. 102 (1997) 20439)",
     )
     why: str = (

@@ -49,7 +49,8 @@ class QualityView(View):
     watertight: bool
     euler_characteristic: int
     volume_ratio: float = Field(description="Volume inside the triangles over that of the ellipsoid.")
-    smallest_angle: float = Field(description="Of any triangle on the sphere before scaling (rad).")
+    smallest_angle: float = Field(description="Of any triangle (rad).")
+    longest_edge: float = Field(description="Of any triangle (rad/s).")
 
 
 class MeshView(View):

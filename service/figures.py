@@ -1,0 +1,128 @@
+"""Curves on logarithmic scales as SVG, written without a library: a figure is an answer too."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from math import ceil, floor, log10
+
+COLOURS = ("#c1440e", "#1f4e8c", "#2a6f4e", "#7a1fa2", "#b8860b", "#008b8b", "#8b2252", "#555555")
+LEFT, TOP, WIDTH, HEIGHT = 70.0, 40.0, 560.0, 400.0
+MOST_TICKS = 9
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Points that belong together; a point that is not positive has no place on a logarithmic scale and is left out.
+
+    Attributes
+    ----------
+    label : str
+    points : sequence of (float, float)
+    emphasised : bool
+        Drawn broad and pale, under the others.
+    """
+
+    label: str
+    points: Sequence[tuple[float, float]]
+    emphasised: bool = False
+
+
+@dataclass(frozen=True)
+class Level:
+    """A horizontal line across the figure."""
+
+    label: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Decades from `low` to `high` over `length` pixels from `start`, which may run backwards."""
+
+    low: int
+    high: int
+    start: float
+    length: float
+
+    @classmethod
+    def over(cls, values: Sequence[float], start: float, length: float) -> Scale:
+        """Return the whole decades that hold all positive values."""
+        exponents = [log10(value) for value in values if value > 0.0] or [0.0]
+        low, high = floor(min(exponents)), ceil(max(exponents))
+        return cls(low, max(high, low + 1), start, length)
+
+    def __call__(self, value: float) -> float:
+        """Return the place of a value in pixels."""
+        return self.start + self.length * (log10(value) - self.low) / (self.high - self.low)
+
+    @property
+    def ticks(self) -> range:
+        """Exponents that are marked."""
+        return range(self.low, self.high + 1, ceil((self.high - self.low + 1) / MOST_TICKS))
+
+
+def log_log(title: str, across: str, up: str, curves: Sequence[Curve], levels: Sequence[Level] = ()) -> str:
+    """Return a figure of curves over two logarithmic axes as an SVG document."""
+    shown = [(curve, [(x, y) for x, y in curve.points if x > 0.0 and y > 0.0]) for curve in curves]
+    points = [point for _, own in shown for point in own]
+    x = Scale.over([px for px, _ in points], LEFT, WIDTH)
+    y = Scale.over([py for _, py in points] + [level.value for level in levels], TOP + HEIGHT, -HEIGHT)
+    parts = [*_frame(title, across, up, x, y), *_levels(levels, y)]
+    for curve, own in shown:
+        if curve.emphasised and own:
+            parts.append(_line(own, x, y, "#cccccc", 7.0))
+    plain = [(curve, own) for curve, own in shown if not curve.emphasised]
+    for k, (curve, own) in enumerate(plain):
+        colour = COLOURS[k % len(COLOURS)]
+        if own:
+            parts.append(_line(own, x, y, colour, 1.2))
+        parts += [f'<circle cx="{x(px):.1f}" cy="{y(py):.1f}" r="3" fill="{colour}"/>' for px, py in own]
+        height = TOP + 14 + 20 * k
+        parts.append(f'<text x="{LEFT + WIDTH + 16:g}" y="{height:g}" fill="{colour}">{escape(curve.label)}</text>')
+    return (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 840 500" font-family="sans-serif" font-size="13">'
+        '<rect width="840" height="500" fill="white"/>' + "".join(parts) + "</svg>\n"
+    )
+
+
+def _frame(title: str, across: str, up: str, x: Scale, y: Scale) -> list[str]:
+    bottom, right = TOP + HEIGHT, LEFT + WIDTH
+    parts = [f'<text x="{LEFT:g}" y="24" font-weight="bold">{escape(title)}</text>']
+    for exponent in x.ticks:
+        at = f"{x(10.0**exponent):.1f}"
+        parts.append(f'<line x1="{at}" y1="{TOP:g}" x2="{at}" y2="{bottom:g}" stroke="#eee"/>')
+        parts.append(f'<text x="{at}" y="{bottom + 18:g}" text-anchor="middle" fill="#555">{_power(exponent)}</text>')
+    for exponent in y.ticks:
+        at = f"{y(10.0**exponent):.1f}"
+        parts.append(f'<line x1="{LEFT:g}" y1="{at}" x2="{right:g}" y2="{at}" stroke="#eee"/>')
+        parts.append(f'<text x="{LEFT - 8:g}" y="{at}" dy="4" text-anchor="end" fill="#555">{_power(exponent)}</text>')
+    parts.append(f'<rect x="{LEFT:g}" y="{TOP:g}" width="{WIDTH:g}" height="{HEIGHT:g}" fill="none" stroke="#999"/>')
+    parts.append(f'<text x="{LEFT + WIDTH / 2:g}" y="{bottom + 42:g}" text-anchor="middle">{escape(across)}</text>')
+    middle = TOP + HEIGHT / 2
+    parts.append(
+        f'<text x="18" y="{middle:g}" transform="rotate(-90 18 {middle:g})" text-anchor="middle">{escape(up)}</text>'
+    )
+    return parts
+
+
+def _levels(levels: Sequence[Level], y: Scale) -> list[str]:
+    parts = []
+    for level in levels:
+        if level.value > 0.0:
+            at = f"{y(level.value):.1f}"
+            parts.append(
+                f'<line x1="{LEFT:g}" y1="{at}" x2="{LEFT + WIDTH:g}" y2="{at}" stroke="black" stroke-dasharray="6 4"/>'
+            )
+            parts.append(f'<text x="{LEFT + WIDTH + 16:g}" y="{at}" dy="4">{escape(level.label)}</text>')
+    return parts
+
+
+def _line(points: Sequence[tuple[float, float]], x: Scale, y: Scale, colour: str, width: float) -> str:
+    places = " ".join(f"{x(px):.1f},{y(py):.1f}" for px, py in points)
+    return f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linejoin="round"/>'
+
+
+def _power(exponent: int) -> str:
+    return f'10<tspan dy="-5" font-size="9">{exponent}</tspan>'

@@ -1,0 +1,163 @@
+"""Questions about methods: what error each of them buys for which work, on the client's own motion."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from core.bodies import Body
+from core.integration.budget import Budget
+from core.integration.methods import Method
+from core.quantities import AngularVelocity, Tolerance
+from core.rotation.torque_free import TorqueFree
+from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
+from service.figures import Curve, Level, log_log
+from service.routes.bodies import properties_of, reading_price
+from service.routes.rotation import T_HANDLE
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
+
+SVG = "image/svg+xml"
+
+
+class WorkPrecisionRequest(Request):
+    """A free rotation, and the methods to be compared on it."""
+
+    body: Body
+    angular_velocity: AngularVelocity = Field(description="At t = 0, in body axes (rad/s).")
+    times: Times = Field(description="Measured from the given state, of either sign, in any order (s).")
+    methods: Annotated[list[Method], Field(min_length=1, max_length=100)] | None = Field(
+        default=None, description="With their settings, a method as often as wanted; default: a ladder of every method."
+    )
+    accuracy: Tolerance = Field(default=1e-9, description="What the recommendation is for.")
+    repeats: Annotated[int, Field(ge=0, le=101)] = Field(
+        default=0, description="How often each run is timed; 0 times nothing, and equal questions get equal answers."
+    )
+
+
+class MeasurementView(View):
+    """One method with one setting; errors are relative to the largest norm of the motion."""
+
+    method: Method
+    error: float | None = Field(description="Largest of any sample; null if the method failed.")
+    final_error: float | None = Field(description="At the time farthest from the start.")
+    component_errors: list[float] = Field(description="Of each component, relative to its own largest magnitude.")
+    drifts: dict[str, float] | None = Field(description="Of conserved quantities: not an error.")
+    evaluations: int
+    steps: int
+    seconds: float | None = Field(description="Median of the repeats; null if nothing was timed.")
+    failure: str | None = Field(description="Why there are no samples.")
+
+
+class CurveView(View):
+    """All settings of one method, cheapest first."""
+
+    kind: str
+    declared_order: int | None
+    fitted_order: float | None = Field(description="Between the coarse settings and the floor; null with too few.")
+    floor: float | None = Field(description="Where more work brings no smaller error; null if it was not met.")
+    measurements: list[MeasurementView]
+
+
+class RecommendationView(View):
+    """The cheapest setting that was measured to reach the accuracy."""
+
+    method: Method | None
+    reason: str
+
+
+class WorkPrecisionAnswer(Envelope):
+    """Error against cost."""
+
+    reference: str = Field(description="What errors are measured against.")
+    reference_error: float = Field(description="Contained in every error that is stated.")
+    curves: list[CurveView]
+    pareto_front: list[MeasurementView] = Field(description="Beaten by none in both error and evaluations.")
+    recommendation: RecommendationView
+
+
+def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Answer:
+    """Answer with every method's errors and work."""
+    body = properties_of(question.body)
+    system = TorqueFree(body, np.array(question.angular_velocity))
+    times = sample_times(question.times, budget)
+    # The budget is for the question, and each of its runs has an equal share.
+    share = max(1, budget.evaluations // ((1 + question.repeats) * _runs(question)))
+    found = work_precision(
+        system,
+        times,
+        question.methods,
+        accuracy=question.accuracy,
+        repeats=question.repeats,
+        budget=Budget(share, budget.samples),
+    )
+    return {entry.name: getattr(found, entry.name) for entry in fields(found)} | {"warnings": system.warnings}
+
+
+def _runs(question: WorkPrecisionRequest) -> int:
+    return DEFAULT_RUNS if question.methods is None else len(question.methods)
+
+
+def price(question: WorkPrecisionRequest, budget: Budget) -> float:
+    """Return the predicted time (s); methods that choose their steps cannot be priced without taking them."""
+    samples = sample_count(question.times, budget)
+    runs = _runs(question) * (1 + question.repeats)
+    return reading_price(question, budget) + runs * (3e-3 + 1e-6 * samples)
+
+
+def drawn(answer: Answer) -> bytes:
+    """Return the answer as a figure: error over evaluations, the closed form as a line, the front under the curves."""
+    curves = [Curve("", _points(answer["pareto_front"]), emphasised=True)]
+    levels = []
+    for curve in answer["curves"]:
+        points = _points(curve.measurements)
+        if any(evaluations > 0 for evaluations, _ in points):
+            order = "" if curve.fitted_order is None else f", order {curve.fitted_order:.1f}"
+            curves.append(Curve(curve.kind + order, points))
+        else:
+            levels += [Level(curve.kind, error) for _, error in points[:1]]
+    title = f"Error against work, measured against: {answer['reference']}"
+    return log_log(title, "evaluations", "largest error, relative", curves, levels).encode()
+
+
+def _points(measurements: tuple[Measurement, ...]) -> list[tuple[float, float]]:
+    return [(float(one.evaluations), one.error) for one in measurements if one.error is not None]
+
+
+WORK_PRECISION = (
+    Question(
+        "/v1/work-precision",
+        "work_precision",
+        "What error each method buys for which work, on a motion of your own",
+        "accuracy",
+        WorkPrecisionRequest,
+        WorkPrecisionAnswer,
+        answer_work_precision,
+        price,
+        description="The same as a figure is answered to `Accept: image/svg+xml`.",
+        examples={
+            "t-handle": Example(
+                "three methods on a T-handle that tumbles",
+                {
+                    "body": T_HANDLE,
+                    "angular_velocity": [1.0, 10.0, 1.0],
+                    "times": {"start": 0.0, "stop": 5.0, "count": 21},
+                    "methods": [
+                        {"kind": "closed-form"},
+                        {"kind": "explicit-euler", "step": 0.01},
+                        {"kind": "explicit-euler", "step": 0.001},
+                        {"kind": "runge-kutta-4", "step": 0.02},
+                        {"kind": "runge-kutta-4", "step": 0.01},
+                        {"kind": "dormand-prince-853", "tolerance": 1e-6},
+                        {"kind": "dormand-prince-853", "tolerance": 1e-12},
+                    ],
+                    "accuracy": 1e-9,
+                },
+            ),
+        },
+        representations={SVG: drawn},
+    ),
+)
