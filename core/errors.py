@@ -75,15 +75,25 @@ class AccuracyUnreachable(MechanicsError):
 
     Parameters
     ----------
-    requested, achievable : float
-        Largest error of any sample relative to the motion's largest norm.
+    requested : float or None
+        Largest error of any sample, relative to the motion's largest norm, that was asked for; None where the question
+        is beyond any accuracy.
+    achievable : float
+        The error that can be reached.
     """
 
     def __init__(
-        self, requested: float, achievable: float, reason: str, *, path: Path = ("accuracy",), remedy: str | None = None
+        self,
+        requested: float | None,
+        achievable: float,
+        reason: str,
+        *,
+        path: Path = ("accuracy",),
+        remedy: str | None = None,
     ) -> None:
+        asked = "" if requested is None else f"an error of at most {requested:.3g} was asked for and "
         super().__init__(
-            f"an error of at most {requested:.3g} was asked for and {achievable:.3g} can be reached: {reason}",
+            f"{asked}{achievable:.3g} {'is all that ' if requested is None else ''}can be reached: {reason}",
             path=path,
             remedy=remedy,
         )

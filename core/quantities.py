@@ -213,6 +213,7 @@ Velocity = Annotated[float, Quantity("m s^-1")]
 Acceleration = Annotated[float, Quantity("m s^-2", above=0)]
 Energy = Annotated[float, Quantity("J", above=0)]
 Tolerance = Annotated[float, Quantity("1", above=0, below=1)]
+Uncertainty = Annotated[float, Quantity("1", at_least=0, below=1)]
 
 Position = tuple[Coordinate, Coordinate, Coordinate]
 AngularVelocity = tuple[AngularRate, AngularRate, AngularRate]

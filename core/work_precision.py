@@ -39,6 +39,8 @@ from core.integration.system import Floats, System
 STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
 TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))
 SCIPY_TOLERANCES = tuple(10.0**-k for k in range(3, 10, 2))
+DEFAULT_RUNS = 1 + 4 * len(STEPS_PER_OWN_TIME) + len(TOLERANCES) + 2 * len(SCIPY_TOLERANCES)
+"""How many methods and settings `default_methods` has at most."""
 LARGEST_FITTED = 0.1
 """Above this the error has not yet begun to fall with its order."""
 ABOVE_FLOOR = 10.0

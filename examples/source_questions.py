@@ -98,8 +98,7 @@ def _energy(answers: Answers) -> Figures:
 
 
 def _surface(answers: Answers) -> Figures:
-    low, middle, high = answers[0]["semi_axes"]
-    return {"low": low, "middle": middle, "high": high}
+    return dict(zip("xyz", answers[0]["semi_axes"], strict=True))
 
 
 def _growth(answers: Answers) -> Figures:

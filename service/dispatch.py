@@ -19,7 +19,7 @@ from typing import Any
 from core.errors import MechanicsError
 from service.answering import Answering
 from service.compute import Compute
-from service.guards import ClientGone, read_body, require_acceptable, require_json
+from service.guards import ClientGone, negotiated, read_body, require_acceptable, require_json
 from service.logs import LOG
 from service.metrics import Metrics
 from service.problems import MEDIA_TYPE, REGISTRY, Problem, Refusal, problem_of
@@ -116,9 +116,17 @@ class Dispatcher:
     async def _question(self, route: Question, exchange: Exchange) -> None:
         settings, headers = self._settings, exchange.headers
         require_json(headers)
+        media = None
         if b"accept" in headers:
-            require_acceptable(headers[b"accept"])
+            if route.representations:
+                media = negotiated(headers[b"accept"], route.representations)
+            else:
+                require_acceptable(headers[b"accept"])
         body = await read_body(exchange.receive, headers, settings.max_body_bytes)
+        if media is not None:
+            document = route.representations[media](await self._answer(route, body, exchange))
+            await exchange.represented(document, media.encode())
+            return
         key = (route.path, body)
         kept = self._kept.get(key)
         if kept is not None:
@@ -255,6 +263,16 @@ class Exchange:
                 return
         headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
         await self._respond(status, b"" if self.scope["method"] == "HEAD" else body, headers)
+
+    async def represented(self, body: bytes, media_type: bytes) -> None:
+        """Send an answer that is not JSON, or that the client has it already."""
+        etag = etag_of(body)
+        headers: list[Header] = [(b"etag", etag), (b"vary", b"accept")]
+        if self._has(etag):
+            await self._respond(304, b"", headers)
+            return
+        headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
+        await self._respond(200, body, headers)
 
     async def problem(self, problem: Problem) -> None:
         """Send a problem document."""

@@ -103,7 +103,8 @@ class _Route(APIRoute):
             response_model=route.answer,
             response_description="The answer." if isinstance(route, Question) else "The document.",
             response_class=_response_class(route),
-            responses=_problems(_PROBLEMS_OF_QUESTIONS if isinstance(route, Question) else (406, 500)),
+            responses=_representations(route)
+            | _problems(_PROBLEMS_OF_QUESTIONS if isinstance(route, Question) else (406, 500)),
         )
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
@@ -136,6 +137,13 @@ def _endpoint(route: Route) -> Callable[..., Any]:
     endpoint.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     endpoint.__doc__ = None
     return endpoint
+
+
+def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
+    if not isinstance(route, Question) or not route.representations:
+        return {}
+    text = {"schema": {"type": "string"}}
+    return {200: {"description": "The answer.", "content": dict.fromkeys(route.representations, text)}}
 
 
 def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:

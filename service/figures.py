@@ -121,7 +121,9 @@ def _levels(levels: Sequence[Level], y: Scale) -> list[str]:
 
 def _line(points: Sequence[tuple[float, float]], x: Scale, y: Scale, colour: str, width: float) -> str:
     places = " ".join(f"{x(px):.1f},{y(py):.1f}" for px, py in points)
-    return f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linejoin="round"/>'
+    return (
+        f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linejoin="round"/>'
+    )
 
 
 def _power(exponent: int) -> str:

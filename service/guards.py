@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Awaitable, Callable, Mapping, MutableMapping
+from collections.abc import Awaitable, Callable, Iterable, Mapping, MutableMapping
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ Headers = Mapping[bytes, bytes]
 
 _KEY_END = re.compile(rb'"[ \t\r\n]*:')
 _KEY = re.compile(rb'"(\w*)"[ \t\r\n]*:')
+_WEIGHT = re.compile(r"0(\.\d{0,3})?|1(\.0{0,3})?")
 _OTHER = bytes(set(range(256)) - set(b'"[]{}'))
 _STEP = np.zeros(256, np.int8)
 _STEP[list(b"[{")], _STEP[list(b"]}")] = 1, -1
@@ -42,6 +43,33 @@ def require_acceptable(accept: bytes, offered: bytes = b"application/json") -> N
     family = offered.split(b"/", 1)[0] + b"/*"
     if accept and not (b"*/*" in accept or offered in accept or family in accept):
         raise Refusal("not-acceptable", f"this answer is {offered.decode()}")
+
+
+def negotiated(accept: bytes, others: Iterable[str]) -> str | None:
+    """Return which of `others` an Accept header prefers to JSON, None where that is JSON (RFC 9110, 12.5.1).
+
+    Raises
+    ------
+    Refusal
+        406 if it admits none.
+    """
+    weights = dict(_weighted(entry) for entry in accept.decode("latin-1").lower().split(",") if entry.strip())
+
+    def weight(media: str) -> float:
+        ranges = (media, media.split("/", 1)[0] + "/*", "*/*")
+        return next((weights[entry] for entry in ranges if entry in weights), 0.0) if weights else 1.0
+
+    offered = ("application/json", *others)
+    best = max(offered, key=weight)
+    if weight(best) <= 0.0:
+        raise Refusal("not-acceptable", f"this answer is {' or '.join(offered)}")
+    return None if best == offered[0] else best
+
+
+def _weighted(entry: str) -> tuple[str, float]:
+    media, *parameters = (part.strip() for part in entry.split(";"))
+    given = next((part[2:] for part in parameters if part.startswith("q=")), "1")
+    return media, float(given) if _WEIGHT.fullmatch(given) else 0.0
 
 
 async def read_body(receive: Receive, headers: Headers, limit: int) -> bytes:

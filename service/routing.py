@@ -55,6 +55,8 @@ class Question:
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
     examples : mapping
         By a short name.
+    representations : mapping
+        By media type, how an answer is written other than as JSON.
     """
 
     path: str
@@ -67,6 +69,7 @@ class Question:
     price: Callable[[Any, Budget], float] = free
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
+    representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
     method: str = "POST"
 
 

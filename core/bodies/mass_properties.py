@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -30,6 +31,7 @@ __all__ = ["Condition", "MassProperties", "PrincipalInertia", "Symmetry", "Valid
 
 Floats = NDArray[np.float64]
 About = Literal["center-of-mass", "origin"]
+Origin = Literal["moments", "tensor", "places"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +55,8 @@ class MassProperties:
         What was noticed while the body was read; paths lead from the body.
     conditions : tuple of Condition
         What the validity report says beyond the moments.
+    given_by : {"moments", "tensor", "places"}
+        What the body was described by: its moments themselves, a tensor, or where its matter is.
     """
 
     inertia: Floats
@@ -64,6 +68,7 @@ class MassProperties:
     about: About = "center-of-mass"
     warnings: tuple[Notice, ...] = ()
     conditions: tuple[Condition, ...] = ()
+    given_by: Origin = "moments"
 
     def __post_init__(self) -> None:
         for array in (self.inertia, self.inertia_tail, self.center_of_mass, self.center_of_mass_tail):
@@ -90,7 +95,7 @@ class MassProperties:
         m, m_tail = size_pair(mass)
         c, c_tail = vector_pairs(center_of_mass)
         i, i_tail = tensor_pairs(inertia)
-        return cls(i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions)
+        return cls(i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions, given_by="places")
 
     @property
     def exact_mass(self) -> Fraction:
@@ -153,6 +158,24 @@ class MassProperties:
         if self.about == "origin" and self.principal_about_origin is not None:
             return self.principal_about_origin
         return self.principal
+
+    @cached_property
+    def conditioning(self) -> float:
+        """How many times larger the relative uncertainty of the moments may be than that of the numbers given.
+
+        A tensor's components move the smallest moment by as much as the largest; a place r, at d from the centre of
+        mass, moves a moment by 2 m |r| |d| (Cauchy and Schwarz bound the sum by the traces about origin and centre).
+        """
+        smallest = float(self.principal_of_motion.moments[0])
+        if self.given_by == "moments" or not smallest > 0.0:
+            return 1.0
+        if self.given_by == "tensor":
+            diagonal = not (self.inertia[0, 1] or self.inertia[0, 2] or self.inertia[1, 2])
+            return 1.0 if diagonal else 3.0 * float(self.principal.moments[2]) / smallest
+        own = math.sqrt(float(np.trace(self.inertia)) / smallest)
+        far = self.inertia_about_origin
+        about_origin = own if far is None else math.sqrt(float(np.trace(far)) / smallest)
+        return 4.0 + 2.0 * own * max(own, about_origin)
 
     @property
     def symmetry(self) -> Symmetry:

@@ -99,7 +99,7 @@ class InertiaTensor:
         given = [[Fraction(x) for x in row] for row in self.tensor]
         inertia, tail = tensor_pairs([[(given[i][j] + given[j][i]) / 2 for j in range(3)] for i in range(3)])
         center = None if self.center_of_mass is None else np.array(self.center_of_mass)
-        properties = MassProperties(inertia, tail, self.mass, center)
+        properties = MassProperties(inertia, tail, self.mass, center, given_by="tensor")
         try:
             lowest, _, highest = (float(x) for x in properties.principal.moments)
         except InvalidParameter as fault:

@@ -8,9 +8,9 @@ from typing import TypeVar
 
 from flint import ctx
 
+from core.balls import precision
 from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS, Undetermined
 from core.errors import BudgetExceeded, InvalidParameter
-from core.scenes.enclosure import precision
 
 MOST_BITS = 2**16
 """Working precision that one question may need: twenty times that of a thousand digits."""

@@ -15,7 +15,7 @@ from core.elliptic import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats
 from core.rotation.attitude_sampling import phase_at_start, sample_attitude, sample_steady
-from core.rotation.closed_form import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation, growth
+from core.rotation.closed_form import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
 from core.rotation.constants_of_motion import PERIODIC, REST, SEPARATRIX, STEADY
 from core.rotation.precession_constants import Precession, precession_constants
 from core.rotation.quaternions import Extended, left, quaternion_of, right, unit
@@ -59,9 +59,10 @@ class FreeAttitude:
     @cached_property
     def constants(self) -> Precession:
         """Constants of the precession about the angular momentum, where the angular velocity changes."""
-        i = self.rotation.inertia
-        w, wt = self.rotation.start
-        constants: Precession = precession_constants(self.rotation.motion, i.moments, i.moments_tail, w, wt)
+        i, it, w, wt = self.rotation.resolved
+        constants: Precession = precession_constants(self.rotation.motion, i, it, w, wt)
+        if not all(map(math.isfinite, constants)):
+            raise self._beyond_doubles()
         return constants
 
     @property
@@ -91,7 +92,13 @@ class FreeAttitude:
             sample_steady(h, low, axis, math.ldexp(1.0, int(exponent)), times, left(start).astype(np.float64), out)
         else:
             sample_attitude(motion, self.constants, times, self._onto(start), out)
+        if not np.isfinite(out).all():
+            raise self._beyond_doubles()
         return out.T
+
+    def _beyond_doubles(self) -> AccuracyUnreachable:
+        reason = "moments and rates lie too far apart for doubles to hold the constants of the attitude"
+        return AccuracyUnreachable(None, 2.0, reason, path=("attitude",), remedy="ask without the attitude")
 
     def error(self, times: Floats) -> float:
         """Return a bound of the error of `sample`: how far it may turn a unit vector wrongly, inputs taken as exact."""
@@ -102,9 +109,12 @@ class FreeAttitude:
         if motion.regime == STEADY:
             return ATTITUDE_ERROR
         turned = math.pi * self._turns(horizon)
-        set_up = SET_UP_ROUNDING if self.rotation.exact_inputs else DERIVED_ROUNDING
-        sensitivity = motion.computed if self.rotation.exact_inputs else motion.inherited
-        return ATTITUDE_ERROR + 8.0 * set_up * turned + 4.0 * growth(sensitivity, set_up, horizon)
+        if self.rotation.exact_inputs:
+            phase: float = motion.computed.at(SET_UP_ROUNDING, horizon)
+            return ATTITUDE_ERROR + 8.0 * SET_UP_ROUNDING * turned + 4.0 * phase
+        moments, rates = self.rotation.grading
+        phase = motion.inherited.at(DERIVED_ROUNDING * moments, horizon, max(1.0, rates / moments))
+        return ATTITUDE_ERROR + 8.0 * DERIVED_ROUNDING * max(moments, rates) * turned + 4.0 * phase
 
     def _turns(self, horizon: float) -> float:
         """Return the quarter turns of the half angle up to a horizon."""
@@ -119,7 +129,7 @@ class FreeAttitude:
         turns = self._turns(horizon)
         if turns > LARGEST_QUARTER:
             raise AccuracyUnreachable(
-                ATTITUDE_ERROR,
+                None,
                 2.0,
                 "the body turns more than 2^48 times, and its angle has no digits left",
                 path=("times",),
@@ -130,8 +140,8 @@ class FreeAttitude:
         """Return what turns Rz(psi) P, which starts where it may, into the attitude, which starts at `start`."""
         rotation, motion = self.rotation, self.rotation.motion
         principal = rotation.inertia.axes.astype(np.longdouble) + rotation.inertia.axes_tail
-        i = rotation.inertia.moments.astype(np.longdouble) + rotation.inertia.moments_tail
-        w = rotation.start[0].astype(np.longdouble) + rotation.start[1]
+        i = rotation.resolved.moments.astype(np.longdouble) + rotation.resolved.moments_tail
+        w = rotation.resolved.angular_velocity.astype(np.longdouble) + rotation.resolved.angular_velocity_tail
         c, d = (0, 2) if motion.circled == 2 else (2, 0)
         towards_c = math.copysign(1.0, motion.A_c) if motion.regime == SEPARATRIX else 1.0
         x, z = np.zeros(3, np.longdouble), np.zeros(3, np.longdouble)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,7 +23,6 @@ from core.rotation.constants_of_motion import (
     UNDECIDED,
     UNREACHABLE,
     Motion,
-    Sensitivity,
     constants_of_motion,
 )
 from core.rotation.principal_frame import PrincipalFrame
@@ -30,12 +30,12 @@ from core.rotation.sampling import largest_magnitude, sample_components
 
 UNIT_ROUNDOFF = 2.0**-53
 
-EVALUATION_ERROR = 5.0 * UNIT_ROUNDOFF
+EVALUATION_ERROR = 6.0 * UNIT_ROUNDOFF
 """Bound of the error of one sample along principal axes, relative to the largest angular velocity.
 
 Each component is constant * numerator / denominator: one rounding in the constant, at most 2.2 units in each theta
 function and 2 in the quotient; component by component that may reach 7.4 units, but the components' errors add as
-squares and each is relative to its own component. The largest seen over 1e5 random samples is 3.9 units.
+squares and each is relative to its own component. The largest seen over 1e5 random motions is 4.9 units.
 """
 
 TURNED_AXES_ERROR = 3.0 * UNIT_ROUNDOFF
@@ -44,20 +44,11 @@ TURNED_AXES_ERROR = 3.0 * UNIT_ROUNDOFF
 SET_UP_ROUNDING = 2.0**-103
 """Relative rounding of the constants of motion formed from exact inputs."""
 
-DERIVED_ROUNDING = 2.0**-96
-"""Relative error of moments and components that were themselves derived from the client's numbers."""
+DERIVED_ROUNDING = 2.0**-100
+"""Error of moments and components that were themselves derived, relative to the largest moment and component."""
 
-
-def growth(sensitivity: Sensitivity, uncertainty: float, horizon: float) -> float:
-    """Return the relative error that a relative uncertainty of the inputs has grown to at `horizon`, at most 2.
-
-    The sensitivities are of first order, so a growth beyond a tenth is stated as what it can come to: the whole motion.
-    """
-    s = sensitivity
-    exponential = s.growth * math.exp(min(700.0, s.exponent * horizon)) if s.growth else 0.0
-    size = s.start + s.rate * horizon + s.quadratic * horizon * horizon + exponential
-    grown = uncertainty * size
-    return grown if grown < 0.1 else 2.0
+RESOLUTION = 2.0**-96
+"""Differences of derived moments, and derived components, below this share of the largest are taken as 0."""
 
 
 def _decided(i: Floats, it: Floats, w: Floats, wt: Floats) -> Scaled:
@@ -74,6 +65,15 @@ def _decided(i: Floats, it: Floats, w: Floats, wt: Floats) -> Scaled:
     return decided
 
 
+class Resolved(NamedTuple):
+    """Principal moments, ascending, and angular velocity along their axes, each with its tail, shape (3,)."""
+
+    moments: Floats
+    moments_tail: Floats
+    angular_velocity: Floats
+    angular_velocity_tail: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class FreeRotation:
     """The exact torque-free motion that starts with a given angular velocity at t = 0.
@@ -84,17 +84,23 @@ class FreeRotation:
         Principal moments and axes of the body; all moments positive.
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
+    conditioning : float
+        How many times larger the relative uncertainty of the moments is than that of the numbers that gave the body.
     """
 
     inertia: PrincipalInertia
     angular_velocity: Floats
+    conditioning: float = 1.0
 
     def __post_init__(self) -> None:
-        if not self.inertia.moments[0] > 0.0:
+        if self.inertia.moments[0] > 0.0:
+            return
+        across = self.inertia.moments[1] > 0.0 and self.resolved.angular_velocity[0] == 0.0
+        if np.any(self.angular_velocity) and not across:
             raise InvalidParameter(
                 "body",
                 "have three moments of inertia greater than 0 to rotate freely",
-                remedy="give a body with extent in at least two directions",
+                remedy="give a body with extent in at least two directions, or let a line of matter turn across itself",
             )
 
     @cached_property
@@ -103,9 +109,25 @@ class FreeRotation:
         return PrincipalFrame(self.inertia.axes, self.inertia.axes_tail)
 
     @cached_property
+    def resolved(self) -> Resolved:
+        """Moments and start along ascending principal axes, as the motion takes them."""
+        w, wt = self.frame.components(self.angular_velocity)
+        i, it = self.inertia.moments, self.inertia.moments_tail
+        if self.exact_inputs:
+            return Resolved(i, it, w, wt)
+        # What lies below the resolution of derived numbers is noise, and its sign would decide the regime.
+        i, it, w, wt = i.copy(), it.copy(), w.copy(), wt.copy()
+        for k in (0, 1):
+            if i[k + 1] - i[k] <= RESOLUTION * i[2]:
+                i[k + 1], it[k + 1] = i[k], it[k]
+        noise = np.abs(w) <= RESOLUTION * np.max(np.abs(w))
+        w[noise], wt[noise] = 0.0, 0.0
+        return Resolved(i, it, w, wt)
+
+    @property
     def start(self) -> tuple[Floats, Floats]:
         """Angular velocity at t = 0 along ascending principal axes, and its tail, each of shape (3,)."""
-        return self.frame.components(self.angular_velocity)
+        return self.resolved.angular_velocity, self.resolved.angular_velocity_tail
 
     @cached_property
     def motion(self) -> Motion:
@@ -116,14 +138,13 @@ class FreeRotation:
         AccuracyUnreachable
             If the start is so near the separatrix, or the figures so far apart, that doubles cannot hold the constants.
         """
-        i, it = self.inertia.moments, self.inertia.moments_tail
-        w, wt = self.start
+        i, it, w, wt = self.resolved
         motion: Motion = constants_of_motion(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
         if motion.regime == UNDECIDED:
             motion = constants_of_motion(i, it, w, wt, True, _decided(i, it, w, wt))
         if motion.regime == UNREACHABLE:
             raise AccuracyUnreachable(
-                EVALUATION_ERROR,
+                None,
                 2.0,
                 "the start differs from a rotation about the middle axis by less than the range of doubles resolves",
                 path=("angular_velocity",),
@@ -139,7 +160,7 @@ class FreeRotation:
     @property
     def model(self) -> Model:
         """The branch of the solution that holds, and why."""
-        return _model(self.motion, self.inertia)
+        return _model(self.motion, self.resolved)
 
     @property
     def period(self) -> float | None:
@@ -149,7 +170,7 @@ class FreeRotation:
     @property
     def flip_interval(self) -> float | None:
         """Time between sign changes of the component along the middle axis, 2K/p (s); None without such an axis."""
-        i, it = self.inertia.moments, self.inertia.moments_tail
+        i, it = self.resolved.moments, self.resolved.moments_tail
         distinct = (i[0], it[0]) != (i[1], it[1]) and (i[1], it[1]) != (i[2], it[2])
         return 0.5 * self.period if distinct and self.period is not None else None
 
@@ -177,7 +198,7 @@ class FreeRotation:
         m = self.motion
         if m.regime == PERIODIC and largest * m.time_scale * m.rate > LARGEST_QUARTER:
             raise AccuracyUnreachable(
-                EVALUATION_ERROR,
+                None,
                 2.0,
                 "a time lies beyond 2^48 periods, where the phase has no digits left",
                 path=("times",),
@@ -210,22 +231,70 @@ class FreeRotation:
     def error(self, times: Floats) -> float:
         """Return a bound of the error of `sample`, relative to the largest norm, inputs taken as exact."""
         m, horizon = self.motion, self.horizon(times)
-        if m.regime in (REST, STEADY):
+        if m.regime == REST or (m.regime == STEADY and self.exact_inputs):
             return 0.0
         if self.exact_inputs:
-            return EVALUATION_ERROR + growth(m.computed, SET_UP_ROUNDING, horizon)
-        turned = 0.0 if self.frame.aligned else TURNED_AXES_ERROR
-        return EVALUATION_ERROR + turned + growth(m.inherited, DERIVED_ROUNDING, horizon)
+            computed: float = m.computed.at(SET_UP_ROUNDING, horizon)
+            return EVALUATION_ERROR + computed
+        moments, rates = self.grading
+        derived: float = m.inherited.at(DERIVED_ROUNDING * moments, horizon, max(1.0, rates / moments))
+        if m.regime == STEADY:
+            return derived
+        return EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR) + derived
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
-        return growth(self.motion.inherited, uncertainty, self.horizon(times))
+        horizon, m = self.horizon(times), self.motion
+        if m.regime == REST:
+            return 0.0
+        if not self.frame.aligned:
+            grown: float = m.inherited.at(
+                uncertainty * self.conditioning, horizon, max(1.0, self.grading[1] / self.conditioning)
+            )
+            return grown
+        if m.regime == STEADY and np.count_nonzero(self.angular_velocity) == 1:
+            # The other components are zero, and a relative uncertainty leaves them so.
+            return min(2.0, 2.0 * uncertainty)
+        inherited: float = m.inherited.at(uncertainty * self.conditioning, horizon)
+        return inherited
+
+    def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
+        """Return the time after which a relative `uncertainty` of every input leaves nothing known of the phase (s).
+
+        It is where `inherited` comes to state the whole motion, found by bisection to a thousandth and never later.
+        None if that does not happen at any time that `sample` answers.
+        """
+
+        def lost(exponent: float) -> bool:
+            return bool(self.inherited(np.array([2.0**exponent]), uncertainty) > 1.0)
+
+        m, low, high = self.motion, -1074.0, 1023.0
+        if m.regime == PERIODIC:
+            high = min(high, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
+        if uncertainty == 0.0 or not lost(high):
+            return None
+        if lost(low):
+            return 0.0
+        while high - low > 1e-3:
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if lost(middle) else (middle, high)
+        return float(2.0**low)
+
+    @cached_property
+    def grading(self) -> tuple[float, float]:
+        """The largest moment over the smallest, and the largest component of the start over the smallest, zeros apart.
+
+        By so much an error relative to the largest is larger relative to the smallest.
+        """
+        i, _, w, _ = self.resolved
+        moments, rates = [x for x in i.tolist() if x > 0.0], [abs(x) for x in w.tolist() if x != 0.0]
+        return max(moments) / min(moments), max(rates) / min(rates) if rates else 1.0
 
 
-def _model(motion: Motion, inertia: PrincipalInertia) -> Model:
+def _model(motion: Motion, resolved: Resolved) -> Model:
     name = "torque-free rigid body"
-    low, middle, high = inertia.moments
-    equal = [low == middle, middle == high]
+    pairs = list(zip(resolved.moments.tolist(), resolved.moments_tail.tolist(), strict=True))
+    equal = [pairs[0] == pairs[1], pairs[1] == pairs[2]]
     if motion.regime == REST:
         return Model(name, "rest", "the angular velocity is zero", 0)
     if motion.regime == STEADY:
@@ -252,6 +321,6 @@ def _model(motion: Motion, inertia: PrincipalInertia) -> Model:
         name,
         f"circulation about the axis of {axis} moment",
         f"three moments differ and L^2 {'>' if motion.circled == 2 else '<'} 2 E I_middle: Jacobian elliptic "
-        f"functions, parameter m = {motion.m:.6g}",
+        f"functions, {f'parameter m = {motion.m:.6g}' if motion.m1 > 1e-3 else f'1 - m = {motion.m1:.3g}'}",
         1,
     )

@@ -41,24 +41,18 @@ from core.double_double import (
     scaled,
 )
 from core.elliptic import Lattice, lattice, rf_of_roots
+from core.rotation.sensitivity import (
+    NONE,
+    Sensitivity,
+    computed_sensitivity,
+    inherited_sensitivity,
+    steady_sensitivity,
+)
 
 REST, STEADY, PERIODIC, SEPARATRIX, UNDECIDED, UNREACHABLE = range(6)
 
 UNDECIDED_CANCELLATION = 2.0**6
 """Where D_B has cancelled by more than this, exact arithmetic forms it: flips near the separatrix hang on it."""
-
-
-class Sensitivity(NamedTuple):
-    """Growth of a relative uncertainty u of every input, relative to the largest |w| of the motion.
-
-    |dw(t)| <= u (start + rate |t| + quadratic t^2 + growth exp(exponent |t|)), and never more than 2.
-    """
-
-    start: float
-    rate: float
-    quadratic: float
-    growth: float
-    exponent: float
 
 
 class Weights(NamedTuple):
@@ -127,28 +121,11 @@ def _weights(ac: Pair, ab: Pair, ad: Pair, lat: Lattice) -> Weights:
 
 
 @kernel()
-def _motionless(regime: int, start: float, rate: float, quadratic: float) -> Motion:
-    still = Sensitivity(0.0, 0.0, 0.0, 0.0, 0.0)
+def _motionless(regime: int, inherited: Sensitivity) -> Motion:
     return Motion(
-        regime,
-        2,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        _no_lattice(),
-        Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        Sensitivity(start, rate, quadratic, 0.0, 0.0),
-        still,
-    )
+        regime, 2, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        0.0, 0.0, 1.0, 0.0, 0.0, 0.0, inherited, NONE,
+    )  # fmt: skip
 
 
 @kernel()
@@ -163,53 +140,6 @@ def _rate(f: Scaled) -> tuple[float, float, float]:
 def _difference(i: NDArray[np.float64], it: NDArray[np.float64], j: int, k: int) -> Scaled:
     h, low = dd_sub(i[j], it[j], i[k], it[k])
     return scaled(h, low, 0)
-
-
-@kernel()
-def _e_minus_m1_k(m: float, m1: float, K: float) -> float:
-    """Return (E - m1 K)/m, where 0 <= m <= 1, to a few digits."""
-    if m < 1e-4:
-        return 0.25 * math.pi * (1.0 + 0.125 * m)
-    a, g, c, factor, total = 1.0, math.sqrt(m1), math.sqrt(m), 1.0, 0.5 * m
-    for _ in range(12):
-        a, g, c = 0.5 * (a + g), math.sqrt(a * g), 0.5 * (a - g)
-        total += factor * c * c
-        factor *= 2.0
-        if c < 1e-9:
-            break
-    return (K * (1.0 - total) - m1 * K) / m
-
-
-@kernel()
-def _sensitivity(
-    A: float, B: float, C: float, wa: float, wb: float, wc: float, am: float, bm: float, cm: float,
-    m: float, m1: float, p: float, K: float, sn: float, cn: float, dn: float,
-    difference: float, missed: float, largest: float,
-) -> Sensitivity:  # fmt: skip
-    """First-order growth of relative input errors; here c is the circled axis, a the other extreme, b the middle.
-
-    Each term is the sum of the absolute relative sensitivities of one constant: p, the modulus, u0, the amplitudes.
-    `difference` is the relative uncertainty of D_B per unit uncertainty of the inputs, `missed` that of m1 where
-    it is 0.
-    """
-    g_cb, g_ca = (C + B) / abs(C - B), (C + A) / abs(C - A)
-    d_c = 2 * (wc / cm) ** 2 + (wb / cm) ** 2 * (B * abs(B - A) * (4 + g_ca) + B * (A + B)) / (C * abs(C - A))
-    d_b = 2 + (A * abs(C - A) / (B * abs(C - B))) * (wa / bm) ** 2 * (2 + g_ca + g_cb)
-    d_a = 2 + (B * abs(C - B) / (A * abs(C - A))) * (wb / am) ** 2 * (2 + g_ca + g_cb)
-    d_p = 0.5 * (g_cb + g_ca + 2 + d_c)
-    from_m = m * (2 + g_ca + d_b + d_c) + (A + B) * B / (abs(C - A) * C) * (bm / cm) ** 2
-    from_m1 = difference + g_cb + 1 + d_c
-    relative = min(from_m / m1, from_m1) if m1 > 0.0 else from_m1
-    shift = 0.5 * _e_minus_m1_k(m, m1, K) * relative if m1 > 0.0 else 0.5 * relative
-    start = abs(sn * cn) * (1 + 0.5 * (d_a + d_b)) / dn + shift
-    slope = math.sqrt(max(am * am, bm * bm) + 0.25 * (m * cm) ** 2)
-    amplitudes = 0.5 * max(am * d_a, bm * d_b, cm * d_c)
-    rate = p * d_p + (p / K * shift if m1 > 0.0 else 0.0)
-    growth = 0.0
-    if m1 == 0.0:
-        # cn(u|1 - m1) = sech u - (m1/4)(sinh u cosh u - u) tanh u sech u + ...: missed by m1, it is left as exp u.
-        growth = 0.25 * missed * math.exp(math.asinh(abs(sn) / cn)) * slope / largest
-    return Sensitivity((slope * start + amplitudes) / largest, slope * rate / largest, 0.0, growth, p)
 
 
 @kernel()
@@ -236,7 +166,7 @@ def constants_of_motion(
     """
     largest = max(abs(w[0]), abs(w[1]), abs(w[2]))
     if largest == 0.0:
-        return _motionless(REST, 0.0, 0.0, 0.0)
+        return _motionless(REST, NONE)
     AB = _difference(i, it, 1, 0)
     BC = _difference(i, it, 2, 1)
     AC = _difference(i, it, 2, 0)
@@ -244,14 +174,12 @@ def constants_of_motion(
     turning_b = AC.high != 0.0 and w[0] != 0.0 and w[2] != 0.0
     turning_c = AB.high != 0.0 and w[0] != 0.0 and w[1] != 0.0
     if not (turning_a or turning_b or turning_c):
+        axis = -1
         if int(w[0] != 0.0) + int(w[1] != 0.0) + int(w[2] != 0.0) == 1:
-            return _motionless(STEADY, 2.0, 0.0, 0.0)
-        # Were the equal moments not quite equal, the spin would drift out of their plane in proportion to t (the Jordan
-        # block of this equilibrium) and, once out, turn in the plane in proportion to t^2.
-        pair, single = (i[0], i[2]) if AB.high == 0.0 else (i[2], i[0])
-        drift = 4.0 * largest * max(1.0, pair / single)
-        turn = 4.0 * largest * abs(1.0 - single / pair)
-        return _motionless(STEADY, 2.0, drift + turn, drift * turn)
+            axis = 0 if w[0] != 0.0 else 1 if w[1] != 0.0 else 2
+        unit = math.ldexp(1.0, -max(-1000, min(1000, scaled(i[2], 0.0, 0).exponent)))
+        fastest = 2.0 * largest if axis < 0 else largest
+        return _motionless(STEADY, steady_sensitivity(i[0] * unit, i[1] * unit, i[2] * unit, axis, fastest))
 
     IA, IB, IC = scaled(i[0], it[0], 0), scaled(i[1], it[1], 0), scaled(i[2], it[2], 0)
     WA, WB, WC = scaled(w[0], wt[0], 0), scaled(w[1], wt[1], 0), scaled(w[2], wt[2], 0)
@@ -268,7 +196,7 @@ def constants_of_motion(
         if ratio.exponent < 900:
             cancellation = sc_pair(ratio)[0]
     if cancellation > UNDECIDED_CANCELLATION and not decided:
-        return _motionless(UNDECIDED, 0.0, 0.0, 0.0)
+        return _motionless(UNDECIDED, NONE)
 
     if D.high >= 0.0:
         circled, I_d, I_c, W_d, W_c, bd = 2, IC, IA, WC, WA, BC
@@ -296,7 +224,7 @@ def constants_of_motion(
     kh, kl = sc_pair(k0)
     k1h, k1l = sc_pair(k1)
     if k1.high != 0.0 and k1.exponent < -946:
-        return _motionless(UNREACHABLE, 0.0, 0.0, 0.0)
+        return _motionless(UNREACHABLE, NONE)
     ah, al = (sh, sl) if sh >= 0.0 else (-sh, -sl)
     gh, gl = (ch, cl) if ch >= 0.0 else (-ch, -cl)
 
@@ -313,6 +241,7 @@ def constants_of_motion(
         amplitude_c * we, abs(amplitude_b) * we, abs(amplitude_d) * we,
     )  # fmt: skip
     top = max(dec[6], dec[7], dec[8])
+    fastest = 2.0 * max(abs(amplitude_c), abs(amplitude_b), abs(amplitude_d))
     outer = max(abs(dec[3]), abs(dec[5]))
     wa2, wc2 = (dec[3] / outer) ** 2, (dec[5] / outer) ** 2
     tA = dec[0] * abs(dec[1] - dec[0]) * wa2
@@ -328,14 +257,11 @@ def constants_of_motion(
         missed = grown / (tA + tC) * sc_pair(sc_div(sc_mul(AC, S), bdY))[0]
         uh, ul = rf_of_roots(gh, gl, gh, gl, 1.0, 0.0)
         uh, ul = dd_mul(uh, ul, sh, sl)
-        inherited = _sensitivity(
+        inherited = inherited_sensitivity(
             dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
-            1.0, 0.0, p_pair[0], 1.0, sh, ch, dh, 8.0, missed, top,
+            1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, 8.0, missed, top, fastest,
         )  # fmt: skip
-        computed = _sensitivity(
-            dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
-            1.0, 0.0, p_pair[0], 1.0, sh, ch, dh, 8.0, 0.0 if decided else missed, top,
-        )  # fmt: skip
+        computed = computed_sensitivity(dec[6], dec[7], dec[8], 1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, uh, 1.0, top)
         return Motion(
             SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0],
             _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -360,14 +286,13 @@ def constants_of_motion(
         quarter = side
         sign = -side if ch >= 0.0 else side
     f = sc_div(p, scaled(lat.K, lat.K_tail, 0))
-    inherited = _sensitivity(
+    inherited = inherited_sensitivity(
         dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
-        m, m1, p_pair[0], lat.K, sh, ch, dh, d_D, 0.0, top,
+        m, m1, p_pair[0], lat.K, sh, ch, dh, d_D, 0.0, top, fastest,
     )  # fmt: skip
-    computed = _sensitivity(
-        dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
-        m, m1, p_pair[0], lat.K, sh, ch, dh, 8.0 if decided else 8.0 * cancellation, 0.0, top,
-    )  # fmt: skip
+    computed = computed_sensitivity(
+        dec[6], dec[7], dec[8], m, m1, p_pair[0], lat.K, sh, ch, dh, vh, 1.0 if decided else cancellation, top
+    )
     return Motion(
         PERIODIC, circled, amplitude_c, amplitude_b, amplitude_d, m, m1, p_pair[0],
         lat, _weights(ac, (s * ab[0], s * ab[1]), (s * ad[0], s * ad[1]), lat),

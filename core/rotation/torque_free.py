@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from core.bodies.mass_properties import MassProperties
 from core.compiled import kernel
-from core.errors import InvalidParameter
 from core.integration.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Splitting, Structure
 from core.notices import Notice
 from core.rotation.closed_form import FreeRotation
@@ -116,17 +115,8 @@ class TorqueFree:
     angular_velocity: Floats
 
     def __post_init__(self) -> None:
-        if not self.inertia_is_positive:
-            raise InvalidParameter(
-                "body",
-                "have three moments of inertia greater than 0 to rotate freely",
-                remedy="give a body with extent in at least two directions",
-            )
-
-    @property
-    def inertia_is_positive(self) -> bool:
-        """Whether every principal moment is positive: a point or a line of matter has no free rotation."""
-        return bool(self.body.principal_of_motion.moments[0] > 0.0)
+        # A body that cannot turn so is refused here, not when it is first asked for.
+        self.closed_form()
 
     @property
     def initial_state(self) -> Floats:
@@ -182,32 +172,40 @@ class TorqueFree:
 
     @cached_property
     def _exact(self) -> FreeRotation:
-        return FreeRotation(self.body.principal_of_motion, self.angular_velocity)
+        return FreeRotation(self.body.principal_of_motion, self.angular_velocity, self.body.conditioning)
 
     def invariants(self, states: Floats) -> Mapping[str, Floats]:
         """Return energy and |L| in units in which the largest moment and the largest initial rate are of order one."""
         largest = float(np.max(np.abs(self.angular_velocity)))
         unit = math.ldexp(1.0, max(-1000, min(1000, -math.frexp(largest)[1])))
         out = np.empty((2, len(states)))
-        _invariants(self.tensor, np.ascontiguousarray(states.T), unit, out)
+        if self._diagonal:
+            _invariants(self.tensor, np.ascontiguousarray(states.T), unit, out)
+        else:
+            # Along principal axes no term is negative, and a small moment is not lost in the tensor's components.
+            principal = self.body.principal_of_motion
+            moments = np.diag(np.ldexp(principal.moments, -self._exponent))
+            _invariants(moments, np.ascontiguousarray((states @ principal.axes).T), unit, out)
         return {"energy": out[0], "angular_momentum": out[1]}
 
     @property
     def energy(self) -> float | None:
         """Kinetic energy (J); None where it leaves the range of normal doubles."""
-        return self._in_range(lambda i, w: 0.5 * float(w @ i @ w), 2)
+        return self._in_range(lambda i, w: 0.5 * float((i * w * w).sum()), 2)
 
     @property
     def angular_momentum(self) -> float | None:
         """Magnitude of the angular momentum (kg m^2/s); None where it leaves the range of normal doubles."""
-        return self._in_range(lambda i, w: float(np.linalg.norm(i @ w)), 1)
+        return self._in_range(lambda i, w: math.hypot(*(i * w).tolist()), 1)
 
     def _in_range(self, figure: Any, power: int) -> float | None:
-        largest = float(np.max(np.abs(self.angular_velocity)))
+        resolved = self._exact.resolved
+        largest = float(np.max(np.abs(resolved.angular_velocity)))
         if largest == 0.0:
             return 0.0
         rate = math.frexp(largest)[1]
-        mantissa, exponent = math.frexp(figure(self.tensor, np.ldexp(self.angular_velocity, -rate)))
+        moments = np.ldexp(resolved.moments, -self._exponent)
+        mantissa, exponent = math.frexp(figure(moments, np.ldexp(resolved.angular_velocity, -rate)))
         exponent += self._exponent + power * rate
         return math.ldexp(mantissa, exponent) if -1021 <= exponent <= 1024 else None
 

@@ -10,11 +10,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
 from core.integration.trajectory import Accuracy, Work
 from core.notices import Notice
-from core.scenes.enclosure import MORE_BITS, Ball, Rounding, precision, sign
+from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding, sign
 
 HORIZON = "horizon"
 SMALLEST_SAMPLE = 1e-290
@@ -197,7 +198,7 @@ class ConstrainedSystem(ABC):
         """
         wanted = self._wanted(times, outputs)
         instants = _checked(times)
-        with precision():
+        with precision(BITS):
             found, sharp = self._compute(instants if times is not None else None, wanted, accuracy)
         if not sharp:
             # What was computed so far is kept with the object, so a new one starts again.

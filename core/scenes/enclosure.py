@@ -13,13 +13,11 @@ F. Johansson, "Arb: efficient arbitrary-precision midpoint-radius interval arith
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from threading import RLock
 from typing import Any
 
-from flint import acb, arb, ctx, fmpq
+from flint import acb, arb, fmpq
 
 from core.errors import Path
 from core.notices import Notice
@@ -37,16 +35,6 @@ ZERO: Ball = arb(0)
 ONE: Ball = arb(1)
 UNIT_ROUNDOFF = 2.0**-53
 SMALLEST_NORMAL = 2.0**-1022
-
-# The precision of the library belongs to the process, so whoever changes it holds this.
-_precision_lock = RLock()
-
-
-@contextmanager
-def precision(bits: int = BITS) -> Iterator[None]:
-    """Compute in balls of so many bits inside the block."""
-    with _precision_lock, ctx.workprec(bits):
-        yield
 
 
 def exact(number: float | Fraction) -> Ball:

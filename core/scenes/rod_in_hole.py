@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
+from core.balls import precision
 from core.errors import InvalidParameter
 from core.integration.system import Model
 from core.quantities import Acceleration, AngularRate, Length, Mass, Quantity, check
 from core.scenes.answer import ConstrainedSystem, Motion
-from core.scenes.enclosure import Ball, Balls, angle_of, exact, precision
+from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
 from core.scenes.pendulum import Pendulum
 from core.scenes.rod_motion import Rod, RodMotion, contact_limits
 
@@ -79,7 +80,7 @@ class RodInHole(ConstrainedSystem):
         if self.length >= 2 * self.hole_radius:
             raise InvalidParameter("length", f"be less than the diameter {float(2 * self.hole_radius):g} m of the hole")
         if self.angle is not None and self.hole == "half-cylinder":
-            with precision():
+            with precision(BITS):
                 rim = self._rim_angle
                 if abs(exact(self.angle)) > rim * (1 + exact(RIM_ROUNDING)):
                     raise InvalidParameter(

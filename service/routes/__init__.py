@@ -9,9 +9,10 @@ from service.routes.rotation import ROTATION
 from service.routes.scenes import questions as about_scenes
 from service.routes.surfaces import SURFACES
 from service.routes.wobble import WOBBLE
+from service.routes.work_precision import WORK_PRECISION
 from service.routing import Question
 
 
 def questions() -> tuple[Question, ...]:
     """Return every question that can be asked, in the order of the documentation."""
-    return (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *about_scenes())
+    return (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())

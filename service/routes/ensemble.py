@@ -14,6 +14,7 @@ from core.integration.methods import Method
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.initial_states import initial_states
+from service.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import properties_of, reading_price
 from service.routes.rotation import AccuracyView, ModelView, WorkView
 from service.routes.surfaces import SOURCE_BODY, Count, Seed
@@ -40,6 +41,7 @@ class EnsembleRequest(Request):
     times: Times
     accuracy: Tolerance = 1e-9
     method: Method | None = None
+    round: Digits | None = DIGITS
 
 
 class MemberView(View):
@@ -70,23 +72,30 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
     many = ensemble(
         body, _starts(question, body), times, accuracy=question.accuracy, method=question.method, budget=budget
     )
-    warnings = {(notice.code, notice.detail): notice for member in many.members for notice in member.warnings}
+    samples, added = many.angular_velocity, [0.0] * len(many.members)
+    told = [notice for member in many.members for notice in member.warnings]
+    if question.round is not None:
+        for k, member in enumerate(many.members):
+            stated = member.accuracy
+            samples[k], added[k] = rounded(samples[k], question.round, stated.error + (stated.inherited or 0.0))
+            told += notices_of(stated, added[k])
+    warnings = {(notice.code, notice.detail): notice for notice in told}
     return {
-        "error": many.error,
+        "error": max(member.accuracy.error + more for member, more in zip(many.members, added, strict=True)),
         "seed": None if question.sample is None else question.sample.seed,
         "members": [
             {
                 "model": member.model,
                 "method": member.method,
                 "period": member.period,
-                "accuracy": member.accuracy,
+                "accuracy": covering(member.accuracy, more),
                 "work": member.work,
                 "ended": member.ended,
             }
-            for member in many.members
+            for member, more in zip(many.members, added, strict=True)
         ],
         "time": many.time,
-        "angular_velocity": many.angular_velocity,
+        "angular_velocity": samples,
         "warnings": (*(notice.inside("body") for notice in body.warnings), *warnings.values()),
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -16,9 +16,10 @@ from core.integration.solve import solve
 from core.integration.system import Floats
 from core.integration.trajectory import How
 from core.notices import Notice
-from core.quantities import AngularVelocity, Quaternion, Tolerance
+from core.quantities import AngularVelocity, Quaternion, Tolerance, Uncertainty
 from core.rotation.attitude import FreeAttitude
 from core.rotation.torque_free import TorqueFree
+from service.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import properties_of, reading_price
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, QuaternionRow, Request, Times, Vector, View, sample_count, sample_times
@@ -43,6 +44,12 @@ class TrajectoryRequest(Request):
     method: Method | None = Field(
         default=None, description="Leave it out to have the most accurate one chosen; it overrides the accuracy."
     )
+    input_uncertainty: Uncertainty = Field(
+        default=2.0**-53,
+        description="Relative uncertainty of every number of body and start, for the inherited error. If it is given, "
+        "accuracy.horizon says for how long the phase is known.",
+    )
+    round: Digits | None = DIGITS
     outputs: list[Output] | None = Field(
         default=None,
         min_length=1,
@@ -66,7 +73,10 @@ class AccuracyView(View):
     error: float = Field(description="Largest error of any sample, inputs taken as exact; never below the true one.")
     final_error: float | None = Field(description="The same at the time farthest from the start.")
     how: How
-    inherited: float | None = Field(description="What half an ulp in every input would move.")
+    inherited: float | None = Field(description="What half an ulp, or input_uncertainty, in every input would move.")
+    horizon: float | None = Field(
+        default=None, description="Time after which input_uncertainty leaves nothing known of the phase (s)."
+    )
     drifts: dict[str, float] = Field(description="Largest relative change of conserved quantities: not an error.")
     attitude_error: float | None = Field(default=None, description="Largest error of the attitude, as a turn (rad).")
 
@@ -105,18 +115,24 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     wanted = _outputs(question)
     times = sample_times(question.times, budget)
     system = TorqueFree(properties_of(question.body), np.array(question.angular_velocity))
-    solved = solve(system, times, accuracy=question.accuracy, method=question.method, budget=budget)
+    solved = solve(
+        system,
+        times,
+        accuracy=question.accuracy,
+        method=question.method,
+        budget=budget,
+        input_uncertainty=question.input_uncertainty,
+    )
     exact = system.closed_form()
     notices = [*system.warnings, *solved.warnings]
-    stated = solved.accuracy
-    accuracy: dict[str, Any] = {
-        "requested": stated.requested,
-        "error": stated.error,
-        "final_error": stated.final_error,
-        "how": stated.how,
-        "inherited": stated.inherited,
-        "drifts": dict(stated.drifts),
-    }
+    stated, states, added = solved.accuracy, solved.state, 0.0
+    unknown = stated.inherited or 0.0
+    if question.round is not None and "angular_velocity" in wanted:
+        states, added = rounded(states, question.round, stated.error + unknown, exact.largest_rate)
+        notices += notices_of(stated, added)
+    accuracy = covering(stated, added)
+    if "input_uncertainty" in question.model_fields_set:
+        accuracy["horizon"] = exact.horizon_of(question.input_uncertainty)
     fields: Answer = {
         "model": solved.model,
         "method": solved.method,
@@ -132,9 +148,14 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     if "time" in wanted:
         fields["time"] = solved.time
     if "angular_velocity" in wanted:
-        fields["angular_velocity"] = solved.state
+        fields["angular_velocity"] = states
     if "attitude" in wanted:
-        fields["attitude"], accuracy["attitude_error"] = _attitude(question, system, times)
+        attitude, error = _attitude(question, system, times)
+        if question.round is not None:
+            # Quaternions of two attitudes are half as far apart as the attitudes.
+            attitude, added = rounded(attitude, question.round, 0.5 * (error + unknown), 1.0)
+            error += 2.0 * added
+        fields["attitude"], accuracy["attitude_error"] = attitude, error
     return fields
 
 

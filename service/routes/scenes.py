@@ -14,6 +14,8 @@ from core.integration.budget import Budget
 from core.quantities import Tolerance, members_of
 from core.scenes import Scene
 from core.scenes.answer import ConstrainedSystem
+from core.scenes.answer import SceneAnswer as SceneFound
+from service.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.rotation import AccuracyView, ModelView, WorkView
 from service.routing import Answer, Example, Page, Question, Reply
 from service.schemas import SIGNATURE, Envelope, Request, Times, View, sample_count, sample_times
@@ -149,6 +151,7 @@ def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
         listed | None,
         Field(default=None, min_length=1, description="What to compute; by default everything."),
     )
+    own["round"] = (Digits | None, DIGITS)
     own["accuracy"] = (Tolerance, Field(default=1e-9, description="Largest tolerated relative error."))
     title = "".join(part.capitalize() for part in name_of(scene).split("-")) + "Request"
     made: type[Request] = create_model(title, __base__=Request, __doc__=scene.__doc__, **own)
@@ -175,9 +178,24 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
         }
         if found.trajectory is not None:
             written["trajectory"] = dict(found.trajectory)
+            if question.round is not None:
+                written |= _shortened(found, question.round)
         return written
 
     return answer
+
+
+def _shortened(found: SceneFound, digits: Digits) -> Answer:
+    """Return the fields of an answer that change where its columns, but not the times, are rounded."""
+    columns, added = {}, 0.0
+    for name, column in (found.trajectory or {}).items():
+        if name == "time":
+            columns[name] = column
+        else:
+            columns[name], more = rounded(column, digits, found.accuracy.error)
+            added = max(added, more)
+    warnings = (*found.warnings, *notices_of(found.accuracy, added))
+    return {"trajectory": columns, "accuracy": covering(found.accuracy, added), "warnings": warnings}
 
 
 def price(question: Any, budget: Budget) -> float:

@@ -6,9 +6,9 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.balls import precision
 from core.certified.decimals import Undetermined, decimal, decimal_of_fraction, floor_below, numeral, place_of
 from core.certified.exact_inputs import enclosed
-from core.scenes.enclosure import precision
 
 anything = st.builds(
     lambda top, bottom, exponent: Fraction(top, bottom) * Fraction(10) ** exponent,

@@ -5,8 +5,8 @@ import pytest
 from flint import acb, arb
 from mpmath import mp, mpf
 
+from core.balls import precision
 from core.certified.elliptic_functions import EllipticFunctions, PhaseOfTheta, split
-from core.scenes.enclosure import precision
 from tests.oracles.elliptic import Periodic
 
 DIGITS = 60

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.balls import precision
 from core.certified.exact_inputs import LARGEST_EXPONENT, enclosed, exact, exact_numbers
 from core.errors import InvalidParameter
-from core.scenes.enclosure import precision
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.balls import precision
 from core.bodies.exact import rotated, rotation
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_start import ExactStart
-from core.scenes.enclosure import precision
 
 OBLIQUE = [[2, 1, 1], [1, 3, "0.5"], [1, "0.5", 4]]
 

@@ -164,3 +164,68 @@ def test_a_precession_slower_than_doubles_count_is_still_right(tiny):
 def test_a_line_of_matter_has_no_free_rotation():
     with pytest.raises(InvalidParameter):
         rotation((0.0, 1.0, 1.0), (1, 1, 1))
+
+
+def oblique(tensor, angular_velocity) -> FreeRotation:
+    return FreeRotation(PrincipalInertia.of(np.array(tensor, dtype=float)), np.array(angular_velocity, dtype=float))
+
+
+@pytest.mark.parametrize(
+    ("tensor", "start"),
+    [
+        ([[1.5, -0.5, 0], [-0.5, 1.5, 0], [0, 0, 2]], [-1, 1, 0]),
+        ([[1.5, -0.5, 0], [-0.5, 1.5, 0], [0, 0, 2]], [1, 1, 0]),
+        ([[2, 0.5, 0.5], [0.5, 2, 0.5], [0.5, 0.5, 2]], [1, -1, 0]),
+        ([[2, 0.5, 0.5], [0.5, 2, 0.5], [0.5, 0.5, 2]], [1, 1, -2]),
+        ([[9.5, 1, 1], [1, 11, 2], [1, 2, 11]], [1, 2, 2]),
+    ],
+)
+def test_a_spin_along_or_across_an_oblique_axis_of_symmetry_is_steady(tensor, start):
+    """The axes are irrational, so components that are zero, and moments that are equal, come out as rounding."""
+    motion = oblique(tensor, start)
+    assert motion.model.regime == "steady rotation"
+    assert motion.period is None
+    assert motion.flip_interval is None
+    times = np.array([0.0, 1.0, 1e4])
+    assert np.array_equal(motion.sample(times), np.array([start] * 3, dtype=float))
+    assert motion.error(times) < 1e-15
+
+
+def test_equal_moments_of_an_oblique_body_leave_no_middle_axis():
+    assert oblique([[2, -1, 0], [-1, 2, 0], [0, 0, 3]], [1, 2, 3]).flip_interval is None
+
+
+@pytest.mark.parametrize("hair", [1e-6, 1e-9, 1e-12, 1e-15])
+def test_statement_stays_small_next_to_the_plane_of_two_equal_moments(hair):
+    motion = oblique([[1.5, -0.5, 0], [-0.5, 1.5, 0], [0, 0, 2]], [-1 + hair, 1 + hair, 0])
+    assert motion.error(np.array([1.0])) < 2e-15
+    aligned = rotation((1.7, 1.29, 1.29), (hair, 0.16, 2.27))
+    assert aligned.period is not None
+    assert aligned.error(np.array([10 * aligned.period])) < 1e-15
+
+
+def test_separatrix_ends_on_the_middle_axis():
+    assert np.array_equal(rotation((14, 21, 24), (6, 1, 7)).sample(np.array([1e30])), [[0.0, 9.0, 0.0]])
+
+
+def test_statement_knows_that_a_small_derived_moment_is_less_certain():
+    """A needle at an oblique angle: its small moment is a difference of the tensor's components."""
+    tensor = [
+        [1.0415484914355613, -0.03280548195824137, -0.15864470978192788],
+        [-0.03280548195824137, 0.5340873921809889, 0.7007660918928423],
+        [-0.15864470978192788, 0.7007660918928423, 0.9323175298923454],
+    ]
+    start = [536818.8257068855, -6300822.800501727, 4827288.08088468]
+    motion = oblique(tensor, start)
+    # At 60 digits, from the eigenvalues and eigenvectors of the exact tensor.
+    want = np.array([319548.09364619812, -3750658.9311049625, 2873514.8561610978])
+    times = np.array([1672.19587116517])
+    error = np.linalg.norm(motion.sample(times)[0] - want) / motion.largest_rate
+    assert 1e-9 < error < motion.error(times)
+
+
+def test_a_line_of_matter_may_turn_across_itself():
+    motion = oblique([[1, 0, 0], [0, 1, 0], [0, 0, 0]], [1, 1, 0])
+    assert np.array_equal(motion.sample(np.array([5.0])), [[1.0, 1.0, 0.0]])
+    with pytest.raises(InvalidParameter):
+        oblique([[1, 0, 0], [0, 1, 0], [0, 0, 0]], [1, 1, 1])

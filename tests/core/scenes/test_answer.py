@@ -9,9 +9,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.scenes.chain_on_wedge import ChainOnWedge
-from core.scenes.enclosure import exact, precision
+from core.scenes.enclosure import BITS, exact
 from core.scenes.quadratics import exit_time, real_roots
 from core.scenes.rod_in_hole import RodInHole
 from core.scenes.unwinding_shafts import UnwindingShafts
@@ -66,7 +67,7 @@ def test_an_accuracy_that_cannot_be_had_is_refused_with_what_can() -> None:
     [(1, -3, 2), (1e-200, 1, -1), (1, 1e200, 1), (0, 2, -8), (1, 0, -4), (1e100, -2e100, 1e100), (3, 5, 0)],
 )
 def test_roots_of_quadratics(coefficients: tuple[float, float, float]) -> None:
-    with precision(), mp.workdps(500):
+    with precision(BITS), mp.workdps(500):
         found = sorted(float(root) for root in real_roots(*map(exact, coefficients)))
         a, b, c = (mp.mpf(v) for v in coefficients)
         if a == 0:
@@ -99,7 +100,7 @@ def test_roots_of_quadratics(coefficients: tuple[float, float, float]) -> None:
     ],
 )
 def test_when_a_margin_is_left(value: float, rate: float, acceleration: float, time: float | None) -> None:
-    with precision():
+    with precision(BITS):
         found = exit_time(exact(value), exact(rate), exact(acceleration))
         assert (None if found is None else float(found)) == (time if time is None else pytest.approx(time, rel=1e-15))
 

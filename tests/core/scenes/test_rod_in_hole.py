@@ -187,9 +187,10 @@ def test_samples_agree_with_a_taylor_series_in_50_digits(angle: float | None, ra
         frequency = mp.sqrt(mp.mpf(9.81) / depth)
         start = mp.mpf(angle) if angle is not None else -mp.acos(mp.mpf(1) / 2)
     # The pendulum is compared for as long as the closed form goes, contact or not.
-    from core.scenes.enclosure import precision
+    from core.balls import precision
+    from core.scenes.enclosure import BITS
 
-    with precision():
+    with precision(BITS):
         _, _, found_rate, found = scene._pendulum.sample(times)
         largest = abs(float(scene._pendulum.frequency * scene._pendulum.m.sqrt())) * 2
     for i, t in enumerate(times):

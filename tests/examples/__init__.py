@@ -1,0 +1,1 @@
+"""The examples, sent to a running service; what they show, by other means."""

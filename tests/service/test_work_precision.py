@@ -1,0 +1,98 @@
+"""Work and precision over HTTP: figures, counts, times only if asked for, and the same as a drawing."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from typing import Any
+
+import pytest
+
+from service.app import create_app
+from service.routes.work_precision import SVG, WORK_PRECISION
+from service.settings import Settings
+from tests.service.conftest import client_of
+
+SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+PATH = WORK_PRECISION[0].path
+QUESTION: dict[str, Any] = dict(WORK_PRECISION[0].examples["t-handle"].question)
+
+pytestmark = pytest.mark.anyio
+
+
+async def asked(question: dict[str, Any], **headers: str) -> Any:
+    async with client_of(SERVICE) as client:
+        return await client.post(PATH, json=question, headers=headers)
+
+
+async def test_errors_orders_front_and_recommendation() -> None:
+    answer = (await asked(QUESTION)).json()
+    curves = {curve["kind"]: curve for curve in answer["curves"]}
+    assert set(curves) == {"closed-form", "explicit-euler", "runge-kutta-4", "dormand-prince-853"}
+    for kind in ("explicit-euler", "runge-kutta-4"):
+        coarse, fine = (one["error"] for one in curves[kind]["measurements"])
+        assert fine < coarse
+    halved = [one["error"] for one in curves["runge-kutta-4"]["measurements"]]
+    assert 12 < halved[0] / halved[1] < 20
+    assert answer["recommendation"]["method"] == {"kind": "closed-form"}
+    front = answer["pareto_front"]
+    assert front[0]["method"] == {"kind": "closed-form"}
+    assert all(one["seconds"] is None for curve in answer["curves"] for one in curve["measurements"])
+
+
+async def test_equal_questions_get_equal_bytes() -> None:
+    first, second = await asked(QUESTION), await asked(QUESTION)
+    assert first.content == second.content
+
+
+async def test_times_are_medians_of_repeats_if_asked_for() -> None:
+    answer = (await asked(QUESTION | {"repeats": 3})).json()
+    assert all(one["seconds"] > 0.0 for curve in answer["curves"] for one in curve["measurements"])
+
+
+async def test_a_failing_setting_is_listed_with_its_reason() -> None:
+    methods = [{"kind": "explicit-euler", "step": 10.0}, {"kind": "closed-form"}]
+    times = {"start": 0.0, "stop": 1e4, "count": 3}
+    answer = (await asked(QUESTION | {"methods": methods, "times": times})).json()
+    (failed,) = next(curve for curve in answer["curves"] if curve["kind"] == "explicit-euler")["measurements"]
+    assert failed["error"] is None
+    assert "step" in failed["failure"] or "double range" in failed["failure"]
+
+
+async def test_an_unknown_setting_is_told_where_it_stands() -> None:
+    methods = [{"kind": "closed-form"}, {"kind": "runge-kutta-4", "step": -1.0}]
+    response = await asked(QUESTION | {"methods": methods})
+    assert response.status_code == 422
+    assert response.json()["errors"][0]["pointer"] == "/methods/1/step"
+
+
+async def test_the_default_ladder_is_a_figure_with_every_method() -> None:
+    response = await asked({k: v for k, v in QUESTION.items() if k != "methods"}, accept=f"{SVG}, */*;q=0.1")
+    assert response.status_code == 200
+    assert response.headers["content-type"] == SVG
+    root = ElementTree.fromstring(response.text)
+    labels = " ".join(node.text or "" for node in root.iter("{http://www.w3.org/2000/svg}text"))
+    for kind in ("closed-form", "explicit-euler, order 1.", "runge-kutta-4, order", "radau", "lsoda"):
+        assert kind in labels
+    again = await asked({k: v for k, v in QUESTION.items() if k != "methods"}, accept=SVG)
+    assert again.content == response.content
+
+
+@pytest.mark.parametrize(
+    ("accept", "media"),
+    [
+        ("*/*", "application/json"),
+        ("application/json, image/svg+xml", "application/json"),
+        ("application/json;q=0.5, image/svg+xml", SVG),
+        ("image/*", SVG),
+        ("image/svg+xml;q=0, */*", "application/json"),
+    ],
+)
+async def test_the_accept_header_chooses(accept: str, media: str) -> None:
+    response = await asked(QUESTION, accept=accept)
+    assert response.headers["content-type"] == media
+
+
+async def test_what_is_not_offered_is_refused() -> None:
+    response = await asked(QUESTION, accept="image/png")
+    assert response.status_code == 406
+    assert SVG in response.json()["detail"]
