@@ -1,4 +1,4 @@
-"""The one way in which functions are compiled, and two machine instructions that the compiler does not offer.
+"""The one way in which functions are compiled, and three machine instructions that the compiler does not offer.
 
 Compiled code is kept on disk, so only the first process after an installation compiles. The compiler by itself would
 notice a change of a function's own file only, and go on calling what it had compiled from another file before that
@@ -78,8 +78,21 @@ def _double_from_bits(typing_context: Any, pattern: Any) -> Any:
     return signature, generate
 
 
+@intrinsic
+def _bits_of(typing_context: Any, number: Any) -> Any:
+    signature = types.int64(types.float64)
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], ir.IntType(64))
+
+    return signature, generate
+
+
 fma = cast(Callable[[float, float, float], float], _fma)
 """a*b + c rounded once, in compiled code."""
+
+bits_of = cast(Callable[[float], int], _bits_of)
+"""The 64-bit integer that has the bit pattern of a double, in compiled code."""
 
 double_from_bits = cast(Callable[[int], float], _double_from_bits)
 """The double whose bit pattern is the given 64-bit integer, in compiled code."""

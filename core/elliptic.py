@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from core.compiled import double_from_bits, fma, kernel
+from core.compiled import bits_of, double_from_bits, fma, kernel
 from core.double_double import (
     PI,
     Pair,
@@ -215,36 +215,32 @@ def split_phase(
 @kernel()
 def half_parity(n: float) -> tuple[bool, float]:
     """Return whether n is odd, and the sign (-1)^floor(n/2)."""
-    half = 0.5 * n
-    nearest = (half + 6755399441055744.0) - 6755399441055744.0
-    odd = half != nearest
-    floor = half - 0.5 if odd else half
-    quarter = 0.5 * floor
-    return odd, 1.0 if quarter == (quarter + 6755399441055744.0) - 6755399441055744.0 else -1.0
+    # n/4 less its nearest integer is 0, 1/4, +-1/2, -1/4 for n = 0, 1, 2, 3 modulo 4.
+    quarter = 0.25 * n
+    rest = quarter - ((quarter + 6755399441055744.0) - 6755399441055744.0)
+    return abs(rest) == 0.25, 1.0 if 0.0 <= rest < 0.375 else -1.0
 
 
 @kernel()
 def sin_cos_quarter(r: float, r_tail: float) -> Pair:
     """Return sin and cos of (pi/2) r for |r| <= 1/2 (a hair more does no harm).
 
-    Taylor polynomials in (pi r/2)^2, remainders below 2^-57, with the leading terms in extended precision.
+    Polynomials in (pi r/2)^2 through the Chebyshev points of the interval, remainders below 2^-55, with the leading
+    terms in extended precision.
     """
     zh = r * 1.5707963267948966
     zl = fma(r, 1.5707963267948966, -zh) + fma(r, 6.123233995736766e-17, r_tail * 1.5707963267948966)
     w = zh * zh
-    p = fma(w, 2.8114572543455206e-15, -7.647163731819816e-13)
-    p = fma(w, p, 1.6059043836821613e-10)
-    p = fma(w, p, -2.505210838544172e-08)
-    p = fma(w, p, 2.7557319223985893e-06)
-    p = fma(w, p, -0.0001984126984126984)
-    p = fma(w, p, 0.008333333333333333)
+    p = fma(w, 1.591798150140412e-10, -2.5051129792549024e-08)
+    p = fma(w, p, 2.7557316092699366e-06)
+    p = fma(w, p, -0.0001984126983673957)
+    p = fma(w, p, 0.008333333333330936)
     p = fma(w, p, -0.16666666666666666)
     sine = zh + fma(zh * w, p, zl)
-    p = fma(w, 4.779477332387385e-14, -1.1470745597729725e-11)
-    p = fma(w, p, 2.08767569878681e-09)
-    p = fma(w, p, -2.755731922398589e-07)
-    p = fma(w, p, 2.48015873015873e-05)
-    p = fma(w, p, -0.001388888888888889)
+    p = fma(w, -1.1382539967177458e-11, 2.0876144984413913e-09)
+    p = fma(w, p, -2.755731726556589e-07)
+    p = fma(w, p, 2.48015872987538e-05)
+    p = fma(w, p, -0.0013888888888887389)
     p = fma(w, p, 0.041666666666666664)
     half = 0.5 * w
     lead = 1.0 - half
@@ -256,30 +252,34 @@ def sin_cos_quarter(r: float, r_tail: float) -> Pair:
 
 @kernel()
 def sinh_cosh(xh: float, xl: float) -> Pair:
-    """Return sinh and cosh of xh + xl for |xh| < 700, both with full relative precision."""
-    n = fma(xh, 1.4426950408889634, 6755399441055744.0) - 6755399441055744.0
+    """Return sinh and cosh of xh + xl for |xh| < 700, both with full relative precision.
+
+    x = n ln 2 + r; polynomials in r^2 through the Chebyshev points of the interval, remainders below 2^-56.
+    """
+    # The sum with 1.5 2^52 is rounded to a whole number, which then stands in the lowest bits of its pattern.
+    shifted = fma(xh, 1.4426950408889634, 6755399441055744.0)
+    n = shifted - 6755399441055744.0
     # The first difference is exact: a multiple of 2^-54 below 0.35.
     near = fma(-n, 0.6931471805599453, xh)
     tail = fma(-n, 2.3190468138462996e-17, xl)
     r = near + tail
     tail += near - r
     w = r * r
-    p = fma(w, 1.6059043836821613e-10, 2.505210838544172e-08)
-    p = fma(w, p, 2.7557319223985893e-06)
-    p = fma(w, p, 0.0001984126984126984)
-    p = fma(w, p, 0.008333333333333333)
-    p = fma(w, p, 0.16666666666666666)
+    p = fma(w, 2.5100450946427397e-08, 2.755726832230253e-06)
+    p = fma(w, p, 0.00019841269863142295)
+    p = fma(w, p, 0.008333333333330044)
+    p = fma(w, p, 0.16666666666666669)
     # sinh r = r + s, cosh r = 1 + c
     s = fma(r * w, p, tail)
-    p = fma(w, 2.08767569878681e-09, 2.755731922398589e-07)
-    p = fma(w, p, 2.48015873015873e-05)
-    p = fma(w, p, 0.001388888888888889)
-    p = fma(w, p, 0.041666666666666664)
-    p = fma(w, p, 0.5)
+    p = fma(w, 2.762017355595474e-07, 2.4801521116900806e-05)
+    p = fma(w, p, 0.0013888888917329028)
+    p = fma(w, p, 0.0416666666666239)
+    p = fma(w, p, 0.5000000000000001)
     c = fma(w, p, r * tail)
-    k = int(n)
-    up = 0.5 * double_from_bits((k + 1023) << 52)
-    down = 0.5 * double_from_bits((1023 - k) << 52)
+    k = bits_of(shifted)
+    # 2^n/2 and 2^-n/2; what stands above the lowest twelve bits is shifted out.
+    up = double_from_bits((k + 1022) << 52)
+    down = double_from_bits((1022 - k) << 52)
     sn, cn = up - down, up + down
     return sn + fma(cn, r, fma(sn, c, cn * s)), cn + fma(sn, r, fma(cn, c, sn * s))
 

@@ -7,7 +7,7 @@ dictionaries, so that nothing is imported here for their sake.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cache
 from itertools import chain
@@ -40,10 +40,14 @@ class Quantity:
     at_most: float = inf
     below: float = inf
 
+    def test(self, value: object) -> bool:
+        """Return whether `value` is a double inside the range, as nearly every value is."""
+        # Infinities fail the strict comparisons and NaN fails all of them.
+        return type(value) is float and self.above < value < self.below and self.at_least <= value <= self.at_most
+
     def check(self, path: Path, value: object) -> None:
         """Raise `InvalidParameter` unless `value` is a finite real number inside the range."""
-        # Nearly every value passes here; infinities fail the strict comparisons and NaN fails all of them.
-        if type(value) is float and self.above < value < self.below and self.at_least <= value <= self.at_most:
+        if self.test(value):
             return
         if isinstance(value, bool) or not isinstance(value, Real):
             raise InvalidParameter(path, "be a number")
@@ -162,6 +166,10 @@ class Rows:
             and high < q.below
         )
 
+    def test(self, value: object) -> bool:
+        """Return whether `value` has been read already."""
+        return isinstance(value, np.ndarray)
+
     def check(self, path: Path, value: object) -> None:
         """Raise `InvalidParameter` unless `value` is such an array or can be read as one."""
         if not isinstance(value, np.ndarray):
@@ -229,8 +237,71 @@ def check(instance: Any) -> None:
         Naming the field, as a path from `instance`, and the rule it breaks.
     """
     owner: Any = type(instance)
-    for name, hint in _hints(owner).items():
-        _check((name,), hint, getattr(instance, name))
+    for name, passes in _tests(owner):
+        value = getattr(instance, name)
+        if not passes(value):
+            # Either at fault, or right in an unusual type: an integer, a list.
+            _check((name,), _hints(owner)[name], value)
+
+
+Test = Callable[[Any], bool]
+"""Whether a value is admissible in the commonest way; false means only that it has to be looked at."""
+
+
+@cache
+def _tests(cls: Any) -> tuple[tuple[str, Test], ...]:
+    """Return the names of a dataclass's fields that have anything to be checked, each with its test."""
+    tests = ((name, _test(hint)) for name, hint in _hints(cls).items())
+    return tuple((name, test) for name, test in tests if test is not None)
+
+
+def _test(hint: Any) -> Test | None:
+    """Return the test of an annotation, made once, or None for one that admits everything."""
+    origin = get_origin(hint)
+    if origin is Annotated:
+        marks = [mark for mark in hint.__metadata__ if hasattr(mark, "check")]
+        if not marks:
+            return None
+        return marks[0].test if len(marks) == 1 and isinstance(marks[0], (Quantity, Rows)) else _never
+    if origin is tuple:
+        return _test_of_tuple(get_args(hint))
+    if origin in (Union, UnionType) and NoneType in get_args(hint):
+        inner = [arg for arg in get_args(hint) if arg is not NoneType]
+        test = _test(inner[0]) if len(inner) == 1 else None
+        return None if test is None else lambda value: value is None or test(value)
+    return None
+
+
+def _never(value: Any) -> bool:
+    return False
+
+
+def _test_of_tuple(args: tuple[Any, ...]) -> Test:
+    free, alike = args[-1] is ..., len({*args} - {...}) == 1
+    length = len(args)
+    if alike and get_origin(args[0]) is Annotated and isinstance(args[0].__metadata__[0], Quantity):
+        # Nearly all vectors: one loop, without a call for each number.
+        quantity: Quantity = args[0].__metadata__[0]
+        above, at_least, at_most, below = quantity.above, quantity.at_least, quantity.at_most, quantity.below
+
+        def numbers(value: Any) -> bool:
+            if type(value) is not tuple or not (free or len(value) == length):
+                return False
+            for entry in value:
+                if type(entry) is not float or not (above < entry < below and at_least <= entry <= at_most):
+                    return False
+            return True
+
+        return numbers
+    tests = [_test(arg) for arg in args if arg is not ...]
+
+    def entries(value: Any) -> bool:
+        if type(value) is not tuple or not (free or len(value) == length):
+            return False
+        each = tests * len(value) if free else tests
+        return all(test is None or test(entry) for test, entry in zip(each, value, strict=True))
+
+    return entries
 
 
 @cache

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, get_args
 
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
@@ -22,6 +22,9 @@ Step = str | int
 
 OBJECT, ARRAY = "<object>", "<array>"
 """Labels of the members of a union of an object and an array; a fault in the member not meant is dropped."""
+
+WITHOUT, WITH = "<without>", "<with>"
+"""Labels of the two questions that a `ByPresence` tells apart."""
 
 _RULES: Mapping[str, str] = {
     "missing": "is required",
@@ -66,13 +69,37 @@ class Limits:
     arrays: int = 150_000
 
 
+@dataclass(frozen=True)
+class ByPresence:
+    """Mark of a union of two questions: the second is meant where the document has a key, otherwise the first.
+
+    Attributes
+    ----------
+    key : str
+        Name of a plain ASCII key of the document itself.
+    """
+
+    key: str
+
+    def __get_pydantic_core_schema__(self, union: Any, handler: Any) -> dict[str, Any]:
+        without, having = (handler.generate_schema(member) for member in get_args(union))
+        return {"type": "tagged-union", "discriminator": self._label, "choices": {WITHOUT: without, WITH: having}}
+
+    def _label(self, document: Any) -> str:
+        return WITH if isinstance(document, dict) and self.key in document else WITHOUT
+
+    def excluded_by(self, body: bytes) -> bool:
+        """Return whether the bytes show that the key is absent; it might also be written with escapes."""
+        return self.key.encode() not in body and b"\\" not in body
+
+
 class Reader(Generic[Q]):
     """Reads questions of one type.
 
     Parameters
     ----------
     question : type
-        A pydantic model, which may hold dataclasses of core.
+        A pydantic model, which may hold dataclasses of core; or a union of two that a `ByPresence` tells apart.
     limits : Limits
         On the document.
     """
@@ -82,6 +109,9 @@ class Reader(Generic[Q]):
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
         self._tags = _tags_of(schema)
+        marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, ByPresence)]
+        # To look for a key, the whole document is built: not for questions whose bytes show that it is absent.
+        self._without = [(mark, Reader(get_args(get_args(question)[0])[0], limits)) for mark in marks]
         self._deepest, self._most_keys, self._most_arrays = limits.nesting, limits.keys, limits.arrays
 
     def read(self, body: bytes) -> Q:
@@ -92,6 +122,10 @@ class Reader(Generic[Q]):
         Refusal
             With the pointers of what is wrong.
         """
+        for mark, reader in self._without:
+            if mark.excluded_by(body):
+                plain: Q = reader.read(body)
+                return plain
         require_simple(body, self._deepest, self._most_keys, self._most_arrays)
         try:
             question: Q = self._validate(body, strict=True)
@@ -253,4 +287,4 @@ def _fault(entry: Any, steps: tuple[Step, ...]) -> Fault:
     return Fault(pointer_of(steps), detail)
 
 
-__all__ = ["ARRAY", "OBJECT", "Limits", "Reader"]
+__all__ = ["ARRAY", "OBJECT", "ByPresence", "Limits", "Reader"]

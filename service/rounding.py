@@ -24,7 +24,8 @@ ROUND_TRIP = 17
 EXACT_POWERS = 22
 """Powers of ten up to this are doubles without rounding."""
 
-EXACT_INTEGERS = 2.0**53
+NEAREST = 2.0**-53
+"""From a decimal to the double nearest to it."""
 
 
 class _ReadAsOne:
@@ -73,11 +74,11 @@ def rounded(values: Floats, digits: Digits, error: float, scale: float | None = 
             return values, 0.0
         places = ceil(-log10(error) - log10(largest))
         written = to_places(values, places)
-        return written, 0.0 if written is values else 0.5 * _width(values) * _ratio(places, largest)
+        return written, 0.0 if written is values else 0.5 * _width(values) * _ratio(places, largest) + NEAREST
     if digits >= ROUND_TRIP:
         return values, 0.0
     # Each component moves by half a unit of its last digit, and errors of components add as squares.
-    return to_significant(values, digits), 5.0 * 10.0**-digits
+    return to_significant(values, digits), 5.0 * 10.0**-digits + NEAREST
 
 
 def to_places(values: Floats, places: int) -> Floats:

@@ -48,11 +48,14 @@ class Question:
     path, operation_id, summary, description, tag : str
         As they stand in the documentation.
     question, answer : type
-        Pydantic models. Requests are validated by the first; the second only documents.
+        Pydantic models, or unions of two. Requests are validated by the first; the second only documents.
     handle : callable
         From question and budget to the fields of the answer; warnings under ``"warnings"``.
     price : callable
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
+    outline : callable or None
+        From a question to one that costs little and has the same model, warnings and refusals, by which it is planned;
+        None if the question is that itself.
     examples : mapping
         By a short name.
     representations : mapping
@@ -63,10 +66,11 @@ class Question:
     operation_id: str
     summary: str
     tag: str
-    question: type[BaseModel]
-    answer: type[BaseModel]
+    question: Any
+    answer: Any
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
+    outline: Callable[[Any], Any] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)

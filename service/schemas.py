@@ -5,13 +5,14 @@ Answers are never passed through these views; they are written as they come from
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from math import isfinite
+from typing import Annotated, Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from core.errors import BudgetExceeded
+from core.errors import BudgetExceeded, InvalidParameter
 from core.integration.budget import Budget
 from core.quantities import Time
 from service import VERSION
@@ -85,7 +86,15 @@ class Span(Request):
         return np.linspace(self.start, self.stop, self.count)
 
 
-class _ObjectOrArray:
+class Counted(Protocol):
+    """Evenly spaced times, in whatever kind of number."""
+
+    @property
+    def count(self) -> int:
+        """How many."""
+
+
+class ObjectOrArray:
     """Labels the two members of a union, so that a fault is told about the one that the client meant."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
@@ -94,11 +103,11 @@ class _ObjectOrArray:
         return {"type": "union", "mode": "left_to_right", "choices": [(first, OBJECT), (second, ARRAY)]}
 
 
-Times = Annotated[Span | Annotated[list[Time], Field(min_length=1)], _ObjectOrArray()]
+Times = Annotated[Span | Annotated[list[Time], Field(min_length=1)], ObjectOrArray()]
 """Times from the given state, which holds at t = 0; they may be negative and in any order."""
 
 
-def sample_count(times: Span | list[float], budget: Budget) -> int:
+def sample_count(times: Counted | list[Any], budget: Budget) -> int:
     """Return the number of samples without making them.
 
     Raises
@@ -106,10 +115,10 @@ def sample_count(times: Span | list[float], budget: Budget) -> int:
     BudgetExceeded
         For more samples than one answer may have.
     """
-    count = times.count if isinstance(times, Span) else len(times)
+    count = len(times) if isinstance(times, list) else times.count
     if count > budget.samples:
         remedy = "ask for fewer times, or in several questions"
-        path = ("times", "count") if isinstance(times, Span) else ("times",)
+        path = ("times",) if isinstance(times, list) else ("times", "count")
         raise BudgetExceeded("samples", count, budget.samples, path=path, remedy=remedy)
     return count
 
@@ -117,7 +126,12 @@ def sample_count(times: Span | list[float], budget: Budget) -> int:
 def sample_times(times: Span | list[float], budget: Budget) -> NDArray[np.float64]:
     """Return the times, shape (n,), or raise `BudgetExceeded`."""
     sample_count(times, budget)
-    return times.values() if isinstance(times, Span) else np.array(times, dtype=np.float64)
+    if not isinstance(times, Span):
+        return np.array(times, dtype=np.float64)
+    if not isfinite(times.stop - times.start):
+        remedy = "bring start and stop nearer to each other, or give a list"
+        raise InvalidParameter(("times", "stop"), "lie within 1.8e308 s of start", remedy=remedy)
+    return times.values()
 
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]

@@ -95,9 +95,9 @@ def _moments(principal: PrincipalInertia) -> list[Condition]:
         if len(moments) == 1:
             name, detail = (
                 "positive-moments",
-                f"no principal moment is negative: the smallest is {moments[0]:.6g} kg m^2",
+                f"no principal moment is negative: the smallest is {moments[0]:.12g} kg m^2",
             )
         else:
-            name, detail = "triangle-inequality", "{:.6g} <= {:.6g} + {:.6g} kg m^2".format(*moments)
+            name, detail = "triangle-inequality", "{:.12g} <= {:.12g} + {:.12g} kg m^2".format(*moments)
         found.append(Condition(name, excess <= TOLERANCE, detail, excess, TOLERANCE, moments))
     return found

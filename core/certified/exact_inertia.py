@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from core.bodies.exact import parallel_axis
+from core.bodies.principal_inertia import Symmetry
 from core.certified.exact_inputs import Number, exact, exact_numbers
 from core.errors import InvalidParameter
 
@@ -37,7 +38,7 @@ class ExactInertia:
         # Sylvester's criterion: positive definite if and only if the leading minors are positive.
         if not (a > 0 and a * d - b * b > 0 and self.determinant_at(Fraction(0)) > 0):
             raise InvalidParameter(
-                "body",
+                (),
                 "have three moments of inertia greater than 0 to rotate freely",
                 remedy="give a body with extent in at least two directions",
             )
@@ -140,6 +141,24 @@ class ExactInertia:
         """How many principal moments coincide: 3, 2, or 1 where all differ."""
         moments = self.rational_moments
         return 1 if moments is None else 4 - len(set(moments))
+
+    @property
+    def symmetry(self) -> Symmetry:
+        """Class of the principal moments, decided exactly."""
+        moments = self.rational_moments
+        if moments is None or len(set(moments)) == 3:
+            return "triaxial"
+        if moments[0] == moments[2]:
+            return "spherical"
+        return "oblate" if moments[0] == moments[1] else "prolate"
+
+    @property
+    def physical(self) -> bool:
+        """Whether matter can have this inertia: no moment exceeds the sum of the other two.
+
+        At most one moment can exceed half the trace, so the sign of (A - s)(B - s)(C - s) at s = trace/2 tells.
+        """
+        return self.determinant_at(self.trace / 2) <= 0
 
     def momentum(self, angular_velocity: Vector) -> Vector:
         """Return I w."""

@@ -57,6 +57,14 @@ def exact_numbers(numbers: Sequence[Number], path: Path, count: int | None = Non
     return tuple(exact(number, (*path, i)) for i, number in enumerate(numbers))
 
 
+def evenly_spaced(start: Fraction, stop: Fraction, count: int) -> tuple[Fraction, ...]:
+    """Return `count` numbers at exactly equal distances, both ends included; a single one is the start."""
+    if count == 1:
+        return (start,)
+    step = (stop - start) / (count - 1)
+    return tuple(start + i * step for i in range(count))
+
+
 def enclosed(number: Fraction) -> arb:
     """Return a ball of the current precision around a rational number, of radius zero where it is dyadic and short."""
     return arb(fmpq(number.numerator, number.denominator))

@@ -16,6 +16,7 @@ from core.certified.exact_start import ExactStart, Regime
 from core.certified.raising import bits_for, check_digits, determined, each_determined
 from core.certified.turning_motion import QuaternionBalls, TurningMotion, product
 from core.errors import InvalidParameter
+from core.integration.system import Model
 
 Rows = list[list[str]]
 IDENTITY = (1, 0, 0, 0)
@@ -65,6 +66,25 @@ class CertifiedRotation:
     def turns(self) -> bool:
         """Whether the angular velocity changes."""
         return self.regime in ("periodic", "separatrix")
+
+    @property
+    def model(self) -> Model:
+        """The branch of the solution that holds, and why."""
+        name, equal = "torque-free rigid body", self.inertia.equal_moments
+        if self.regime == "rest":
+            return Model(name, "rest", "the angular velocity is zero", 0)
+        if self.regime == "steady":
+            return Model(name, "steady rotation", "angular momentum and spin are parallel: nothing accelerates", 0)
+        if self.regime == "separatrix":
+            why = "L^2 = 2 E I_middle exactly: the motion tends to the middle axis, by hyperbolic functions"
+            return Model(name, "separatrix", why, 1)
+        if equal == 2:
+            why = "two moments are equal: sine and cosine about the axis of the third"
+            return Model(name, "regular precession", why, 1)
+        largest = self.start.side > 0
+        regime = f"circulation about the axis of {'largest' if largest else 'smallest'} moment"
+        why = f"three moments differ and L^2 {'>' if largest else '<'} 2 E I_middle: Jacobian elliptic functions"
+        return Model(name, regime, why, 1)
 
     def angular_velocity(self, times: Sequence[Number], digits: int) -> Rows:
         """Return the angular velocity in body axes, n rows of 3 numerals.

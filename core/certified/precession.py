@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
@@ -39,6 +39,8 @@ class CertifiedPrecession:
         Rate at which the symmetry axis goes round the angular momentum, L/I; symmetric bodies only (rad/s).
     momentum_angle, spin_angle : str or None
         Angle of the symmetry axis with the angular momentum and with the angular velocity; symmetric bodies only (rad).
+    absent : mapping of str to str
+        Why a field is None.
     """
 
     regime: Regime
@@ -50,6 +52,7 @@ class CertifiedPrecession:
     space_rate: str | None
     momentum_angle: str | None
     spin_angle: str | None
+    absent: Mapping[str, str]
 
 
 def certified_precession(rotation: CertifiedRotation, digits: int) -> CertifiedPrecession:
@@ -84,8 +87,7 @@ def certified_precession(rotation: CertifiedRotation, digits: int) -> CertifiedP
 
     periodic = rotation.regime == "periodic"
     symmetric = _Symmetric.of(rotation)
-    return CertifiedPrecession(
-        regime=rotation.regime,
+    figures: dict[str, str | None] = dict(
         period=rotation.period(digits),
         flip_interval=rotation.flip_interval(digits),
         precession_per_period=number(per_period) if periodic else None,
@@ -95,6 +97,24 @@ def certified_precession(rotation: CertifiedRotation, digits: int) -> CertifiedP
         momentum_angle=number(symmetric.momentum_angle) if symmetric else None,
         spin_angle=number(symmetric.spin_angle) if symmetric else None,
     )
+    absent = {name: _why_absent(rotation, name) for name, figure in figures.items() if figure is None}
+    return CertifiedPrecession(rotation.regime, **figures, absent=absent)
+
+
+def _why_absent(rotation: CertifiedRotation, name: str) -> str:
+    of_symmetric_bodies = name in ("body_rate", "space_rate", "momentum_angle", "spin_angle")
+    if rotation.regime == "rest":
+        return "nothing turns"
+    if of_symmetric_bodies and rotation.inertia.equal_moments != 2:
+        equal = (
+            "are equal, so that every axis is" if rotation.inertia.equal_moments == 3 else "differ, so that no axis is"
+        )
+        return f"the three moments {equal} one of symmetry"
+    if rotation.regime == "steady":
+        return "the angular velocity is constant in the body"
+    if rotation.regime == "separatrix":
+        return "on the separatrix the body tends to the middle axis and never returns"
+    return "two moments are equal, so that there is no middle axis"
 
 
 @dataclass(frozen=True)

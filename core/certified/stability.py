@@ -39,6 +39,21 @@ class CertifiedEquilibrium:
     kind: Kind
     rate: str
 
+    @property
+    def growth_rate(self) -> str:
+        """Exponential rate of a small disturbance (1/s)."""
+        return self.rate if self.kind == "saddle" else "0"
+
+    @property
+    def eigenvalues(self) -> tuple[tuple[str, str], tuple[str, str], tuple[str, str]]:
+        """Real and imaginary parts; a double zero beside the third where degenerate (1/s)."""
+        zero = ("0", "0")
+        if self.kind == "degenerate":
+            return zero, zero, zero
+        if self.kind == "saddle":
+            return (self.rate, "0"), (f"-{self.rate}", "0"), zero
+        return ("0", self.rate), ("0", f"-{self.rate}"), zero
+
 
 def certified_stability(inertia: ExactInertia, rate: Number, digits: int) -> list[CertifiedEquilibrium]:
     """Return the equilibria about the three principal axes, in ascending order of moments.

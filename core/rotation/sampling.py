@@ -39,8 +39,9 @@ def _circular(
         below = D3 if odd else D4
         over = 1.0 / below
         lost = fma(-over, below, 1.0)
-        oc[i] = _quotient(sign * ((c_odd if odd else c_even) * (S if odd else C)), over, lost)
-        ob[i] = _quotient(sign * ((b_odd if odd else b_even) * (C if odd else S)), over, lost)
+        signed = sign * over
+        oc[i] = _quotient((c_odd if odd else c_even) * (S if odd else C), signed, lost)
+        ob[i] = _quotient((b_odd if odd else b_even) * (C if odd else S), signed, lost)
         od[i] = _quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost)
 
 
@@ -67,8 +68,9 @@ def _hyperbolic(
         below = D3 if odd else C
         over = 1.0 / below
         lost = fma(-over, below, 1.0)
-        oc[i] = _quotient(sign * ((c_odd if odd else c_even) * (S if odd else D4)), over, lost)
-        ob[i] = _quotient(sign * ((b_odd if odd else b_even) * (D4 if odd else S)), over, lost)
+        signed = sign * over
+        oc[i] = _quotient((c_odd if odd else c_even) * (S if odd else D4), signed, lost)
+        ob[i] = _quotient((b_odd if odd else b_even) * (D4 if odd else S), signed, lost)
         od[i] = _quotient((d_odd if odd else d_even) * (C if odd else D3), over, lost)
 
 

@@ -12,6 +12,7 @@ from core.bodies.principal_inertia import PrincipalInertia, Symmetry
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
 from core.integration.budget import Budget
+from service.pricing import Priced
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Matrix, Request, Vector, View
 
@@ -86,9 +87,9 @@ def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
     return None if inertia is None else {"moments": inertia.moments, "axes": inertia.axes}
 
 
-def reading_price(question: Any, budget: Budget) -> float:
-    """Return the predicted time to find the mass properties of a question's body (s)."""
-    return 2e-4 + 1e-7 * _size(question.body)
+def counts(question: Any, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a question about a body."""
+    return {"question": 1.0, "points": _size(question.body)}
 
 
 def _size(body: Any) -> int:
@@ -106,7 +107,7 @@ BODIES = (
         MassPropertiesRequest,
         MassPropertiesAnswer,
         mass_properties,
-        reading_price,
+        Priced("mass_properties", counts),
         examples={
             "principal-moments": Example(
                 "a body known by its principal moments",

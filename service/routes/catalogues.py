@@ -79,7 +79,7 @@ def methods() -> list[dict[str, Any]]:
             "family": member.family,
             "preserves": member.preserves,
             "when_to_use": member.when_to_use,
-            "record": measured.get(member.kind, []),
+            "record": sorted(measured.get(member.kind, []), key=lambda shown: shown["tolerance"]),
         }
         for member in members
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Annotated, Any
 
 import numpy as np
@@ -14,12 +15,16 @@ from core.integration.methods import Method
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.initial_states import initial_states
+from service.pricing import Priced, effort, extreme, numbers
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.bodies import properties_of, reading_price
+from service.routes.bodies import counts, properties_of
 from service.routes.rotation import AccuracyView, ModelView, WorkView
 from service.routes.surfaces import SOURCE_BODY, Count, Seed
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
+
+OUTLINED = 16
+"""Members of an ensemble by which all of it is planned."""
 
 
 class Sample(Request):
@@ -112,11 +117,32 @@ def _starts(question: EnsembleRequest, body: Any) -> Any:
     return np.array(question.angular_velocities)
 
 
-def price(question: EnsembleRequest, budget: Budget) -> float:
-    """Return the predicted time (s)."""
-    members = question.sample.count if question.sample is not None else len(question.angular_velocities or ())
-    samples = sample_count(question.times, budget) * members
-    return reading_price(question, budget) + 3e-4 * members + (1e-7 if question.method is None else 1e-5) * samples
+def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of an ensemble; a sample's starts are not known yet, nor how fast they are."""
+    starts = question.angular_velocities or []
+    members = question.sample.count if question.sample is not None else len(starts)
+    samples = sample_count(question.times, budget)
+    speed = max((hypot(*start) for start in starts), default=1.0)
+    return {
+        **counts(question, budget),
+        "members": members,
+        "samples": samples * members,
+        "times": samples,
+        **effort(question.method, question.times, speed, samples, members),
+        **numbers(3 * samples * members, question.round),
+    }
+
+
+def ensemble_outline(question: EnsembleRequest) -> EnsembleRequest:
+    """Return the question about a few members at the farthest time alone, in closed form."""
+    changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
+    if question.method is not None and question.method.kind != "closed-form":
+        changes["accuracy"] = 0.5
+    if question.angular_velocities is not None:
+        changes["angular_velocities"] = question.angular_velocities[:OUTLINED]
+    if question.sample is not None:
+        changes["sample"] = question.sample.model_copy(update={"count": min(OUTLINED, question.sample.count)})
+    return question.model_copy(update=changes)
 
 
 ENSEMBLE = (
@@ -128,7 +154,8 @@ ENSEMBLE = (
         EnsembleRequest,
         EnsembleAnswer,
         answer_ensemble,
-        price,
+        Priced("rotation_ensemble", ensemble_counts),
+        ensemble_outline,
         examples={
             "sample": Example(
                 "three of the source's random starts",

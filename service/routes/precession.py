@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
+from math import hypot
 from typing import Any, Literal
 
 import numpy as np
@@ -17,10 +18,11 @@ from core.rotation.measurement import Measure, MeasuredPeriod, measure_period
 from core.rotation.precession import Precession, Regime, precession
 from core.rotation.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
-from service.routes.bodies import properties_of, reading_price
+from service.pricing import Priced, effort
+from service.routes.bodies import counts, properties_of
 from service.routes.rotation import T_HANDLE
 from service.routing import Answer, Example, Question
-from service.schemas import Envelope, Request, Vector, View
+from service.schemas import Envelope, Request, Span, Vector, View
 
 
 class PrecessionRequest(Request):
@@ -116,20 +118,18 @@ def answer_stability(question: StabilityRequest, budget: Budget) -> Answer:
     return _fields(found) | {"equilibria": [_fields(equilibrium) for equilibrium in found.equilibria]}
 
 
-def stability_price(question: StabilityRequest, budget: Budget) -> float:
-    """Return the predicted time (s)."""
-    return reading_price(question, budget) + 3e-4
+def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a question about rates."""
+    measure, found = question.measure, counts(question, budget)
+    if measure is None:
+        return found
+    times = Span(start=0.0, stop=measure.duration, count=measure.samples)
+    return found | effort(measure.method, times, hypot(*question.angular_velocity), measure.samples)
 
 
-def price(question: PrecessionRequest, budget: Budget) -> float:
-    """Return the predicted time (s)."""
-    own = reading_price(question, budget) + 2e-4
-    return own if question.measure is None else own + 0.02 + _steps(question.measure) * 1e-7
-
-
-def _steps(measure: Measure) -> float:
-    step: Any = getattr(measure.method, "step", None)
-    return measure.samples + (measure.duration / step if step else 0.0)
+def precession_outline(question: PrecessionRequest) -> PrecessionRequest:
+    """Return the question without its measurement."""
+    return question.model_copy(update={"measure": None})
 
 
 PRECESSION = (
@@ -141,7 +141,8 @@ PRECESSION = (
         PrecessionRequest,
         PrecessionAnswer,
         answer_precession,
-        price,
+        Priced("precession", precession_counts),
+        precession_outline,
         examples={
             "coin": Example(
                 "a spinning coin",
@@ -174,7 +175,7 @@ PRECESSION = (
         StabilityRequest,
         StabilityAnswer,
         answer_stability,
-        stability_price,
+        Priced("stability", counts),
         examples={
             "t-handle": Example(
                 "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from math import isfinite
-from typing import Literal
+from math import hypot, isfinite
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -19,8 +19,9 @@ from core.notices import Notice
 from core.quantities import AngularVelocity, Quaternion, Tolerance, Uncertainty
 from core.rotation.attitude import FreeAttitude
 from core.rotation.torque_free import TorqueFree
+from service.pricing import Priced, effort, extreme, numbers
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.bodies import properties_of, reading_price
+from service.routes.bodies import counts, properties_of
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, QuaternionRow, Request, Times, Vector, View, sample_count, sample_times
 
@@ -166,12 +167,7 @@ def _outputs(question: TrajectoryRequest) -> tuple[Output, ...]:
 
 
 def _attitude(question: TrajectoryRequest, system: TorqueFree, times: Floats) -> tuple[Floats, float]:
-    if question.method is not None and not isinstance(question.method, ClosedFormEvaluation):
-        raise NotApplicable(
-            "the attitude is computed in closed form only",
-            path=("method",),
-            remedy="leave out the method, or the attitude",
-        )
+    _require_closed_form(question)
     free = FreeAttitude(system.closed_form(), np.array(question.attitude or (1.0, 0.0, 0.0, 0.0)))
     error = free.error(times)
     if not error <= question.accuracy:
@@ -184,6 +180,15 @@ def _attitude(question: TrajectoryRequest, system: TorqueFree, times: Floats) ->
     return free.sample(times), error
 
 
+def _require_closed_form(question: TrajectoryRequest) -> None:
+    if question.method is not None and not isinstance(question.method, ClosedFormEvaluation):
+        raise NotApplicable(
+            "the attitude is computed in closed form only",
+            path=("method",),
+            remedy="leave out the method, or the attitude",
+        )
+
+
 def _in_range(name: str, value: float | None, notices: list[Notice]) -> float | None:
     if value is None or isfinite(value):
         return value
@@ -191,24 +196,26 @@ def _in_range(name: str, value: float | None, notices: list[Notice]) -> float | 
     return None
 
 
-def trajectory_price(question: TrajectoryRequest, budget: Budget) -> float:
-    """Return the predicted time of a trajectory (s)."""
-    samples = sample_count(question.times, budget)
-    price = reading_price(question, budget) + 2e-8 * samples
+def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a trajectory."""
+    samples, wanted = sample_count(question.times, budget), _outputs(question)
+    found = counts(question, budget) | {"samples": samples}
+    if "attitude" in wanted:
+        found |= {"attitudes": 1.0, "attitude samples": samples}
+    found |= effort(question.method, question.times, hypot(*question.angular_velocity), samples)
+    columns = 3 * ("angular_velocity" in wanted) + 4 * ("attitude" in wanted)
+    return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
+
+
+def trajectory_outline(question: TrajectoryRequest) -> TrajectoryRequest:
+    """Return the question about the farthest time alone, in closed form."""
     if "attitude" in _outputs(question):
-        price += 1e-3 + 1e-7 * samples
-    method = question.method
-    if method is None or isinstance(method, ClosedFormEvaluation):
-        return price
-    step = getattr(method, "step", None)
-    # Methods that choose their own steps cannot be priced without taking them, so they never run in the server.
-    return price + (0.02 if step is None else 1e-7 * _span(question) / step)
-
-
-def _span(question: TrajectoryRequest) -> float:
-    times = question.times
-    ends = times if isinstance(times, list) else [times.start, times.stop]
-    return max(ends) - min(ends) + max(map(abs, ends))
+        _require_closed_form(question)
+    changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
+    if question.method is not None and not isinstance(question.method, ClosedFormEvaluation):
+        # A method that is named is answered whatever its error.
+        changes["accuracy"] = 0.5
+    return question.model_copy(update=changes)
 
 
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
@@ -222,7 +229,8 @@ ROTATION = (
         TrajectoryRequest,
         TrajectoryAnswer,
         trajectory,
-        trajectory_price,
+        Priced("rotation_trajectory", trajectory_counts),
+        trajectory_outline,
         examples={
             "t-handle": Example(
                 "a T-handle that tumbles",

@@ -15,6 +15,7 @@ from core.quantities import Tolerance, members_of
 from core.scenes import Scene
 from core.scenes.answer import ConstrainedSystem
 from core.scenes.answer import SceneAnswer as SceneFound
+from service.pricing import Priced, numbers
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.rotation import AccuracyView, ModelView, WorkView
 from service.routing import Answer, Example, Page, Question, Reply
@@ -198,9 +199,25 @@ def _shortened(found: SceneFound, digits: Digits) -> Answer:
     return {"trajectory": columns, "accuracy": covering(found.accuracy, added), "warnings": warnings}
 
 
-def price(question: Any, budget: Budget) -> float:
-    """Return the predicted time of a scene (s)."""
-    return 1e-3 + (0.0 if question.times is None else 4e-7 * sample_count(question.times, budget))
+def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a scene."""
+    samples = 0 if question.times is None else sample_count(question.times, budget)
+    figures = 1.0 if question.outputs is None else len(question.outputs) / 10.0
+    return {
+        "question": 1.0,
+        "figures": figures,
+        "motions": float(samples > 0),
+        "times": samples,
+        **numbers(samples, question.round),
+    }
+
+
+def scene_outline(question: Any) -> Any:
+    """Return the question about the earliest and the latest time alone."""
+    if question.times is None:
+        return question
+    times = question.times if isinstance(question.times, list) else [question.times.start, question.times.stop]
+    return question.model_copy(update={"times": [min(times), max(times)], "round": None})
 
 
 def questions() -> tuple[Question, ...]:
@@ -214,7 +231,8 @@ def questions() -> tuple[Question, ...]:
             request_of(scene),
             SceneAnswer,
             answering(scene),
-            price,
+            Priced("scene_" + name_of(scene).replace("-", "_"), scene_counts),
+            scene_outline,
             examples=EXAMPLES[name_of(scene)],
         )
         for scene in members()

@@ -15,11 +15,13 @@ from core.quantities import AngularVelocity, Energy
 from core.rotation.energy_surface import EnergyEllipsoid
 from core.rotation.initial_states import initial_states
 from core.rotation.polhodes import Polhode, polhode, separatrix
-from service.routes.bodies import properties_of, reading_price
+from service.pricing import Priced
+from service.routes.bodies import counts, properties_of
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Matrix, Request, Vector, View
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
+FINEST_PRICED = 1000
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 
 
@@ -146,15 +148,34 @@ def _curve(curve: Polhode) -> dict[str, Any]:
     return {"regime": curve.regime, "closed": curve.closed, "points": curve.points}
 
 
-def ellipsoid_price(question: EllipsoidRequest, budget: Budget) -> float:
-    """Return the predicted time (s), or refuse more points than one answer may have."""
-    curves = question.polhodes.count if question.polhodes is not None else 1
+def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a surface, or refuse more points than one answer may have."""
+    drawn = question.polhodes.count if question.polhodes is not None else 0
+    curves = (drawn or (question.angular_velocity is not None)) + 2 * question.separatrix
     points = curves * question.points
     if points > budget.samples:
         path = ("polhodes", "count") if question.polhodes is not None else ("points",)
         remedy = "ask for fewer curves, or for fewer points on each"
         raise BudgetExceeded("points", points, budget.samples, path=path, remedy=remedy)
-    return reading_price(question, budget) + 1e-6 * points + 2e-4 * curves + 3e-5 * min(question.resolution, 1000) ** 2
+    # Finer surfaces are refused, at no cost.
+    squares = min(question.resolution, FINEST_PRICED) ** 2
+    return {
+        **counts(question, budget),
+        "curves": curves,
+        "curve points": points,
+        f"squares of {question.layout}": squares,
+    }
+
+
+def ellipsoid_outline(question: EllipsoidRequest) -> EllipsoidRequest:
+    """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
+    changes: dict[str, Any] = {"points": min(question.points, 16)}
+    if question.resolution <= FINEST_PRICED:
+        changes["resolution"] = min(question.resolution, 4)
+    if question.polhodes is not None:
+        few = min(question.polhodes.count, 4)
+        changes["polhodes"] = question.polhodes.model_copy(update={"count": few})
+    return question.model_copy(update=changes)
 
 
 def states(question: StatesRequest, budget: Budget) -> Answer:
@@ -168,9 +189,9 @@ def states(question: StatesRequest, budget: Budget) -> Answer:
     }
 
 
-def states_price(question: StatesRequest, budget: Budget) -> float:
-    """Return the predicted time of drawing starts (s)."""
-    return reading_price(question, budget) + 1e-7 * question.count
+def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of starts to be drawn."""
+    return counts(question, budget) | {"numbers": 3 * question.count}
 
 
 SOURCE_BODY = {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}
@@ -184,7 +205,8 @@ SURFACES = (
         EllipsoidRequest,
         EllipsoidAnswer,
         energy_ellipsoid,
-        ellipsoid_price,
+        Priced("energy_ellipsoid", ellipsoid_counts),
+        ellipsoid_outline,
         examples={
             "triangles": Example(
                 "a coarse mesh with five polhodes and the separatrix",
@@ -217,7 +239,7 @@ SURFACES = (
         StatesRequest,
         StatesAnswer,
         states,
-        states_price,
+        Priced("initial_states", states_counts),
         examples={
             "thirty": Example(
                 "the source's thirty starts", {"body": SOURCE_BODY, "energy": 1.0, "count": 30, "seed": 0}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from math import hypot
 from typing import Annotated
 
 import numpy as np
@@ -10,12 +11,13 @@ from pydantic import Field
 
 from core.bodies import Body
 from core.integration.budget import Budget
-from core.integration.methods import Method
+from core.integration.methods import ClosedFormEvaluation, Method
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
 from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
 from service.figures import Curve, Level, log_log
-from service.routes.bodies import properties_of, reading_price
+from service.pricing import Priced, effort, extreme
+from service.routes.bodies import counts, properties_of
 from service.routes.rotation import T_HANDLE
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
@@ -101,11 +103,24 @@ def _runs(question: WorkPrecisionRequest) -> int:
     return DEFAULT_RUNS if question.methods is None else len(question.methods)
 
 
-def price(question: WorkPrecisionRequest, budget: Budget) -> float:
-    """Return the predicted time (s); methods that choose their steps cannot be priced without taking them."""
-    samples = sample_count(question.times, budget)
-    runs = _runs(question) * (1 + question.repeats)
-    return reading_price(question, budget) + runs * (3e-3 + 1e-6 * samples)
+def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a comparison; a ladder depends on the motion and is counted whole."""
+    samples, repeats = sample_count(question.times, budget), 1 + question.repeats
+    runs = _runs(question)
+    found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
+    if question.methods is None:
+        return found | {"ladders": repeats, "ladder samples": repeats * samples}
+    speed = hypot(*question.angular_velocity)
+    for method in question.methods:
+        for name, count in effort(method, question.times, speed, samples, repeats).items():
+            found[name] = found.get(name, 0.0) + count
+    return found
+
+
+def work_precision_outline(question: WorkPrecisionRequest) -> WorkPrecisionRequest:
+    """Return the question about the closed form at the farthest time alone."""
+    changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
+    return question.model_copy(update=changes)
 
 
 def drawn(answer: Answer) -> bytes:
@@ -136,7 +151,8 @@ WORK_PRECISION = (
         WorkPrecisionRequest,
         WorkPrecisionAnswer,
         answer_work_precision,
-        price,
+        Priced("work_precision", work_precision_counts),
+        work_precision_outline,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
         examples={
             "t-handle": Example(

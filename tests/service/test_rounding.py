@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from decimal import Decimal
 from typing import Any
 
@@ -45,7 +46,7 @@ def test_significant_digits_are_those_of_decimal_rounding(values: list[float], d
         elif 1e-300 < abs(value) < 1e300:
             # Ties and products that are themselves rounded may fall to either side, never further.
             unit = Decimal(10) ** (Decimal(value).adjusted() - digits + 1)
-            assert abs(Decimal(found) - Decimal(value)) <= unit * Decimal("0.5000001")
+            assert abs(Decimal(found) - Decimal(value)) <= unit / 2 + Decimal(math.ulp(value))
 
 
 @settings(deadline=None, derandomize=True, max_examples=300)
@@ -62,8 +63,8 @@ def test_meaningful_digits_move_samples_by_no_more_than_is_stated(
     out, added = rounded(values, "meaningful", error, scale)
     if scale > 0.0:
         moved = np.linalg.norm((out - values) / scale, axis=1).max()
-        assert moved <= added * (1 + 1e-9) + 2**-52
-        assert added <= 0.5 * np.sqrt(3) * error * (1 + 1e-9)
+        assert moved <= added * (1 + 1e-9)
+        assert added <= 0.5 * np.sqrt(3) * error * (1 + 1e-9) + 2**-53
 
 
 def test_digits_beyond_those_of_doubles_leave_the_samples_as_they_are() -> None:

@@ -97,7 +97,7 @@ def test_a_run_that_has_not_converged_is_judged_by_one_that_has(method, step: fl
     true = measured(trajectory.state, problem.exact.sample(times), times)
     assert true.largest <= trajectory.accuracy.error
     assert true.final <= trajectory.accuracy.final_error
-    assert all(notice.code == "accuracy-not-reached" for notice in trajectory.warnings)
+    assert {notice.code for notice in trajectory.warnings} <= {"accuracy-not-reached", "step-shortened"}
 
 
 def test_where_nothing_converges_the_statement_says_that_it_is_uncertain() -> None:
@@ -210,3 +210,13 @@ def test_near_the_separatrix_the_statement_owns_up() -> None:
     trajectory = solve(system, np.linspace(0, 100, 1001), method=DormandPrince853(1e-12))
     assert trajectory.accuracy.error > 0.1
     assert max(trajectory.accuracy.drifts.values()) < 1e-10
+
+
+def test_a_step_longer_than_every_interval_is_said_not_to_be_taken():
+    system = oscillator()
+    codes = [
+        {notice.code for notice in solve(system, np.linspace(0, 1, count), method=RungeKutta4(0.1)).warnings}
+        for count in (101, 6)
+    ]
+    assert "step-shortened" in codes[0]
+    assert "step-shortened" not in codes[1]

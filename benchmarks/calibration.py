@@ -1,0 +1,276 @@
+"""Make service/calibration.json, by which questions are priced, and say how far the prices are from what is measured.
+
+    python -m benchmarks.calibration
+
+Costs per count are fitted to questions of growing size, by least squares of relative errors with no cost below zero.
+They are then tried on the questions of examples/, none of which they were fitted to.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import statistics
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import orjson
+from scipy.optimize import nnls
+
+from benchmarks.machine import RESULTS, described
+from core.bodies.measured import PrincipalMoments
+from core.errors import MechanicsError
+from core.integration.budget import Budget
+from core.integration.error_statements import measured
+from core.integration.methods import (
+    DormandPrince853,
+    ExplicitEuler,
+    ImplicitMidpoint,
+    Lsoda,
+    Radau,
+    RungeKutta4,
+    SymmetricSplitting,
+)
+from core.rotation.torque_free import TorqueFree
+from service import pricing
+from service.answering import Answering
+from service.reading import Limits
+from service.routes import questions
+from service.routes.rotation import T_HANDLE
+from service.routing import Question
+from service.writing import written
+
+ROOT = Path(__file__).parents[1]
+TARGET = ROOT / "service" / "calibration.json"
+BODIES: list[dict[str, Any]] = [
+    T_HANDLE,
+    {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
+    {"kind": "inertia-tensor", "tensor": [[2.0, 0.1, 0.2], [0.1, 2.5, 0.3], [0.2, 0.3, 1.8]]},
+]
+STARTS = [[1.0, 10.0, 1.0], [0.3, 1.0, 0.2], [0.5, 0.1, 2.0]]
+STEPS = (0.02, 0.005, 0.001)
+TOLERANCES = (1e-4, 1e-7, 1e-10, 1e-13)
+SIZES = (1, 30, 1000, 30_000)
+FIXED = ("explicit-euler", "runge-kutta-4", "implicit-midpoint", "symmetric-splitting")
+CHOOSING = ("dormand-prince-853", "lsoda", "radau")
+KINDS = {
+    "explicit-euler": ExplicitEuler,
+    "runge-kutta-4": RungeKutta4,
+    "implicit-midpoint": ImplicitMidpoint,
+    "symmetric-splitting": SymmetricSplitting,
+    "dormand-prince-853": DormandPrince853,
+    "lsoda": Lsoda,
+    "radau": Radau,
+}
+
+
+def points(count: int) -> dict[str, Any]:
+    """Return a body of point masses."""
+    places = np.random.default_rng(0).normal(size=(count, 3)).tolist()
+    return {"kind": "point-masses", "masses": [1.0] * count, "positions": places}
+
+
+def span(count: int, stop: float = 20.0) -> dict[str, float]:
+    """Return evenly spaced times."""
+    return {"start": 0.0, "stop": stop, "count": count}
+
+
+def methods() -> list[dict[str, Any]]:
+    """Return every integrator with its settings."""
+    fixed = [{"kind": kind, "step": step} for kind in FIXED for step in STEPS]
+    return fixed + [{"kind": kind, "tolerance": tolerance} for kind in CHOOSING for tolerance in TOLERANCES]
+
+
+def variants() -> dict[str, list[dict[str, Any]]]:
+    """Return questions of growing size, by operation."""
+    free = {"body": T_HANDLE, "angular_velocity": STARTS[0]}
+    pairs = [{"body": body, "angular_velocity": start} for body, start in zip(BODIES, STARTS, strict=True)]
+    bodies = [{"body": body} for body in [*BODIES, points(10), points(1000), points(20_000)]]
+    trajectory = [pair | {"times": span(count)} | more for pair in pairs for count in SIZES
+                  for more in ({}, {"attitude": [1.0, 0.0, 0.0, 0.0]}, {"round": 4})]  # fmt: skip
+    trajectory += [free | {"times": span(count, 10.0), "method": method} for method in methods() for count in (3, 3000)]
+    trajectory += [{"body": points(20_000), "angular_velocity": STARTS[1], "times": span(3)}]
+    many = {"body": BODIES[1]}
+    ensemble = [
+        many | {"angular_velocities": [STARTS[1]] * m, "times": span(n)} for m, n in ((1, 1), (30, 30), (30, 3000))
+    ]
+    ensemble += [
+        many | {"sample": {"energy": 1.0, "count": m, "seed": 0}, "times": span(n)} for m, n in ((100, 10), (9, 9))
+    ]
+    ensemble += [
+        many | {"angular_velocities": [STARTS[1]] * 9, "times": span(30), "method": method} for method in methods()
+    ]
+    surface = [
+        many | {"energy": 1.0, "resolution": n, "layout": layout}
+        for n in (2, 16, 100)
+        for layout in ("triangles", "grid")
+    ]
+    surface += [many | {"energy": 1.0, "resolution": 2, "polhodes": {"count": n, "seed": 1}, "points": k, "separatrix": True}
+                for n in (1, 30) for k in (16, 1000)]  # fmt: skip
+    compared = [
+        free | {"times": span(n, 5.0), "methods": [method, {"kind": "closed-form"}]}
+        for method in methods()
+        for n in (3, 300)
+    ]
+    compared += [pair | {"times": span(n, 10.0)} for pair in pairs[:2] for n in (3, 300)]
+    found = {
+        "mass_properties": bodies,
+        "rotation_trajectory": trajectory,
+        "rotation_ensemble": ensemble,
+        "precession": pairs
+        + [
+            pair | {"measure": {"method": method, "duration": 10.0, "samples": 300, "tolerance": 0.035}}
+            for pair in pairs[1:2]
+            for method in methods()
+        ],  # fmt: skip
+        "stability": [{"body": body} for body in BODIES],
+        "energy_ellipsoid": surface,
+        "initial_states": [many | {"energy": 1.0, "count": n} for n in SIZES],
+        "work_precision": compared,
+    }
+    for route in questions():
+        own = [dict(example.question) for example in route.examples.values()]
+        if route.operation_id.startswith("scene_"):
+            grown = [
+                entry | {"times": span(n, entry["times"]["stop"])} for entry in own if "times" in entry for n in SIZES
+            ]
+            own += grown + [entry | {"round": 5} for entry in grown]
+        found.setdefault(route.operation_id, []).extend(own)
+    return found
+
+
+def measured_cost(answering: Answering, route: Question, question: dict[str, Any]) -> tuple[float, int, float]:
+    """Return the median time of an answer (s), its length, and the median time of writing it (s)."""
+    body = orjson.dumps(question)
+    answer = answering.answer(route, answering.read(route, body))
+    spent, writing, text = [], [], written(answer)
+    begun = time.perf_counter()
+    while len(spent) < 3 or (len(spent) < 30 and time.perf_counter() - begun < 0.05):
+        start = time.perf_counter()
+        answer = answering.answer(route, answering.read(route, body))
+        middle = time.perf_counter()
+        text = written(answer)
+        spent.append(middle - start)
+        writing.append(time.perf_counter() - middle)
+    return statistics.median(spent), len(text), statistics.median(writing)
+
+
+def fitted(rows: list[dict[str, float]], values: list[float]) -> dict[str, float]:
+    """Return costs per count by relative least squares, none below zero."""
+    names = sorted({name for row in rows for name in row})
+    matrix = np.array([[row.get(name, 0.0) for name in names] for row in rows]) / np.array(values)[:, None]
+    size = np.maximum(np.abs(matrix).max(axis=0), 1e-300)
+    costs = nnls(matrix / size, np.ones(len(values)))[0] / size
+    return {name: float(f"{cost:.4g}") for name, cost in zip(names, costs, strict=True) if cost > 0.0}
+
+
+def method_table() -> dict[str, dict[str, float]]:
+    """Return evaluations and errors of every integrator on free rotations, as straight lines between logarithms."""
+    table = {}
+    times = np.linspace(0.0, 20.0, 200)
+    for kind, method in KINDS.items():
+        settings = STEPS if kind in FIXED else TOLERANCES
+        work, errors = [], []
+        for body, start in zip(BODIES[:2], STARTS[:2], strict=True):
+            system = TorqueFree(PrincipalMoments(tuple(body["moments"])).mass_properties(), np.array(start))
+            exact, speed = system.closed_form().sample(times), math.hypot(*start)
+            for setting in settings:
+                try:
+                    run = method(setting).integrate(system, times)
+                except MechanicsError:
+                    continue
+                turned = speed * 20.0 + 1.0
+                small = setting * speed if kind in FIXED else setting
+                per = pricing.steps(times.tolist(), setting) if kind in FIXED else turned
+                work.append((math.log(setting), math.log(run.work.evaluations / per)))
+                error = measured(run.states, exact, times).largest
+                if 1e-13 < error < 0.3:
+                    errors.append((math.log(small), math.log(error / turned)))
+        slope, start_at = np.polyfit(*np.array(errors).T, 1)
+        entry = {"error": float(start_at), "error_exponent": float(slope)}
+        if kind in FIXED:
+            entry["evaluations"] = math.exp(statistics.mean(value for _, value in work))
+        else:
+            slope, start_at = np.polyfit(*np.array(work).T, 1)
+            entry |= {"evaluations": float(start_at), "exponent": float(slope)}
+        table[kind] = {name: round(value, 4) for name, value in entry.items()}
+    return table
+
+
+def held_out() -> list[tuple[str, dict[str, Any]]]:
+    """Return the questions of examples/ with the paths that they are for."""
+    files = sorted((ROOT / "examples").rglob("*.json"))
+    found = []
+    for file in files:
+        document = json.loads(file.read_text(encoding="utf-8"))
+        path = "/v1/" + str(file.parent.relative_to(ROOT / "examples"))
+        found.append((path if file.parent != ROOT / "examples" else "/v1/rotation/trajectory", document))
+    return found
+
+
+def main() -> None:
+    """Measure, fit, write, and compare with what was not fitted."""
+    routes = {route.operation_id: route for route in questions()}
+    answering, budget = Answering(routes.values(), Budget(), Limits()), Budget()
+    table: dict[str, Any] = {"machine": described("numpy", "numba"), "seconds": {}, "bytes": {}, "writing": 0.0}
+    table["methods"] = method_table()
+    TARGET.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    pricing.calibration.cache_clear()
+    lengths, writings = [], []
+    for operation, asked in variants().items():
+        rows, times, sizes = [], [], []
+        route = routes[operation]
+        for question in asked:
+            if not isinstance(route.price, pricing.Priced):
+                continue
+            try:
+                seconds, length, writing = measured_cost(answering, route, question)
+            except MechanicsError:
+                continue
+            rows.append(dict(route.price.counts(answering.read(route, orjson.dumps(question)), budget)))
+            times.append(seconds)
+            sizes.append(float(length))
+            if length > 20_000:
+                lengths.append(length)
+                writings.append(writing)
+        if rows:
+            table["seconds"][operation] = fitted(rows, times)
+            table["bytes"][operation] = fitted(rows, sizes)
+            print(operation, len(rows), table["seconds"][operation], flush=True)
+    table["writing"] = float(f"{statistics.median(w / n for w, n in zip(writings, lengths, strict=True)):.3g}")
+    TARGET.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    pricing.calibration.cache_clear()
+    compare(answering)
+
+
+def compare(answering: Answering) -> None:
+    """Write and print predicted over measured cost of questions to which nothing was fitted."""
+    routes = {route.path: route for route in questions()}
+    result = []
+    for path, question in held_out():
+        route = routes.get(path)
+        if route is None or not isinstance(route.price, pricing.Priced):
+            continue
+        try:
+            read = answering.read(route, orjson.dumps(question))
+            seconds, length, writing = measured_cost(answering, route, question)
+        except Exception as refused:
+            print(path, "refused:", type(refused).__name__)
+            continue
+        price, size = route.price(read, Budget()), route.price.size(read, Budget())
+        price += size * pricing.calibration().writing
+        entry = {"path": path, "milliseconds": round(1e3 * (seconds + writing), 3), "bytes": length}
+        entry |= {"time_ratio": round(price / (seconds + writing), 3), "bytes_ratio": round(size / length, 3)}
+        result.append(entry)
+        print(entry)
+    within = [sum(0.5 <= entry[name] <= 2.0 for entry in result) for name in ("time_ratio", "bytes_ratio")]
+    print(f"within a factor of 2: time {within[0]}, bytes {within[1]} of {len(result)}")
+    (RESULTS / "calibration.json").write_text(
+        json.dumps({"machine": described("numpy"), "questions": result}, indent=1) + "\n"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,255 @@
+"""Requests per second of a small question, relative to a bare ASGI application under the same server.
+
+Run: python -m benchmarks.service_speed [rounds] [seconds]. Everything stays on 127.0.0.1. In each round every server is
+driven for the same time, one after the other, and ratios are taken within a round, so that a drifting machine drifts
+for all. "transport" answers the question from a constant: all that is left is parsing, limits, metrics, writing. The
+load comes from wrk where it is installed, otherwise from threads of http.client, which flatter the slow servers.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import http.client
+import json
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import uvicorn
+import uvloop
+
+from benchmarks.machine import RESULTS, described
+from service.routes.precession import PRECESSION
+from service.routing import Question
+
+QUESTION = PRECESSION[0]
+BODY = json.dumps(
+    {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}, "angular_velocity": [0.1, 1.0, 0.1]}
+).encode()
+CONNECTIONS = 16
+TRANSPORT = "benchmarks.service_speed:transport"
+REAL = "benchmarks.service_speed:real"
+
+
+def real() -> tuple[Question, ...]:
+    """Return a table with the question as it is."""
+    return (QUESTION,)
+
+
+def transport() -> tuple[Question, ...]:
+    """Return a table with the question, whose answer is a constant of the same content."""
+    content = _content()
+    return (replace(QUESTION, handle=lambda question, budget: content),)
+
+
+def _content() -> dict[str, Any]:
+    from core.integration.budget import Budget
+    from service.answering import Answering
+    from service.reading import Limits
+
+    answering = Answering(real(), Budget(), Limits())
+    return QUESTION.handle(answering.read(QUESTION, BODY), Budget())
+
+
+def _answer() -> bytes:
+    from core.integration.budget import Budget
+    from service.answering import Answering
+    from service.reading import Limits
+    from service.writing import written
+
+    answering = Answering(real(), Budget(), Limits())
+    return written(answering.answer(QUESTION, answering.read(QUESTION, BODY)))
+
+
+def bare() -> Any:
+    """Return an application that reads the body and answers bytes of the same size."""
+    body = _answer()
+    headers = [(b"content-type", b"application/json"), (b"content-length", b"%d" % len(body))]
+
+    async def app(scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] == "lifespan":
+            await receive()
+            await send({"type": "lifespan.startup.complete"})
+            await receive()
+            await send({"type": "lifespan.shutdown.complete"})
+            return
+        while (await receive()).get("more_body"):
+            pass
+        await send({"type": "http.response.start", "status": 200, "headers": headers})
+        await send({"type": "http.response.body", "body": body})
+
+    return app
+
+
+def ours(table: str, cached: int) -> Any:
+    """Return the service with every limit, metric and header on."""
+    from service.app import Service
+    from service.settings import Settings
+
+    return Service(Settings(cached_answers=cached, compute_workers=1, inline_seconds=1.0), table)
+
+
+def idiomatic(table: str) -> Any:
+    """Return the question as FastAPI's tutorial would serve it: a model in, a model out, nothing else."""
+    from fastapi import FastAPI
+
+    from core.integration.budget import Budget
+
+    route = real()[0] if table == REAL else transport()[0]
+    signature = {"source": "polhode", "version": "0"}
+    app = FastAPI()
+
+    async def endpoint(question: Any) -> Any:
+        answer = dict(route.handle(question, Budget()))
+        return {"signature": signature, **answer, "warnings": []}
+
+    endpoint.__annotations__["question"] = route.question
+    app.post(QUESTION.path, response_model=route.answer)(endpoint)
+    return app
+
+
+SERVERS: dict[str, Callable[[], Any]] = {
+    "bare": bare,
+    "transport": lambda: ours(TRANSPORT, 0),
+    "transport, cache": lambda: ours(TRANSPORT, 1024),
+    "transport, FastAPI": lambda: idiomatic(TRANSPORT),
+    "real": lambda: ours(REAL, 0),
+    "real, cache": lambda: ours(REAL, 1024),
+    "real, FastAPI": lambda: idiomatic(REAL),
+}
+
+
+def serve(name: str) -> None:
+    """Serve one of the applications and print its port."""
+    config = uvicorn.Config(
+        SERVERS[name](),
+        host="127.0.0.1",
+        port=0,
+        loop="uvloop",
+        http="httptools",
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,
+    )
+    server = uvicorn.Server(config)
+
+    async def run() -> None:
+        task = asyncio.ensure_future(server.serve())
+        while not server.started:
+            await asyncio.sleep(0.01)
+        print(server.servers[0].sockets[0].getsockname()[1], flush=True)
+        await task
+
+    uvloop.run(run())
+
+
+@contextlib.contextmanager
+def running(name: str) -> Iterator[int]:
+    """Run a server in a process of its own; gives its port."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "benchmarks.service_speed", "--serve", name], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert process.stdout is not None
+        port = int(process.stdout.readline())
+        _ask(port)
+        yield port
+    finally:
+        process.terminate()
+        process.wait(30)
+
+
+def _ask(port: int) -> bytes:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    connection.request("POST", QUESTION.path, BODY, {"content-type": "application/json"})
+    response = connection.getresponse()
+    content = response.read()
+    assert response.status == 200, content[:300]
+    connection.close()
+    return content
+
+
+def with_wrk(port: int, seconds: float, script: Path) -> float:
+    """Return requests per second as wrk counts them."""
+    url = f"http://127.0.0.1:{port}{QUESTION.path}"
+    command = ["wrk", "-t1", f"-c{CONNECTIONS}", f"-d{seconds:g}s", "-s", str(script), url]
+    out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert "Non-2xx" not in out, out
+    return float(next(line for line in out.splitlines() if "Requests/sec" in line).split(":")[1])
+
+
+def with_threads(port: int, seconds: float, script: Path) -> float:
+    """Return requests per second of a few threads."""
+    counts: list[int] = []
+    until = time.monotonic() + seconds
+
+    def drive() -> None:
+        connection = http.client.HTTPConnection("127.0.0.1", port)
+        done = 0
+        while time.monotonic() < until:
+            connection.request("POST", QUESTION.path, BODY, {"content-type": "application/json"})
+            connection.getresponse().read()
+            done += 1
+        counts.append(done)
+
+    threads = [threading.Thread(target=drive) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return sum(counts) / seconds
+
+
+def main(rounds: int = 9, seconds: float = 1.0) -> None:
+    """Measure and write the result."""
+    rates: dict[str, list[float]] = {name: [] for name in SERVERS}
+    before = os.getloadavg()
+    drive = with_wrk if shutil.which("wrk") else with_threads
+    with contextlib.ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        script = folder / "post.lua"
+        quoted = BODY.decode().replace("\\", "\\\\").replace("'", "\\'")
+        script.write_text(f"wrk.method='POST'\nwrk.body='{quoted}'\nwrk.headers['Content-Type']='application/json'\n")
+        ports = {name: stack.enter_context(running(name)) for name in SERVERS}
+        for port in ports.values():
+            drive(port, 1.0, script)
+        for _ in range(rounds):
+            for name, port in ports.items():
+                rates[name].append(drive(port, seconds, script))
+        bytes_out = len(_ask(ports["real"]))
+    ratios = {
+        name: statistics.median(own / base for own, base in zip(found, rates["bare"], strict=True))
+        for name, found in rates.items()
+    }
+    result = {
+        "machine": described("uvicorn", "fastapi", "starlette", "uvloop", "httptools", "pydantic", "orjson"),
+        "load_average": {"before": before, "after": os.getloadavg()},
+        "driver": drive.__name__,
+        "rounds": rounds,
+        "seconds_per_round": seconds,
+        "connections": CONNECTIONS,
+        "bytes_in": len(BODY),
+        "bytes_out": bytes_out,
+        "requests_per_second": {name: round(statistics.median(found)) for name, found in rates.items()},
+        "relative_to_bare": {name: round(ratio, 3) for name, ratio in ratios.items()},
+    }
+    (RESULTS / "service_speed.json").write_text(json.dumps(result, indent=2) + "\n")
+    print(json.dumps(result, indent=2))
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--serve"]:
+        serve(sys.argv[2])
+    else:
+        main(*(kind(value) for kind, value in zip((int, float), sys.argv[1:], strict=False)))

@@ -1,0 +1,159 @@
+"""What a question will cost, before it is answered: counts that the question tells, times measured costs per count.
+
+The costs stand in a table that `benchmarks.calibration` measures and writes. Times are the measuring machine's; counts
+and bytes hold on every machine.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from math import ceil, exp, log
+from typing import Any
+
+from core.integration.budget import Budget
+
+Counts = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The measured table.
+
+    Attributes
+    ----------
+    seconds, bytes : mapping of str to mapping of str to float
+        By operation, cost per count: of computing the answer, and of the answer as JSON.
+    writing : float
+        Time per byte of writing an answer (s).
+    methods : mapping of str to mapping of str to float
+        By kind of method: ``evaluations`` per step, or logarithms of ``evaluations`` per radian turned at tolerance one
+        and their ``exponent``; ``error`` and ``error_exponent``, per radian turned, likewise.
+    """
+
+    seconds: Mapping[str, Counts]
+    bytes: Mapping[str, Counts]
+    writing: float
+    methods: Mapping[str, Mapping[str, float]]
+
+
+@cache
+def calibration() -> Calibration:
+    """Return the committed table."""
+    table = json.loads(resources.files("service").joinpath("calibration.json").read_text(encoding="utf-8"))
+    return Calibration(**{name: table[name] for name in ("seconds", "bytes", "writing", "methods")})
+
+
+@dataclass(frozen=True)
+class Priced:
+    """A route's price: the operation's name in the table, and what is counted of a question.
+
+    Attributes
+    ----------
+    counts : callable
+        Refuses what exceeds the budget.
+    """
+
+    operation: str
+    counts: Callable[[Any, Budget], Counts]
+
+    def __call__(self, question: Any, budget: Budget) -> float:
+        """Return the predicted time of computing an answer (s)."""
+        return _sum(calibration().seconds[self.operation], self.counts(question, budget))
+
+    def size(self, question: Any, budget: Budget) -> float:
+        """Return the predicted length of an answer as JSON (bytes)."""
+        return _sum(calibration().bytes[self.operation], self.counts(question, budget))
+
+
+def _sum(costs: Counts, counts: Counts) -> float:
+    return sum(costs.get(name, 0.0) * count for name, count in counts.items())
+
+
+def setting(method: Any) -> tuple[str, float]:
+    """Return the name and the value of a method's setting."""
+    name = "step" if hasattr(method, "step") else "tolerance"
+    return name, getattr(method, name)
+
+
+def evaluations(method: Any, times: Sequence[float] | Any, speed: float) -> float:
+    """Return how often a method is predicted to evaluate the equation of a rotation with `speed` (rad/s)."""
+    if method is None or method.kind == "closed-form":
+        return 0.0
+    name, value = setting(method)
+    costs = calibration().methods[method.kind]
+    if name == "step":
+        return costs["evaluations"] * steps(times, value)
+    return _power(costs["evaluations"] + costs["exponent"] * log(value)) * (speed * extent(times) + 1.0)
+
+
+def error_of(method: Any, times: Sequence[float] | Any, speed: float) -> float:
+    """Return the order of magnitude of a method's error on a rotation, at most 2."""
+    name, value = setting(method)
+    costs = calibration().methods[method.kind]
+    # A step is judged by how far the body turns meanwhile.
+    small = value * speed if name == "step" else value
+    if small == 0.0 or speed == 0.0:
+        return 0.0
+    return min(2.0, _power(costs["error"] + costs["error_exponent"] * log(small)) * (speed * farthest(times) + 1.0))
+
+
+def _power(logarithm: float) -> float:
+    return exp(min(700.0, logarithm))
+
+
+def effort(method: Any, times: Any, speed: float, samples: float, members: int = 1) -> dict[str, float]:
+    """Return what is counted of a method that is run."""
+    if method is None or method.kind == "closed-form":
+        return {}
+    kind = method.kind
+    return {
+        f"runs of {kind}": members,
+        f"samples of {kind}": samples * members,
+        f"evaluations of {kind}": evaluations(method, times, speed) * members,
+    }
+
+
+def steps(times: Any, step: float) -> float:
+    """Return the steps of at most `step` from the start to every time, on either side."""
+    if isinstance(times, list):
+        ordered = sorted(set(times))
+        ahead, behind = [t for t in ordered if t > 0.0], [-t for t in reversed(ordered) if t < 0.0]
+        gaps = [b - a for side in (ahead, behind) for a, b in zip([0.0, *side], side, strict=False)]
+        return sum(_whole(gap / step) for gap in gaps)
+    gap: float = abs(times.stop - times.start) / max(1, times.count - 1)
+    outside: float = 0.0 if times.start * times.stop <= 0.0 else min(abs(times.start), abs(times.stop))
+    intervals: int = times.count - 1
+    return intervals * _whole(gap / step) + (_whole(outside / step) if outside else 0.0)
+
+
+def _whole(number: float) -> float:
+    return float(ceil(number)) if number < 1e15 else number
+
+
+def extent(times: Any) -> float:
+    """Return how far a method marches, to both sides of the start (s)."""
+    ends = _ends(times)
+    return max(0.0, *ends) - min(0.0, *ends)
+
+
+def farthest(times: Any) -> float:
+    """Return the largest distance from the start (s)."""
+    return max(map(abs, _ends(times)))
+
+
+def extreme(times: Any) -> float:
+    """Return the time that is farthest from the start (s)."""
+    return max(_ends(times), key=abs)
+
+
+def _ends(times: Any) -> list[float]:
+    return times if isinstance(times, list) else [times.start, times.stop]
+
+
+def numbers(count: float, digits: Any) -> dict[str, float]:
+    """Return what is counted of the numbers in an answer: how many, or the digits if fewer are wanted."""
+    return {"digits": count * digits} if isinstance(digits, int) else {"numbers": count}

@@ -1,0 +1,293 @@
+"""Free rotation, precession and stability to any number of digits."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, Field
+
+from core.bodies.principal_inertia import Symmetry
+from core.certified.exact_inertia import ExactInertia
+from core.certified.exact_start import Regime
+from core.certified.free_rotation import IDENTITY, CertifiedRotation
+from core.certified.precession import certified_precession
+from core.certified.stability import certified_stability
+from core.integration.budget import Budget
+from core.notices import Notice
+from service.numerals import (
+    AngularVelocityInNumerals,
+    BodyInNumerals,
+    DigitCount,
+    QuaternionInNumerals,
+    RateInNumerals,
+    TimesInNumerals,
+    inertia_of,
+    instants,
+)
+from service.routes.certified import (
+    AccuracyInDigits,
+    InDigits,
+    PerSample,
+    accuracy,
+    affordable,
+    longest,
+    times_written,
+    work,
+)
+from service.routes.rotation import T_HANDLE, ModelView, Output, WorkView
+from service.routing import Answer, Example
+from service.schemas import Envelope, Request, View
+
+RATES = PerSample(2e-5, 6e-8, 1.7e-10)
+RATES_AND_ATTITUDES = PerSample(5e-5, 1.2e-7, 8.5e-10)
+
+
+class TrajectoryInDigits(Request):
+    """A body, how it turns at t = 0, and the times at which its motion is wanted to a number of digits."""
+
+    body: BodyInNumerals
+    angular_velocity: AngularVelocityInNumerals = Field(description="At t = 0, in body axes (rad/s).")
+    attitude: QuaternionInNumerals | None = Field(
+        default=None,
+        description="Body to space at t = 0, [w, x, y, z]; of any length but zero. If it is given, the attitude at "
+        "every time is answered.",
+    )
+    times: TimesInNumerals = Field(description="Measured from the given state, of either sign, in any order (s).")
+    digits: DigitCount
+    outputs: list[Output] | None = Field(
+        default=None,
+        min_length=1,
+        description="What to answer; default: time, angular_velocity, and attitude if one was given.",
+    )
+
+
+class TrajectoryAnswerInDigits(Envelope):
+    """Samples of a free rotation, numbers as decimal strings."""
+
+    model: ModelView
+    method: Literal["closed-form"]
+    period: str | None = Field(description="Of the angular velocity in the body (s); null where there is none.")
+    flip_interval: str | None = Field(description="Between sign changes along the middle axis (s).")
+    energy: str = Field(description="J")
+    angular_momentum: str = Field(description="Magnitude (kg m^2/s).")
+    accuracy: AccuracyInDigits
+    work: WorkView
+    ended: Literal["horizon"]
+    time: list[str] | None = Field(default=None, description="s")
+    angular_velocity: list[list[str]] | None = Field(
+        default=None, description="One row per time, in body axes (rad/s)."
+    )
+    attitude: list[list[str]] | None = Field(default=None, description="One row per time, [w, x, y, z], body to space.")
+
+
+class PrecessionInDigits(Request):
+    """A body and how it turns at t = 0, the answer wanted to a number of digits."""
+
+    body: BodyInNumerals
+    angular_velocity: AngularVelocityInNumerals = Field(description="At t = 0, in body axes (rad/s).")
+    digits: DigitCount
+
+
+class PrecessionAnswerInDigits(Envelope):
+    """Rates and angles as decimal strings; null where the motion has no such thing."""
+
+    symmetry: Symmetry
+    regime: Regime = Field(description="Of the angular velocity in the body.")
+    body_rate: str | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
+    space_rate: str | None = Field(description="L/I (rad/s).")
+    period: str | None = Field(description="Of the angular velocity in the body (s).")
+    flip_interval: str | None = Field(description="Between sign changes along the middle axis (s).")
+    axis_to_angular_momentum: str | None = Field(description="rad")
+    axis_to_angular_velocity: str | None = Field(description="Half-angle of the body cone (rad).")
+    precession_per_period: str | None = Field(description="Not reduced modulo 2 pi (rad).")
+    mean_precession_rate: str | None = Field(description="Of the axis about the angular momentum (rad/s).")
+    absent: dict[str, str] = Field(description="Why a figure is null.")
+    accuracy: AccuracyInDigits
+
+
+class StabilityInDigits(Request):
+    """A body, and how fast it turns about its principal axes, the answer wanted to a number of digits."""
+
+    body: BodyInNumerals
+    rate: RateInNumerals = Field(default=1.0, description="About each principal axis in turn (rad/s).")
+    digits: DigitCount
+
+
+class EquilibriumInDigits(View):
+    """A rotation about a principal axis."""
+
+    moment: str
+    eigenvalues: list[tuple[str, str]] = Field(description="Real and imaginary parts (1/s).")
+    kind: Literal["center", "saddle", "degenerate"]
+    growth_rate: str = Field(description="Exponential rate of a small disturbance (1/s).")
+
+
+class StabilityAnswerInDigits(Envelope):
+    """The rotations about the three principal axes, in ascending order of moments."""
+
+    symmetry: Symmetry
+    equilibria: list[EquilibriumInDigits]
+    accuracy: AccuracyInDigits
+
+
+def answer_trajectory(question: TrajectoryInDigits, budget: Budget) -> Answer:
+    """Answer with samples of the motion."""
+    digits, wanted = question.digits, _outputs(question)
+    samples = affordable(question.times, digits, _numbers(wanted), budget)
+    times = instants(question.times)
+    motion = CertifiedRotation.of(inertia_of(question.body), question.angular_velocity)
+    fields: Answer = {
+        "model": motion.model,
+        "method": "closed-form",
+        "period": motion.period(digits),
+        "flip_interval": motion.flip_interval(digits),
+        "energy": motion.energy(digits),
+        "angular_momentum": motion.angular_momentum(digits),
+        "accuracy": accuracy(digits),
+        "work": work(samples),
+        "ended": "horizon",
+        "warnings": _notices(motion.inertia),
+    }
+    if "time" in wanted:
+        fields["time"] = times_written(question.times, digits)
+    if "attitude" in wanted:
+        rates, attitudes = motion.trajectory(times, digits, question.attitude or IDENTITY)
+        fields |= {"angular_velocity": rates} if "angular_velocity" in wanted else {}
+        fields["attitude"] = attitudes
+    elif "angular_velocity" in wanted:
+        fields["angular_velocity"] = motion.angular_velocity(times, digits)
+    return fields
+
+
+def answer_precession(question: PrecessionInDigits, budget: Budget) -> Answer:
+    """Answer with the figures."""
+    motion = CertifiedRotation.of(inertia_of(question.body), question.angular_velocity)
+    found = certified_precession(motion, question.digits)
+    named = {"momentum_angle": "axis_to_angular_momentum", "spin_angle": "axis_to_angular_velocity"}
+    return {
+        "symmetry": motion.inertia.symmetry,
+        "regime": found.regime,
+        "body_rate": found.body_rate,
+        "space_rate": found.space_rate,
+        "period": found.period,
+        "flip_interval": found.flip_interval,
+        "axis_to_angular_momentum": found.momentum_angle,
+        "axis_to_angular_velocity": found.spin_angle,
+        "precession_per_period": found.precession_per_period,
+        "mean_precession_rate": found.mean_precession_rate,
+        "absent": {named.get(name, name): reason for name, reason in found.absent.items()},
+        "accuracy": accuracy(question.digits),
+        "warnings": _notices(motion.inertia),
+    }
+
+
+def answer_stability(question: StabilityInDigits, budget: Budget) -> Answer:
+    """Answer with the rotations about the principal axes."""
+    inertia = inertia_of(question.body)
+    return {
+        "symmetry": inertia.symmetry,
+        "equilibria": [
+            {
+                "moment": found.moment,
+                "eigenvalues": found.eigenvalues,
+                "kind": found.kind,
+                "growth_rate": found.growth_rate,
+            }
+            for found in certified_stability(inertia, question.rate, question.digits)
+        ],
+        "accuracy": accuracy(question.digits),
+        "warnings": _notices(inertia),
+    }
+
+
+def _notices(inertia: ExactInertia) -> tuple[Notice, ...]:
+    if inertia.physical:
+        return ()
+    detail = "one moment is larger than the sum of the other two, which no distribution of positive mass has"
+    return (Notice("unphysical-inertia", detail, ("body",)),)
+
+
+def _outputs(question: TrajectoryInDigits) -> tuple[Output, ...]:
+    if question.outputs is not None:
+        return tuple(question.outputs)
+    return ("time", "angular_velocity") if question.attitude is None else ("time", "angular_velocity", "attitude")
+
+
+def _numbers(wanted: tuple[Output, ...]) -> int:
+    return 7 if "attitude" in wanted else 3
+
+
+def trajectory_price(question: TrajectoryInDigits, budget: Budget) -> float:
+    """Return the predicted time of a trajectory (s)."""
+    wanted = _outputs(question)
+    samples = affordable(question.times, question.digits, _numbers(wanted), budget)
+    cost = RATES_AND_ATTITUDES if "attitude" in wanted else RATES
+    return _body_price(question.body) + cost.price(question.digits, samples)
+
+
+def price(question: PrecessionInDigits | StabilityInDigits, budget: Budget) -> float:
+    """Return the predicted time of what has no samples (s)."""
+    return _body_price(question.body) + RATES_AND_ATTITUDES.price(question.digits, 10)
+
+
+def _body_price(body: BaseModel) -> float:
+    """Return the predicted time to sum a body in rational arithmetic (s)."""
+    positions: Any = getattr(body, "positions", ())
+    length = max((longest(row) for row in positions), default=0)
+    return len(positions) * (1.2e-4 + 8.5e-9 * length * length)
+
+
+EXACT_T_HANDLE = {"kind": "principal-moments", "moments": ["837.2", "714", "437.7"]}
+
+TRAJECTORY = InDigits(
+    TrajectoryInDigits,
+    TrajectoryAnswerInDigits,
+    answer_trajectory,
+    trajectory_price,
+    {
+        "digits": Example(
+            "the T-handle to 50 digits, every one of them proven",
+            {
+                "body": T_HANDLE,
+                "angular_velocity": [1.0, 10.0, 1.0],
+                "attitude": [1.0, 0.0, 0.0, 0.0],
+                "times": {"start": 0.0, "stop": 20.0, "count": 5},
+                "digits": 50,
+            },
+        ),
+        "decimal-strings": Example(
+            "moments that are exactly what they say: 837.2 is no double",
+            {
+                "body": EXACT_T_HANDLE,
+                "angular_velocity": ["0.1", "10", "0.1"],
+                "times": ["0.1", "1e6"],
+                "digits": 30,
+            },
+        ),
+    },
+)
+
+PRECESSION_IN_DIGITS = InDigits(
+    PrecessionInDigits,
+    PrecessionAnswerInDigits,
+    answer_precession,
+    price,
+    {
+        "digits": Example(
+            "a spinning coin, 100 digits of its precession",
+            {
+                "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
+                "angular_velocity": ["0.1", "0", "1"],
+                "digits": 100,
+            },
+        )
+    },
+)
+
+STABILITY_IN_DIGITS = InDigits(
+    StabilityInDigits,
+    StabilityAnswerInDigits,
+    answer_stability,
+    price,
+    {"digits": Example("a T-handle, 40 digits", {"body": EXACT_T_HANDLE, "rate": "10", "digits": 40})},
+)
