@@ -23,12 +23,14 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import uvicorn
 import uvloop
+from pydantic import BaseModel, Field
 
 from benchmarks.machine import RESULTS, described
+from core.bodies.measured import PrincipalMoments
 from service.routes.precession import PRECESSION
 from service.routing import Question
 
@@ -37,6 +39,7 @@ BODY = json.dumps(
     {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}, "angular_velocity": [0.1, 1.0, 0.1]}
 ).encode()
 CONNECTIONS = 16
+Moment = Annotated[float, Field(gt=0)]
 TRANSPORT = "benchmarks.service_speed:transport"
 REAL = "benchmarks.service_speed:real"
 
@@ -99,6 +102,26 @@ def ours(table: str, cached: int) -> Any:
     return Service(Settings(cached_answers=cached, compute_workers=1, inline_seconds=1.0), table)
 
 
+class AskedBody(BaseModel):
+    """A body, as FastAPI's tutorial would declare it."""
+
+    kind: Literal["principal-moments"]
+    moments: tuple[Moment, Moment, Moment]
+
+
+class Asked(BaseModel):
+    """The question, likewise."""
+
+    body: AskedBody
+    angular_velocity: tuple[float, float, float]
+
+
+def asked(question: Asked) -> dict[str, Any]:
+    """Return the fields of the question that core is asked."""
+    body = PrincipalMoments(moments=question.body.moments)
+    return {"body": body, "angular_velocity": question.angular_velocity, "measure": None}
+
+
 def idiomatic(table: str) -> Any:
     """Return the question as FastAPI's tutorial would serve it: a model in, a model out, nothing else."""
     from fastapi import FastAPI
@@ -109,11 +132,10 @@ def idiomatic(table: str) -> Any:
     signature = {"source": "polhode", "version": "0"}
     app = FastAPI()
 
-    async def endpoint(question: Any) -> Any:
-        answer = dict(route.handle(question, Budget()))
+    async def endpoint(question: Asked) -> Any:
+        answer = dict(route.handle(QUESTION.question.model_construct(**asked(question)), Budget()))
         return {"signature": signature, **answer, "warnings": []}
 
-    endpoint.__annotations__["question"] = route.question
     app.post(QUESTION.path, response_model=route.answer)(endpoint)
     return app
 

@@ -40,6 +40,7 @@ SERVICE_LAYERS = (
     {"guards"},
     {"reading"},
     {"schemas"},
+    {"numerals"},
     {"routes", "answering", "documentation"},
     {"worker", "prepared"},
     {"compute"},

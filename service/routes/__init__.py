@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from service.routes.bodies import BODIES
+from service.routes.certified import with_digits
+from service.routes.certified_rotation import PRECESSION_IN_DIGITS, STABILITY_IN_DIGITS, TRAJECTORY_IN_DIGITS
+from service.routes.certified_scenes import scenes_in_digits
 from service.routes.ensemble import ENSEMBLE
 from service.routes.precession import PRECESSION
 from service.routes.rotation import ROTATION
@@ -15,4 +18,11 @@ from service.routing import Question
 
 def questions() -> tuple[Question, ...]:
     """Return every question that can be asked, in the order of the documentation."""
-    return (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())
+    plain = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())
+    in_digits = {
+        "/v1/rotation/trajectory": TRAJECTORY_IN_DIGITS,
+        "/v1/rotation/precession": PRECESSION_IN_DIGITS,
+        "/v1/rotation/stability": STABILITY_IN_DIGITS,
+        **scenes_in_digits(),
+    }
+    return tuple(with_digits(route, in_digits[route.path]) if route.path in in_digits else route for route in plain)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Annotated, Any, Literal, Union
 
 from pydantic import BaseModel, Field
 
 from core.certified.decimals import decimal_of_fraction
+from core.certified.exact_inputs import exact
 from core.certified.raising import check_digits
 from core.integration.budget import Budget
 from core.integration.trajectory import Work
@@ -18,7 +20,7 @@ from service.routing import Answer, Example, Question
 from service.schemas import View, sample_count
 
 SET_UP = 5e-3
-"""Predicted time without samples (s). A precision may be raised a hundredfold, so no such question runs in the server."""
+"""Predicted time without samples (s): precision may be raised a hundredfold, so no such question runs in the server."""
 
 
 class AccuracyInDigits(View):
@@ -44,15 +46,59 @@ def work(samples: int) -> Work:
 
 @dataclass(frozen=True)
 class PerSample:
-    """Predicted time of a sample of d digits, first + second d + third d^2 (s); measured in docs/physics/certified.md."""
+    """Predicted time of a sample of d digits: constant + linear d + quadratic d^2 (s).
 
-    first: float
-    second: float
-    third: float
+    Attributes
+    ----------
+    constant, linear, quadratic : float
+    """
 
-    def price(self, digits: int, samples: int) -> float:
-        """Return the predicted time of an answer (s)."""
-        return SET_UP + samples * (self.first + digits * (self.second + digits * self.third))
+    constant: float
+    linear: float
+    quadratic: float
+
+    def seconds(self, digits: int) -> float:
+        """Return the time of one sample (s)."""
+        return self.constant + digits * (self.linear + digits * self.quadratic)
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What an answer in so many digits will cost.
+
+    Attributes
+    ----------
+    samples : int
+    numbers : int
+        In each sample.
+    each : PerSample
+        Time of a sample.
+    before : float
+        Time before the first (s).
+    """
+
+    samples: int
+    numbers: int
+    each: PerSample
+    before: float = 0.0
+
+
+@dataclass(frozen=True)
+class PricedInDigits:
+    """Price of a question with ``digits``, by what is counted of it."""
+
+    cost: Callable[[Any, Budget], Cost]
+
+    def __call__(self, question: Any, budget: Budget) -> float:
+        """Return the predicted time of computing an answer (s)."""
+        cost, digits = self.cost(question, budget), int(question.digits)
+        return SET_UP + cost.before + cost.samples * cost.each.seconds(digits)
+
+    def size(self, question: Any, budget: Budget) -> float:
+        """Return the predicted length of an answer as JSON (bytes)."""
+        cost, digits = self.cost(question, budget), int(question.digits)
+        # A numeral has a sign, a point, two quotes and a comma, and there are about ten beside the samples.
+        return 600.0 + (10 + cost.samples * cost.numbers) * (digits + 5.0)
 
 
 @dataclass(frozen=True)
@@ -63,17 +109,37 @@ class InDigits:
     ----------
     question, answer : type
         Pydantic models.
-    handle, price : callable
+    handle, price, outline, examples
         As in `Question`.
-    examples : mapping
-        By a short name.
     """
 
     question: type[BaseModel]
     answer: type[BaseModel]
     handle: Callable[[Any, Budget], Answer]
-    price: Callable[[Any, Budget], float]
+    price: PricedInDigits
+    outline: Callable[[Any], Any] | None = None
     examples: Mapping[str, Example] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class EitherPrice:
+    """Price of a route that answers two questions."""
+
+    own: Any
+    other: InDigits
+
+    def __call__(self, question: Any, budget: Budget) -> float:
+        """Return the predicted time of computing an answer (s)."""
+        seconds: float = self._of(question)(question, budget)
+        return seconds
+
+    def size(self, question: Any, budget: Budget) -> float:
+        """Return the predicted length of an answer as JSON (bytes)."""
+        length: float = self._of(question).size(question, budget)
+        return length
+
+    def _of(self, question: Any) -> Any:
+        return self.other.price if isinstance(question, self.other.question) else self.own
 
 
 def with_digits(route: Question, other: InDigits) -> Question:
@@ -82,8 +148,9 @@ def with_digits(route: Question, other: InDigits) -> Question:
     def handle(question: Any, budget: Budget) -> Answer:
         return (other if isinstance(question, other.question) else route).handle(question, budget)
 
-    def price(question: Any, budget: Budget) -> float:
-        return (other if isinstance(question, other.question) else route).price(question, budget)
+    def outline(question: Any) -> Any:
+        found = (other if isinstance(question, other.question) else route).outline
+        return question if found is None else found(question)
 
     either = Union.__getitem__((route.question, other.question))
     return replace(
@@ -91,7 +158,8 @@ def with_digits(route: Question, other: InDigits) -> Question:
         question=Annotated.__class_getitem__((either, ByPresence("digits"))),  # type: ignore[attr-defined]
         answer=Union.__getitem__((route.answer, other.answer)),
         handle=handle,
-        price=price,
+        price=EitherPrice(route.price, other),
+        outline=outline,
         examples={**route.examples, **other.examples},
     )
 
@@ -106,6 +174,15 @@ def affordable(times: Any, digits: int, numbers: int, budget: Budget) -> int:
     samples = sample_count(times, budget)
     check_digits(digits, numbers * samples)
     return samples
+
+
+def ends(times: SpanInNumerals | list[float | str]) -> tuple[Fraction, Fraction]:
+    """Return the earliest and the latest of the times."""
+    if isinstance(times, list):
+        found = instants(times)
+    else:
+        found = exact(times.start, ("times", "start")), exact(times.stop, ("times", "stop"))
+    return min(found), max(found)
 
 
 def longest(numbers: Sequence[Any]) -> int:

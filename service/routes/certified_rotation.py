@@ -26,10 +26,13 @@ from service.numerals import (
 )
 from service.routes.certified import (
     AccuracyInDigits,
+    Cost,
     InDigits,
     PerSample,
+    PricedInDigits,
     accuracy,
     affordable,
+    ends,
     longest,
     times_written,
     work,
@@ -217,20 +220,26 @@ def _numbers(wanted: tuple[Output, ...]) -> int:
     return 7 if "attitude" in wanted else 3
 
 
-def trajectory_price(question: TrajectoryInDigits, budget: Budget) -> float:
-    """Return the predicted time of a trajectory (s)."""
+def trajectory_cost(question: TrajectoryInDigits, budget: Budget) -> Cost:
+    """Return what is counted of a trajectory."""
     wanted = _outputs(question)
-    samples = affordable(question.times, question.digits, _numbers(wanted), budget)
-    cost = RATES_AND_ATTITUDES if "attitude" in wanted else RATES
-    return _body_price(question.body) + cost.price(question.digits, samples)
+    numbers = _numbers(wanted)
+    samples = affordable(question.times, question.digits, numbers, budget)
+    each = RATES_AND_ATTITUDES if "attitude" in wanted else RATES
+    return Cost(samples, numbers + ("time" in wanted), each, _summing(question.body))
 
 
-def price(question: PrecessionInDigits | StabilityInDigits, budget: Budget) -> float:
-    """Return the predicted time of what has no samples (s)."""
-    return _body_price(question.body) + RATES_AND_ATTITUDES.price(question.digits, 10)
+def trajectory_outline(question: TrajectoryInDigits) -> TrajectoryInDigits:
+    """Return the question about the farthest time alone."""
+    return question.model_copy(update={"times": [max(ends(question.times), key=abs)]})
 
 
-def _body_price(body: BaseModel) -> float:
+def figures_cost(question: PrecessionInDigits | StabilityInDigits, budget: Budget) -> Cost:
+    """Return what is counted of a question without times: a handful of figures that cost a few samples each."""
+    return Cost(10, 1, RATES_AND_ATTITUDES, _summing(question.body))
+
+
+def _summing(body: BaseModel) -> float:
     """Return the predicted time to sum a body in rational arithmetic (s)."""
     positions: Any = getattr(body, "positions", ())
     length = max((longest(row) for row in positions), default=0)
@@ -239,11 +248,12 @@ def _body_price(body: BaseModel) -> float:
 
 EXACT_T_HANDLE = {"kind": "principal-moments", "moments": ["837.2", "714", "437.7"]}
 
-TRAJECTORY = InDigits(
+TRAJECTORY_IN_DIGITS = InDigits(
     TrajectoryInDigits,
     TrajectoryAnswerInDigits,
     answer_trajectory,
-    trajectory_price,
+    PricedInDigits(trajectory_cost),
+    trajectory_outline,
     {
         "digits": Example(
             "the T-handle to 50 digits, every one of them proven",
@@ -271,8 +281,8 @@ PRECESSION_IN_DIGITS = InDigits(
     PrecessionInDigits,
     PrecessionAnswerInDigits,
     answer_precession,
-    price,
-    {
+    PricedInDigits(figures_cost),
+    examples={
         "digits": Example(
             "a spinning coin, 100 digits of its precession",
             {
@@ -288,6 +298,6 @@ STABILITY_IN_DIGITS = InDigits(
     StabilityInDigits,
     StabilityAnswerInDigits,
     answer_stability,
-    price,
-    {"digits": Example("a T-handle, 40 digits", {"body": EXACT_T_HANDLE, "rate": "10", "digits": 40})},
+    PricedInDigits(figures_cost),
+    examples={"digits": Example("a T-handle, 40 digits", {"body": EXACT_T_HANDLE, "rate": "10", "digits": 40})},
 )

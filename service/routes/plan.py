@@ -1,0 +1,230 @@
+"""Any other question, planned: what it would be answered with, at which cost and error; it is not answered."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from functools import cache
+from math import hypot
+from typing import Any
+
+from pydantic import Field
+
+from core.errors import BudgetExceeded, MechanicsError
+from core.integration.budget import Budget
+from core.integration.methods import Method
+from core.notices import Notice
+from service import pricing
+from service.pricing import Priced
+from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
+from service.reading import Limits, Reader
+from service.routes.rotation import T_HANDLE, ModelView
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Request, View
+
+WITHIN = "/request"
+CHEAP = 0.02
+"""A question without an outline of its own is looked into only if it takes less than this (s)."""
+
+
+class PlanRequest(Request):
+    """A request that is not sent: where to, and what."""
+
+    path: str = Field(max_length=200, description="Of the endpoint, for example /v1/rotation/trajectory.")
+    request: Any = Field(description="The body that it would be sent.")
+
+
+class CostView(View):
+    """What an answer would cost. Counts and bytes hold on every machine, milliseconds on the calibrated one."""
+
+    evaluations: int | None = Field(description="Of equations of motion; null if they are not foreseen.")
+    samples: int | None
+    bytes: int = Field(description="Length of the answer as JSON.")
+    milliseconds: float
+
+
+class ForeseenError(View):
+    """How wrong the answer would be, relative to the largest norm of the motion."""
+
+    error: float
+    how: str = Field(description="closed form: a bound; record of the method: an order of magnitude.")
+    inherited: float | None = Field(description="What the uncertainty of the inputs would move.")
+
+
+class FaultView(View):
+    """What the request would be refused for."""
+
+    code: str
+    pointer: str
+    detail: str
+    remedy: str | None = None
+
+
+class PlanAnswer(Envelope):
+    """A plan."""
+
+    path: str
+    answerable: bool
+    model: ModelView | None = Field(description="null for questions that no model of motion is chosen for.")
+    method: Method | None = Field(description="null where no motion is computed.")
+    cost: CostView | None = Field(description="null if the request would be refused.")
+    accuracy: ForeseenError | None
+    errors: list[FaultView]
+
+
+def planning(routes: Sequence[Question]) -> Question:
+    """Return the route that plans questions to `routes`."""
+    table: Mapping[str, Question] = {route.path: route for route in routes}
+
+    @cache
+    def reader(path: str) -> Reader[Any]:
+        # The document that holds the request has been held against the service's own limits.
+        return Reader(table[path].question, Limits(10**4, 10**9, 10**9))
+
+    def plan(question: PlanRequest, budget: Budget) -> Answer:
+        route = table.get(question.path)
+        if route is None:
+            fault = Fault("/path", "must be the path of a question", "GET /openapi.json lists every path")
+            return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
+        try:
+            asked = reader(route.path).read(json.dumps(question.request).encode())
+            return {"path": route.path, **_planned(route, asked, budget)}
+        except Refusal as refusal:
+            return _refused(route.path, refusal.problem, WITHIN)
+        except MechanicsError as error:
+            return _refused(route.path, problem_of(error), WITHIN)
+
+    return Question(
+        "/v1/plan",
+        "plan",
+        "Model, method, cost, error and refusals of any other question, which is not answered",
+        "accuracy",
+        PlanRequest,
+        PlanAnswer,
+        plan,
+        lambda question, budget: PRICE,
+        description="Always answered with 200: what the request would be refused for stands under `errors`.",
+        examples=EXAMPLES,
+    )
+
+
+def _planned(route: Question, asked: Any, budget: Budget) -> Answer:
+    seconds = route.price(asked, budget)
+    method = getattr(asked, "method", None)
+    evaluations = _evaluations(asked, budget)
+    fields: Answer = {}
+    if route.outline is not None or seconds < CHEAP:
+        fields = route.handle(asked if route.outline is None else route.outline(asked), budget)
+    length = route.price.size(asked, budget) if isinstance(route.price, Priced) else 0.0
+    model, stated = fields.get("model"), _stated(fields)
+    if model is None and fields.get("members"):
+        model = fields["members"][0]["model"]
+    notices = [notice for notice in fields.get("warnings", ()) if notice.code not in OF_THE_OUTLINE]
+    if method is not None and method.kind == "closed-form":
+        method = None
+    if method is not None:
+        times, speed = asked.times, _speed(asked)
+        error = pricing.error_of(method, times, speed)
+        if error > asked.accuracy:
+            detail = f"the error of {method.kind} with this setting is expected to be of the order of {error:.1g}"
+            notices.append(Notice("accuracy-not-reached", detail, ("method",)))
+        stated = {"error": error, "how": "record of the method", "inherited": (stated or {}).get("inherited")}
+    return {
+        "answerable": True,
+        "model": model,
+        "method": method or ({"kind": "closed-form"} if stated else None),
+        "cost": {
+            "evaluations": evaluations,
+            "samples": _samples(asked),
+            "bytes": round(length),
+            "milliseconds": round(1e3 * (seconds + length * pricing.calibration().writing), 3),
+        },
+        "accuracy": stated,
+        "errors": [],
+        "warnings": [notice.inside("request") for notice in notices],
+    }
+
+
+OF_THE_OUTLINE = ("accuracy-not-reached", "rounded-beyond-accuracy")
+"""Warnings about a method or digits that the outline of a question leaves out."""
+
+
+def _stated(fields: Answer) -> dict[str, Any] | None:
+    """Return the statement of error of an answer; of an ensemble, the worst member's."""
+    stated = [fields["accuracy"]] if "accuracy" in fields else [one["accuracy"] for one in fields.get("members", ())]
+    if not stated:
+        return None
+    known = [entry if isinstance(entry, dict) else vars(entry) for entry in stated]
+    worst: dict[str, Any] = max(known, key=lambda entry: entry["error"])
+    return {name: worst.get(name) for name in ("error", "how", "inherited")}
+
+
+def _evaluations(asked: Any, budget: Budget) -> int | None:
+    method, times = getattr(asked, "method", None), getattr(asked, "times", None)
+    if getattr(asked, "methods", None) is not None or getattr(asked, "measure", None) is not None:
+        return None
+    if method is None or times is None:
+        return 0
+    speed = _speed(asked)
+    count = round(min(1e18, pricing.evaluations(method, times, speed)))
+    name, _ = pricing.setting(method) if method.kind != "closed-form" else ("", 0.0)
+    if name == "step" and count > budget.evaluations:
+        remedy = "use a larger step, or ask for earlier times"
+        raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
+    return count
+
+
+def _speed(asked: Any) -> float:
+    starts = getattr(asked, "angular_velocities", None) or [getattr(asked, "angular_velocity", (1.0,))]
+    return max(hypot(*start) for start in starts)
+
+
+def _samples(asked: Any) -> int | None:
+    times = getattr(asked, "times", None)
+    if times is None:
+        return None
+    starts, sample = getattr(asked, "angular_velocities", None), getattr(asked, "sample", None)
+    members = sample.count if sample is not None else len(starts) if starts is not None else 1
+    return int((len(times) if isinstance(times, list) else times.count) * members)
+
+
+def _refused(path: str, problem: Problem, within: str) -> Answer:
+    faults = problem.faults or (Fault("", problem.detail),)
+    errors = []
+    for fault in faults[:MOST_FAULTS]:
+        entry = {"code": problem.type.code, "pointer": within + fault.pointer, "detail": fault.detail}
+        errors.append(entry | {"remedy": fault.remedy} if fault.remedy else entry)
+    return {
+        "path": path,
+        "answerable": False,
+        "model": None,
+        "method": None,
+        "cost": None,
+        "accuracy": None,
+        "errors": errors,
+        "warnings": [],
+    }
+
+
+PRICE = 1e-3
+"""Planning takes about this long whatever is planned (s), reading apart."""
+
+TUMBLING = {
+    "body": T_HANDLE,
+    "angular_velocity": [1.0, 10.0, 1.0],
+    "times": {"start": 0.0, "stop": 2e3, "count": 100_001},
+}
+
+EXAMPLES = {
+    "trajectory": Example(
+        "a hundred thousand samples", {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 1e-12}}
+    ),
+    "method": Example(
+        "the same by a method of low order",
+        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"method": {"kind": "explicit-euler", "step": 1e-3}}},
+    ),
+    "refused": Example(
+        "a request that would be refused",
+        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 2.0}},
+    ),
+}

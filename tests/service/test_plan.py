@@ -1,0 +1,149 @@
+"""Plans: what they foresee is what then happens, and what would be refused is told as it would be."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import orjson
+import pytest
+
+from service.app import create_app
+from service.pricing import Priced, calibration, steps
+from service.routes import questions
+from service.routing import Question
+from service.schemas import Span
+from service.settings import Settings
+from tests.service.conftest import client_of
+
+SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+ROUTES = {route.path: route for route in questions()}
+PLANNED = [(route, name) for route in ROUTES.values() if isinstance(route.price, Priced) for name in route.examples]
+PATH = "/v1/rotation/trajectory"
+FREE: dict[str, Any] = {
+    "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
+    "angular_velocity": [0.3, 1.0, 0.2],
+    "times": {"start": 0.0, "stop": 30.0, "count": 61},
+}
+
+pytestmark = pytest.mark.anyio
+
+
+async def planned(path: str, request: Any) -> Any:
+    async with client_of(SERVICE) as client:
+        response = await client.post("/v1/plan", json={"path": path, "request": request})
+    assert response.status_code == 200
+    return response.json()
+
+
+async def asked(path: str, request: Any) -> Any:
+    async with client_of(SERVICE) as client:
+        return await client.post(path, content=orjson.dumps(request), headers={"content-type": "application/json"})
+
+
+@pytest.mark.parametrize(("route", "name"), PLANNED, ids=[f"{route.path}: {name}" for route, name in PLANNED])
+async def test_a_plan_foresees_the_answer(route: Question, name: str) -> None:
+    request = dict(route.examples[name].question)
+    plan, response = await planned(route.path, request), await asked(route.path, request)
+    answer = response.json()
+    assert plan["answerable"]
+    assert plan["errors"] == []
+    if "model" in answer and request.get("method") is None:
+        assert plan["model"] == answer["model"]
+        assert plan["accuracy"]["how"] == answer["accuracy"]["how"]
+    if "work" in answer:
+        assert plan["cost"]["samples"] in (None, answer["work"]["samples"])
+    assert 0.5 <= plan["cost"]["bytes"] / len(response.content) <= 2.0
+    assert plan["cost"]["milliseconds"] > 0.0
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        {"kind": "explicit-euler", "step": 0.01},
+        {"kind": "runge-kutta-4", "step": 0.05},
+        {"kind": "implicit-midpoint", "step": 0.01},
+        {"kind": "symmetric-splitting", "step": 0.01},
+        {"kind": "dormand-prince-853", "tolerance": 1e-8},
+        {"kind": "lsoda", "tolerance": 1e-6},
+        {"kind": "radau", "tolerance": 1e-6},
+    ],
+    ids=lambda method: method["kind"],
+)
+async def test_evaluations_of_a_method_are_foreseen_within_a_factor_of_two(method: dict[str, Any]) -> None:
+    plan, answer = await planned(PATH, FREE | {"method": method}), (await asked(PATH, FREE | {"method": method})).json()
+    assert 0.5 <= plan["cost"]["evaluations"] / answer["work"]["evaluations"] <= 2.0
+    assert plan["method"] == method
+    # An order of magnitude is promised; methods of high order may be off by two.
+    assert 1e-2 <= plan["accuracy"]["error"] / answer["accuracy"]["error"] <= 1e2
+
+
+async def test_the_bound_of_the_closed_form_is_foreseen_exactly() -> None:
+    plan, answer = await planned(PATH, FREE), (await asked(PATH, FREE)).json()
+    for name in ("error", "how", "inherited"):
+        assert plan["accuracy"][name] == answer["accuracy"][name]
+    assert plan["method"] == {"kind": "closed-form"}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"accuracy": 2.0},
+        {"accuracy": 1e-300},
+        {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 3.5]}},
+        {"body": {"kind": "principal-moments", "moments": [1.0, 2.0]}},
+        {"body": {"kind": "sphere"}},
+        {"times": []},
+        {"times": {"start": 0.0, "stop": 1.0, "count": 10**8}},
+        {"times": [1e300]},
+        {"unknown": 1},
+        {"attitude": [0.0, 0.0, 0.0, 0.0]},
+        {"attitude": [1.0, 0.0, 0.0, 0.0], "method": {"kind": "runge-kutta-4", "step": 0.1}},
+        {"method": {"kind": "explicit-euler", "step": 1e-9}},
+        {"angular_velocity": [1.0, 2.0]},
+    ],
+    ids=str,
+)
+async def test_refusals_are_those_of_the_request_itself(change: dict[str, Any]) -> None:
+    request = FREE | change
+    plan, problem = await planned(PATH, request), (await asked(PATH, request)).json()
+    assert problem["status"] >= 400
+    assert not plan["answerable"]
+    assert plan["cost"] is None
+    assert {entry["code"] for entry in plan["errors"]} == {problem["code"]}
+    assert [entry["pointer"] for entry in plan["errors"]] == ["/request" + e["pointer"] for e in problem["errors"]]
+
+
+@pytest.mark.parametrize("request_", [None, 3, [], "text", {}, {"body": 10**400}])
+async def test_anything_can_be_planned(request_: Any) -> None:
+    for path in ROUTES:
+        if path != "/v1/plan":
+            assert not (await planned(path, request_))["answerable"]
+
+
+async def test_an_unknown_path_is_told() -> None:
+    plan = await planned("/v1/nothing", {})
+    assert [(entry["code"], entry["pointer"]) for entry in plan["errors"]] == [("not-found", "/path")]
+
+
+async def test_plans_run_nothing() -> None:
+    """A question of a million samples by ten million evaluations is planned in the time of a small one."""
+    request = FREE | {"times": {"start": 0.0, "stop": 1e4, "count": 10**6}}
+    plan = await planned(PATH, request | {"method": {"kind": "explicit-euler", "step": 1e-3}})
+    assert plan["cost"]["evaluations"] == 10**7
+    assert plan["cost"]["samples"] == 10**6
+    assert plan["cost"]["milliseconds"] > 100.0 * (await planned(PATH, FREE))["cost"]["milliseconds"]
+
+
+def test_the_table_knows_every_operation_and_every_method() -> None:
+    for route in ROUTES.values():
+        if isinstance(route.price, Priced):
+            assert calibration().seconds[route.price.operation]
+            assert calibration().bytes[route.price.operation]
+    assert len(calibration().methods) == 7
+
+
+@pytest.mark.parametrize("stop", [10.0, -10.0])
+def test_steps_of_spans_and_lists_agree(stop: float) -> None:
+    span = Span(start=0.0, stop=stop, count=21)
+    assert steps(span, 0.03) == steps(span.values().tolist(), 0.03) == 20 * 17
+    assert steps([1.0, -1.0, 1.0], 0.5) == 4
