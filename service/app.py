@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
 from collections.abc import AsyncIterator
 from pkgutil import resolve_name
 from typing import Any
@@ -92,6 +93,9 @@ class Service:
         except Exception:
             LOG.exception("the service could not get ready")
             raise
+        # What has been built until now stays for good: the collector of garbage need not walk through it ever again.
+        gc.collect()
+        gc.freeze()
         self.ready = True
         LOG.info("ready", extra={"compute_processes": self.compute.size})
 

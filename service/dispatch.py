@@ -183,7 +183,7 @@ class Dispatcher:
 
     def finished(self, exchange: Exchange, status: int, seconds: float) -> None:
         """Count and log a request."""
-        self._metrics.observe(exchange.operation, status, seconds)
+        self._metrics.observe((exchange.operation, status), seconds)
         if status >= self._log_from:
             LOG.info(
                 "request",
@@ -320,8 +320,8 @@ class Exchange:
 
 def etag_of(*parts: bytes) -> bytes:
     """Return a strong validator for content that is, or is determined by, these bytes."""
-    digest = hashlib.blake2b(digest_size=12)
-    for part in parts:
+    digest = hashlib.blake2b(parts[0], digest_size=12)
+    for part in parts[1:]:
         digest.update(part)
     return b'"' + digest.hexdigest().encode() + b'"'
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from math import ceil, exp, log
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 from core.integration.budget import Budget
 
@@ -45,6 +45,19 @@ def calibration() -> Calibration:
     """Return the committed table."""
     table = json.loads(resources.files("service").joinpath("calibration.json").read_text(encoding="utf-8"))
     return Calibration(**{name: table[name] for name in ("seconds", "bytes", "writing", "methods")})
+
+
+@runtime_checkable
+class Foreseen(Protocol):
+    """A price that also foresees how long the answer will be."""
+
+    def __call__(self, question: Any, budget: Budget) -> float:
+        """Return the predicted time of computing an answer (s)."""
+        ...
+
+    def size(self, question: Any, budget: Budget) -> float:
+        """Return the predicted length of an answer as JSON (bytes)."""
+        ...
 
 
 @dataclass(frozen=True)

@@ -101,9 +101,14 @@ def to_significant(values: Floats, digits: int) -> Floats:
         exponents = np.floor(np.log10(np.abs(flat)))
     exponents[flat == 0.0] = 0.0
     places = digits - 1 - exponents
-    out = np.empty_like(flat)
     plain = (np.abs(places) <= EXACT_POWERS) & (digits < ROUND_TRIP - 2)
-    power = np.array([10.0**k for k in range(EXACT_POWERS + 1)])[np.abs(np.where(plain, places, 0)).astype(np.int64)]
+    powers = np.array([10.0**k for k in range(EXACT_POWERS + 1)])
+    power = powers[np.abs(np.where(plain, places, 0.0)).astype(np.int64)]
+    if plain.all() and places.min(initial=0.0) >= 0.0:
+        # Nearly always, and then no number need be picked out.
+        quick: Floats = (np.rint(flat * power) / power).reshape(values.shape)
+        return quick
+    out = np.empty_like(flat)
     up, down = plain & (places >= 0), plain & (places < 0)
     out[up] = np.rint(flat[up] * power[up]) / power[up]
     out[down] = np.rint(flat[down] / power[down]) * power[down]

@@ -7,6 +7,7 @@ from service.routes.certified import with_digits
 from service.routes.certified_rotation import PRECESSION_IN_DIGITS, STABILITY_IN_DIGITS, TRAJECTORY_IN_DIGITS
 from service.routes.certified_scenes import scenes_in_digits
 from service.routes.ensemble import ENSEMBLE
+from service.routes.plan import planning
 from service.routes.precession import PRECESSION
 from service.routes.rotation import ROTATION
 from service.routes.scenes import questions as about_scenes
@@ -25,4 +26,5 @@ def questions() -> tuple[Question, ...]:
         "/v1/rotation/stability": STABILITY_IN_DIGITS,
         **scenes_in_digits(),
     }
-    return tuple(with_digits(route, in_digits[route.path]) if route.path in in_digits else route for route in plain)
+    asked = [with_digits(route, in_digits[route.path]) if route.path in in_digits else route for route in plain]
+    return (*asked, planning(asked))

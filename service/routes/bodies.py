@@ -89,7 +89,7 @@ def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
 
 def counts(question: Any, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question about a body."""
-    return {"question": 1.0, "points": _size(question.body)}
+    return {"question": 1.0, "points": _size(question.body), question.body.kind: 1.0}
 
 
 def _size(body: Any) -> int:

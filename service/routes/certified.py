@@ -15,6 +15,7 @@ from core.certified.raising import check_digits
 from core.integration.budget import Budget
 from core.integration.trajectory import Work
 from service.numerals import SpanInNumerals, instants
+from service.pricing import Priced
 from service.reading import ByPresence
 from service.routing import Answer, Example, Question
 from service.schemas import View, sample_count
@@ -122,24 +123,23 @@ class InDigits:
 
 
 @dataclass(frozen=True)
-class EitherPrice:
-    """Price of a route that answers two questions."""
+class EitherPrice(Priced):
+    """Price of a route that answers two questions: its own, and another in so many digits."""
 
-    own: Any
     other: InDigits
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
-        seconds: float = self._of(question)(question, budget)
-        return seconds
+        return self.other.price(question, budget) if self._of_other(question) else super().__call__(question, budget)
 
     def size(self, question: Any, budget: Budget) -> float:
         """Return the predicted length of an answer as JSON (bytes)."""
-        length: float = self._of(question).size(question, budget)
-        return length
+        if self._of_other(question):
+            return self.other.price.size(question, budget)
+        return super().size(question, budget)
 
-    def _of(self, question: Any) -> Any:
-        return self.other.price if isinstance(question, self.other.question) else self.own
+    def _of_other(self, question: Any) -> bool:
+        return isinstance(question, self.other.question)
 
 
 def with_digits(route: Question, other: InDigits) -> Question:
@@ -152,13 +152,14 @@ def with_digits(route: Question, other: InDigits) -> Question:
         found = (other if isinstance(question, other.question) else route).outline
         return question if found is None else found(question)
 
+    assert isinstance(route.price, Priced)
     either = Union.__getitem__((route.question, other.question))
     return replace(
         route,
         question=Annotated.__class_getitem__((either, ByPresence("digits"))),  # type: ignore[attr-defined]
         answer=Union.__getitem__((route.answer, other.answer)),
         handle=handle,
-        price=EitherPrice(route.price, other),
+        price=EitherPrice(route.price.operation, route.price.counts, other),
         outline=outline,
         examples={**route.examples, **other.examples},
     )

@@ -236,7 +236,7 @@ def trajectory_outline(question: TrajectoryInDigits) -> TrajectoryInDigits:
 
 def figures_cost(question: PrecessionInDigits | StabilityInDigits, budget: Budget) -> Cost:
     """Return what is counted of a question without times: a handful of figures that cost a few samples each."""
-    return Cost(10, 1, RATES_AND_ATTITUDES, _summing(question.body))
+    return Cost(10, 0, RATES_AND_ATTITUDES, _summing(question.body))
 
 
 def _summing(body: BaseModel) -> float:

@@ -15,7 +15,7 @@ from core.integration.budget import Budget
 from core.integration.methods import Method
 from core.notices import Notice
 from service import pricing
-from service.pricing import Priced
+from service.pricing import Foreseen
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.reading import Limits, Reader
 from service.routes.rotation import T_HANDLE, ModelView
@@ -46,7 +46,7 @@ class CostView(View):
 class ForeseenError(View):
     """How wrong the answer would be, relative to the largest norm of the motion."""
 
-    error: float
+    error: float | str = Field(description="A decimal string where digits are asked for, then relative to each number.")
     how: str = Field(description="closed form: a bound; record of the method: an order of magnitude.")
     inherited: float | None = Field(description="What the uncertainty of the inputs would move.")
 
@@ -115,7 +115,7 @@ def _planned(route: Question, asked: Any, budget: Budget) -> Answer:
     fields: Answer = {}
     if route.outline is not None or seconds < CHEAP:
         fields = route.handle(asked if route.outline is None else route.outline(asked), budget)
-    length = route.price.size(asked, budget) if isinstance(route.price, Priced) else 0.0
+    length = route.price.size(asked, budget) if isinstance(route.price, Foreseen) else 0.0
     model, stated = fields.get("model"), _stated(fields)
     if model is None and fields.get("members"):
         model = fields["members"][0]["model"]
@@ -155,8 +155,9 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
     if not stated:
         return None
     known = [entry if isinstance(entry, dict) else vars(entry) for entry in stated]
-    worst: dict[str, Any] = max(known, key=lambda entry: entry["error"])
-    return {name: worst.get(name) for name in ("error", "how", "inherited")}
+    worst: dict[str, Any] = max(known, key=lambda entry: float(entry["error"]))
+    # An error below the range of doubles is stated as a decimal string.
+    return {"error": float(worst["error"]), "how": worst["how"], "inherited": worst.get("inherited")}
 
 
 def _evaluations(asked: Any, budget: Budget) -> int | None:

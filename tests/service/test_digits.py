@@ -1,0 +1,304 @@
+"""Questions with `digits`: answers against independent solutions, strings and doubles as they are, every refusal."""
+
+from __future__ import annotations
+
+from math import isclose
+from typing import Any
+
+import httpx
+import mpmath
+import orjson
+import pytest
+from mpmath import mp, mpf
+
+from core.integration.budget import Budget
+from service.answering import Answering
+from service.app import create_app
+from service.reading import Limits
+from service.routing import Question
+from service.settings import Settings
+from tests.oracles.free_rotation import flip_interval, period, reference_angular_velocity, reference_attitude
+from tests.service.conftest import Server, client_of
+
+SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+TRAJECTORY, PRECESSION, STABILITY = (f"/v1/rotation/{name}" for name in ("trajectory", "precession", "stability"))
+ROD = "/v1/scenes/rod-in-hole"
+HANDLE = (795.7921810699588, 713.5092592592592, 395.7829218106996)
+START = (1.0, 10.0, 1.0)
+TIMES = [0.0, 0.1, -3.0, 20.0, 1e6]
+BODY = {"kind": "principal-moments", "moments": HANDLE}
+QUESTION: dict[str, Any] = {"body": BODY, "angular_velocity": START, "times": TIMES, "digits": 50}
+LENGTHS: dict[str, Any] = {"hole_radius": "1", "length": "1", "mass": "1", "gravity": "9.8125", "digits": 30}
+
+pytestmark = pytest.mark.anyio
+
+
+async def asked(path: str, question: Any) -> Any:
+    async with client_of(SERVICE) as client:
+        return await client.post(path, json=question)
+
+
+async def answer(path: str, question: Any) -> Any:
+    response = await asked(path, question)
+    assert response.status_code == 200, response.text
+    return response.json()
+
+
+def farthest(found: list[list[str]], true: Any) -> mpf:
+    return max(abs(mpf(x) - y) for row, want in zip(found, true, strict=True) for x, y in zip(row, want, strict=True))
+
+
+async def test_fifty_digits_of_the_t_handle() -> None:
+    found = await answer(TRAJECTORY, QUESTION | {"attitude": [1.0, 0.0, 0.0, 0.0]})
+    with mp.workdps(70):
+        rates = reference_angular_velocity(HANDLE, START, TIMES, 55)
+        assert farthest(found["angular_velocity"], rates) <= mpf("5.1e-49")
+        assert farthest(found["attitude"], reference_attitude(HANDLE, START, TIMES, digits=55)) <= mpf("5.1e-51")
+        for name, true in (("period", period), ("flip_interval", flip_interval)):
+            wanted = true(HANDLE, START, 55)
+            assert wanted is not None
+            assert abs(mpf(found[name]) / wanted - 1) <= mpf(found["accuracy"]["error"])
+        energy = sum(mpf(i) * mpf(w) ** 2 for i, w in zip(HANDLE, START, strict=True)) / 2
+        momentum = mp.sqrt(sum((mpf(i) * mpf(w)) ** 2 for i, w in zip(HANDLE, START, strict=True)))
+        assert abs(mpf(found["energy"]) / energy - 1) <= mpf("5.1e-50")
+        assert abs(mpf(found["angular_momentum"]) / momentum - 1) <= mpf("5.1e-50")
+    assert found["accuracy"] == {"requested": 50, "error": "5.1e-50", "how": "ball arithmetic"}
+    assert found["work"]["samples"] == len(TIMES)
+    assert found["time"][1].startswith("0.1000000000000000055511151231257827")
+
+
+async def test_one_tenth_is_not_the_double_nearest_to_it() -> None:
+    string = await answer(TRAJECTORY, QUESTION | {"times": ["0.1"], "digits": 30})
+    double = await answer(TRAJECTORY, QUESTION | {"times": [0.1], "digits": 30})
+    assert string["time"] == ["0.100000000000000000000000000000"]
+    assert double["time"] == ["0.100000000000000005551115123126"]
+    with mp.workdps(40):
+        gap = [
+            mpf(a) - mpf(b) for a, b in zip(double["angular_velocity"][0], string["angular_velocity"][0], strict=True)
+        ]
+        late = mpf(0.1) - mpf(1) / 10
+        a, b, c = map(mpf, HANDLE)
+        x, y, z = map(mpf, string["angular_velocity"][0])
+        # Euler's equations say how far the body has turned on in the time between the two.
+        for found, rate in zip(gap, ((b - c) * y * z / a, (c - a) * z * x / b, (a - b) * x * y / c), strict=True):
+            assert abs(found / (late * rate) - 1) < mpf("1e-10")
+    exact = await answer(TRAJECTORY, QUESTION | {"body": {"kind": "cuboid", "edges": ["0.1", 0.2, 0.3], "mass": 1}})
+    other = await answer(TRAJECTORY, QUESTION | {"body": {"kind": "cuboid", "edges": [0.1, 0.2, 0.3], "mass": 1}})
+    assert isclose(float(exact["energy"]), float(other["energy"]), rel_tol=1e-15)
+    assert exact["energy"] != other["energy"]
+
+
+async def test_the_answer_is_the_one_in_doubles_with_more_digits() -> None:
+    for body, start in (
+        (BODY, START),
+        ({"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]}, [1.0, 1.0, 1.0]),
+        ({"kind": "principal-moments", "moments": [1.0, 2.0, 2.0]}, [-1.0, 0.5, 0.25]),
+        ({"kind": "inertia-tensor", "tensor": [[2, 0.1, 0.2], [0.1, 2.5, 0.3], [0.2, 0.3, 1.8]]}, [0.3, 1.0, 0.2]),
+        ({"kind": "principal-moments", "moments": [1.0, 2.0, 3.0]}, [0.0, 0.0, 2.0]),
+        ({"kind": "principal-moments", "moments": [2.0, 2.0, 2.0]}, [0.5, 1.0, 2.0]),
+        ({"kind": "principal-moments", "moments": [1.0, 2.0, 3.0]}, [0.0, 0.0, 0.0]),
+    ):
+        question = {"body": body, "angular_velocity": start}
+        times = {"times": {"start": 0.0, "stop": 8.0, "count": 9}, "attitude": [0.0, 1.0, 0.0, 0.0]}
+        for path, asking in ((PRECESSION, {}), (TRAJECTORY, times)):
+            many, few = await answer(path, question | asking | {"digits": 20}), await answer(path, question | asking)
+            names = [
+                name for name in many if name not in ("signature", "warnings", "accuracy", "work", "model", "absent")
+            ]
+            for name in names:
+                assert close(many[name], few[name]), (name, many[name], few[name])
+            if path == TRAJECTORY:
+                assert many["model"]["regime"] == few["model"]["regime"]
+            else:
+                assert set(many["absent"]) == {name for name in many["absent"] if few[name] is None}
+
+
+def close(many: Any, few: Any) -> bool:
+    if isinstance(many, list):
+        return len(many) == len(few) and all(close(a, b) for a, b in zip(many, few, strict=True))
+    if many is None or isinstance(few, str):
+        return bool(many == few)
+    return isclose(float(many), few, rel_tol=1e-12, abs_tol=1e-13)
+
+
+async def test_equilibria() -> None:
+    body = {"kind": "principal-moments", "moments": ["1", "2", "3"]}
+    many = await answer(STABILITY, {"body": body, "rate": "10", "digits": 40})
+    few = await answer(STABILITY, {"body": body | {"moments": [1.0, 2.0, 3.0]}, "rate": 10.0})
+    for found, wanted in zip(many["equilibria"], few["equilibria"], strict=False):
+        assert found["kind"] == wanted["kind"]
+        assert close(found["moment"], wanted["moment"])
+        pairs = [sorted([float(x), float(y)] for x, y in entry["eigenvalues"]) for entry in (found, wanted)]
+        assert all(close(a, b) for a, b in zip(*pairs, strict=True))
+    with mp.workdps(50):
+        # W sqrt((B - A)(C - B)/(A C)) about the middle axis.
+        assert abs(mpf(many["equilibria"][1]["growth_rate"]) - 10 / mp.sqrt(3)) < mpf("1e-38")
+    coin = {"kind": "principal-moments", "moments": [1, 1, 2]}
+    ends = (await answer(STABILITY, {"body": coin, "digits": 16}))["equilibria"]
+    assert [entry["kind"] for entry in ends] == ["degenerate", "degenerate", "center"]
+
+
+async def test_the_period_of_a_rod_by_the_complete_integral() -> None:
+    found = await answer(ROD, LENGTHS | {"outputs": ["period"]})
+    with mp.workdps(45):
+        frequency = mp.sqrt(mpf("9.8125") * mp.sqrt(mpf(3)) / 2 / (1 - mpf(1) / 6))
+        assert abs(mpf(found["period"]) - 4 * mpmath.ellipk(mpf(1) / 4) / frequency) < mpf("1e-29")
+
+
+async def test_every_scene_is_the_one_in_doubles_with_more_digits() -> None:
+    for route in SERVICE.routes:
+        if route.path.startswith("/v1/scenes/"):
+            question = dict(route.examples["motion"].question)  # type: ignore[union-attr]
+            many, few = await answer(route.path, question | {"digits": 20}), await answer(route.path, question)
+            assert many["model"]["regime"] == few["model"]["regime"]
+            assert many["ended"] == few["ended"]
+            assert many["work"]["samples"] == few["work"]["samples"]
+            assert set(many["trajectory"]) == set(few["trajectory"])
+            for name, column in few["trajectory"].items():
+                assert close(many["trajectory"][name], column), (route.path, name)
+
+
+async def test_evenly_spaced_times_are_exactly_so() -> None:
+    found = await answer(TRAJECTORY, QUESTION | {"times": {"start": "0", "stop": "1", "count": 4}, "digits": 20})
+    assert found["time"] == ["0", "0.33333333333333333333", "0.66666666666666666667", "1.0000000000000000000"]
+    alone = await answer(TRAJECTORY, QUESTION | {"times": {"start": "0.3", "stop": "1", "count": 1}})
+    assert len(alone["angular_velocity"]) == 1
+    assert float(alone["time"][0]) == 0.3
+
+
+async def test_only_what_is_asked_for_is_answered() -> None:
+    found = await answer(TRAJECTORY, QUESTION | {"outputs": ["attitude"]})
+    assert "attitude" in found
+    assert not {"time", "angular_velocity"} & set(found)
+
+
+async def test_what_no_matter_can_be_is_warned_of() -> None:
+    found = await answer(STABILITY, {"body": {"kind": "principal-moments", "moments": [1, 1, "2.1"]}, "digits": 20})
+    assert [(entry["code"], entry["pointer"]) for entry in found["warnings"]] == [("unphysical-inertia", "/body")]
+    assert (await answer(STABILITY, {"body": BODY | {"moments": ["1", "1", "2"]}, "digits": 20}))["warnings"] == []
+
+
+POINTS = {"kind": "point-masses", "masses": 1.0, "positions": [[0, 0, 0], [1, 0, 0], [0, 1, "1"]]}
+REFUSED: list[tuple[str, dict[str, Any], str, str]] = [
+    (TRAJECTORY, {"digits": 15}, "invalid-parameter", "/digits"),
+    (TRAJECTORY, {"digits": 1001}, "invalid-parameter", "/digits"),
+    (TRAJECTORY, {"digits": "50"}, "invalid-parameter", "/digits"),
+    (TRAJECTORY, {"digits": 50.0}, "invalid-parameter", "/digits"),
+    (TRAJECTORY, {"digits": True}, "invalid-parameter", "/digits"),
+    (TRAJECTORY, {"digits": None}, "invalid-parameter", "/digits"),
+    (TRAJECTORY, {"accuracy": 1e-9}, "invalid-parameter", "/accuracy"),
+    (TRAJECTORY, {"method": {"kind": "closed-form"}}, "invalid-parameter", "/method"),
+    (TRAJECTORY, {"round": 5}, "invalid-parameter", "/round"),
+    (TRAJECTORY, {"times": []}, "invalid-parameter", "/times"),
+    (TRAJECTORY, {"times": "0.1"}, "invalid-parameter", "/times"),
+    (TRAJECTORY, {"times": ["0.1", "1/3"]}, "invalid-parameter", "/times/1"),
+    (TRAJECTORY, {"times": ["nan"]}, "invalid-parameter", "/times/0"),
+    (TRAJECTORY, {"times": ["1e1001"]}, "invalid-parameter", "/times/0"),
+    (TRAJECTORY, {"times": ["1" * 1101]}, "invalid-parameter", "/times/0"),
+    (TRAJECTORY, {"times": [True]}, "invalid-parameter", "/times/0"),
+    (TRAJECTORY, {"times": {"start": "now", "stop": 1, "count": 3}}, "invalid-parameter", "/times/start"),
+    (TRAJECTORY, {"times": {"start": 0, "stop": 1, "count": 10**7}}, "budget-exceeded", "/times/count"),
+    (TRAJECTORY, {"times": {"start": 0, "stop": 1, "count": 10**5}}, "budget-exceeded", "/digits"),
+    (TRAJECTORY, {"angular_velocity": ["1", "x", "1"]}, "invalid-parameter", "/angular_velocity/1"),
+    (TRAJECTORY, {"angular_velocity": ["1", "1"]}, "invalid-parameter", "/angular_velocity"),
+    (TRAJECTORY, {"attitude": ["0", 0, 0, "0.0"]}, "invalid-parameter", "/attitude"),
+    (TRAJECTORY, {"body": BODY | {"moments": ["1", "-2", "3"]}}, "invalid-parameter", "/body/moments/1"),
+    (TRAJECTORY, {"body": BODY | {"moments": [1, 2]}}, "invalid-parameter", "/body/moments"),
+    (TRAJECTORY, {"body": BODY | {"mass": "1"}}, "invalid-parameter", "/body/mass"),
+    (TRAJECTORY, {"body": {"kind": "composite", "parts": []}}, "invalid-parameter", "/body"),
+    (TRAJECTORY, {"body": {"kind": "mesh"}}, "invalid-parameter", "/body"),
+    (TRAJECTORY, {"body": {"kind": "ball", "radius": "1", "density": "1"}}, "not-applicable", "/body/density"),
+    (TRAJECTORY, {"body": {"kind": "cuboid", "edges": [1, 2, "3"], "mass": -1}}, "invalid-parameter", "/body/mass"),
+    (TRAJECTORY, {"body": {"kind": "cuboid", "edges": [1, 2, "3"]}}, "invalid-parameter", "/body/mass"),
+    (TRAJECTORY, {"body": {"kind": "rod", "length": 1, "mass": 1}}, "invalid-parameter", "/body"),
+    (TRAJECTORY, {"body": POINTS | {"masses": [1, "one", 1]}}, "invalid-parameter", "/body/masses/1"),
+    (TRAJECTORY, {"body": POINTS | {"masses": {"all": 1}}}, "invalid-parameter", "/body/masses"),
+    (TRAJECTORY, {"body": POINTS | {"masses": None}}, "invalid-parameter", "/body/masses"),
+    (TRAJECTORY, {"body": POINTS | {"about": "here"}}, "invalid-parameter", "/body/about"),
+    (PRECESSION, {"measure": None}, "invalid-parameter", "/measure"),
+    (STABILITY, {"rate": "fast"}, "invalid-parameter", "/rate"),
+    (ROD, {"mass": "heavy"}, "invalid-parameter", "/mass"),
+    (ROD, {"mass": "1e400"}, "invalid-parameter", "/mass"),
+    (ROD, {"length": "2"}, "invalid-parameter", "/length"),
+    (ROD, {"outputs": ["music"]}, "invalid-parameter", "/outputs/0"),
+    (ROD, {"outputs": ["trajectory"]}, "invalid-parameter", "/times"),
+    (ROD, {"hole": "square"}, "invalid-parameter", "/hole"),
+    (ROD, {"digits": 1000, "times": {"start": 0, "stop": 1, "count": 10**4}}, "budget-exceeded", "/digits"),
+]
+
+
+def whole(path: str) -> dict[str, Any]:
+    if path == ROD:
+        return LENGTHS
+    left_out = {TRAJECTORY: (), PRECESSION: ("times",), STABILITY: ("times", "angular_velocity")}[path]
+    return {name: value for name, value in QUESTION.items() if name not in left_out}
+
+
+@pytest.mark.parametrize(("path", "change", "code", "pointer"), REFUSED, ids=lambda value: str(value)[:60])
+async def test_refusals(path: str, change: dict[str, Any], code: str, pointer: str) -> None:
+    response = await asked(path, whole(path) | change)
+    problem = response.json()
+    assert (response.status_code, problem["code"]) == (422, code), problem
+    assert pointer in [fault["pointer"] for fault in problem["errors"]], problem
+    if code == "budget-exceeded":
+        assert problem["needed"] > problem["limit"]
+
+
+@pytest.mark.parametrize(
+    ("change", "pointers"),
+    [
+        ({"times": [0.0, "0.1"]}, ["/times/1"]),
+        ({"angular_velocity": [1.0, "10", 1.0]}, ["/angular_velocity/1"]),
+        ({"body": BODY | {"moments": [1.0, 2.0, "2.5"]}}, ["/body/moments/2"]),
+        ({"body": BODY | {"digits": 50}}, ["/body/digits"]),
+    ],
+    ids=str,
+)
+async def test_strings_are_no_numbers_without_digits(change: dict[str, Any], pointers: list[str]) -> None:
+    question = {name: value for name, value in QUESTION.items() if name != "digits"} | change
+    response = await asked(TRAJECTORY, question)
+    assert response.status_code == 422
+    assert [fault["pointer"] for fault in response.json()["errors"]] == pointers
+
+
+@pytest.mark.parametrize("body", [b"[]", b"3", b'"digits"', b'["digits"]', b"null"])
+async def test_a_document_that_is_no_object_is_refused_as_one(body: bytes) -> None:
+    async with client_of(SERVICE) as client:
+        response = await client.post(TRAJECTORY, content=body, headers={"content-type": "application/json"})
+    assert response.status_code == 422
+    assert response.json()["errors"] == [{"pointer": "", "detail": "must be an object"}]
+
+
+async def test_the_key_may_be_written_with_escapes() -> None:
+    async with client_of(SERVICE) as client:
+        plain = await client.post(TRAJECTORY, json=QUESTION)
+        escaped = plain.request.content.replace(b'"digits"', b'"d\\u0069gits"')
+        response = await client.post(TRAJECTORY, content=escaped, headers={"content-type": "application/json"})
+    assert response.status_code == 200
+    assert response.content == plain.content
+
+
+def test_none_runs_in_the_server_and_long_ones_cost_more() -> None:
+    routes = [route for route in SERVICE.routes if isinstance(route, Question)]
+    answering = Answering(routes, Budget(), Limits())
+    asking = [
+        (route, dict(example.question))
+        for route in routes
+        for example in route.examples.values()
+        if "digits" in example.question
+    ]
+    assert len({route.path for route, _ in asking}) >= 6
+    for route, question in asking:
+        read = answering.read(route, orjson.dumps(question))
+        assert answering.price(route, read) > Settings().inline_seconds
+        if "times" in question:
+            long = question | {"times": {"start": 0, "stop": 1, "count": 3000}}
+            assert answering.price(route, answering.read(route, orjson.dumps(long))) > 2 * answering.price(route, read)
+
+
+def test_over_a_socket_from_a_compute_process(server: Server) -> None:
+    question = QUESTION | {"digits": 30, "times": {"start": 0, "stop": 20, "count": 200}}
+    found = httpx.post(server.url + TRAJECTORY, json=question, timeout=30)
+    assert found.status_code == 200
+    assert len(found.json()["angular_velocity"]) == 200
+    assert httpx.post(server.url + TRAJECTORY, json=question, timeout=30).content == found.content
