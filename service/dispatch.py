@@ -17,6 +17,7 @@ from time import perf_counter
 from typing import Any
 
 from core.errors import MechanicsError
+from service import archive
 from service.answering import Answering
 from service.compute import Compute
 from service.guards import ClientGone, negotiated, read_body, require_acceptable, require_json
@@ -37,6 +38,7 @@ _REQUEST_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 _NOSNIFF: Header = (b"x-content-type-options", b"nosniff")
 _JSON: Header = (b"content-type", b"application/json")
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
+_NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), (b"vary", b"accept"))
 _REVALIDATE: Header = (b"cache-control", b"no-cache")
 _PAGE_HEADERS: tuple[Header, ...] = (
     (
@@ -117,12 +119,16 @@ class Dispatcher:
         settings, headers = self._settings, exchange.headers
         require_json(headers)
         media = None
-        if b"accept" in headers:
-            if route.representations:
-                media = negotiated(headers[b"accept"], route.representations)
-            else:
-                require_acceptable(headers[b"accept"])
+        accept = headers.get(b"accept", b"*/*")
+        if accept != b"*/*" and accept != b"application/json":
+            media = negotiated(accept, (*route.representations, archive.MEDIA_TYPE))
         body = await read_body(exchange.receive, headers, settings.max_body_bytes)
+        if media == archive.MEDIA_TYPE:
+            answer = await self._answer(route, body, exchange)
+            self._metrics.samples.inc(array_size(answer))
+            etag = etag_of(route.path.encode(), media.encode(), body)
+            await exchange.stream(archive.archive(answer), etag, _NPZ)
+            return
         if media is not None:
             document = route.representations[media](await self._answer(route, body, exchange))
             await exchange.represented(document, media.encode())
@@ -282,12 +288,12 @@ class Exchange:
         headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
         await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)
 
-    async def stream(self, pieces: Iterable[bytes], etag: bytes) -> None:
+    async def stream(self, pieces: Iterable[bytes], etag: bytes, headers: Sequence[Header] = (_JSON,)) -> None:
         """Send an answer piece by piece, letting other requests run in between."""
         if self._has(etag):
             await self._respond(304, b"", [(b"etag", etag)])
             return
-        await self._start(200, [_JSON, (b"etag", etag)])
+        await self._start(200, [*headers, (b"etag", etag)])
         for piece in pieces:
             await self._send({"type": "http.response.body", "body": piece, "more_body": True})
             await asyncio.sleep(0)

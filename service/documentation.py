@@ -10,7 +10,7 @@ from fastapi import Body, FastAPI, Request
 from fastapi.routing import APIRoute
 from starlette.responses import JSONResponse, Response
 
-from service import VERSION
+from service import VERSION, archive
 from service.problems import MEDIA_TYPE, REGISTRY
 from service.routing import Question, Route
 from service.schemas import ProblemDocument
@@ -21,6 +21,11 @@ The motion of rigid bodies and small constrained scenes, and how right each answ
 SI units, radians. Vectors are [x, y, z], matrices are written row by row, quaternions [w, x, y, z] turn body into
 space. Body axes are the axes in which the body was defined. Times are measured from the given state. Arrays of samples
 are rows. Every number is a finite double; a derived figure outside the range of doubles is null, with a warning.
+
+Questions with `digits` (16 to 1000) are answered in ball arithmetic: every number of the answer is a decimal string
+whose digits are proven, and numbers of the question may be decimal strings too ("0.1" is one tenth, 0.1 a double).
+
+Answers are JSON, or a numpy archive to `Accept: application/x-npz`: the same names, and the rest as JSON inside.
 
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
 """
@@ -140,10 +145,19 @@ def _endpoint(route: Route) -> Callable[..., Any]:
 
 
 def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
-    if not isinstance(route, Question) or not route.representations:
+    """Return how an answer is documented that is not JSON; the Accept header chooses."""
+    if not isinstance(route, Question):
         return {}
-    text = {"schema": {"type": "string"}}
-    return {200: {"description": "The answer.", "content": dict.fromkeys(route.representations, text)}}
+    content: dict[str, Any] = {media: {"schema": {"type": "string"}} for media in route.representations}
+    content[archive.MEDIA_TYPE] = {
+        "schema": {
+            "type": "string",
+            "format": "binary",
+            "description": "numpy archive: each array under its name in the JSON answer (steps joined by slashes), the "
+            "rest in the member metadata.json.",
+        }
+    }
+    return {200: {"description": "The answer.", "content": content}}
 
 
 def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Generic, TypeVar, get_args
 
 from pydantic import TypeAdapter, ValidationError
@@ -88,9 +89,24 @@ class ByPresence:
     def _label(self, document: Any) -> str:
         return WITH if isinstance(document, dict) and self.key in document else WITHOUT
 
-    def excluded_by(self, body: bytes) -> bool:
-        """Return whether the bytes show that the key is absent; it might also be written with escapes."""
-        return self.key.encode() not in body and b"\\" not in body
+    def in_document(self, body: bytes) -> bool:
+        """Return whether the document has the key, building nothing but its value."""
+        # Most documents show at once that it is absent; it might also be written with escapes.
+        if self.key.encode() not in body and b"\\" not in body:
+            return False
+        try:
+            _having(self.key).validate_json(body)
+        except ValidationError:
+            return False
+        return True
+
+
+@cache
+def _having(key: str) -> SchemaValidator:
+    """Return a validator of objects that have a key, whatever else they have."""
+    value: Any = {"type": "typed-dict-field", "schema": {"type": "any"}, "required": True}
+    schema: Any = {"type": "typed-dict", "fields": {key: value}, "extra_behavior": "ignore"}
+    return SchemaValidator(schema)
 
 
 class Reader(Generic[Q]):
@@ -110,8 +126,10 @@ class Reader(Generic[Q]):
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
         self._tags = _tags_of(schema)
         marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, ByPresence)]
-        # To look for a key, the whole document is built: not for questions whose bytes show that it is absent.
-        self._without = [(mark, Reader(get_args(get_args(question)[0])[0], limits)) for mark in marks]
+        # The discriminator of the union would have the whole document built to look for a key.
+        self._told_apart = [
+            (mark, [Reader(member, limits) for member in get_args(get_args(question)[0])]) for mark in marks
+        ]
         self._deepest, self._most_keys, self._most_arrays = limits.nesting, limits.keys, limits.arrays
 
     def read(self, body: bytes) -> Q:
@@ -122,10 +140,9 @@ class Reader(Generic[Q]):
         Refusal
             With the pointers of what is wrong.
         """
-        for mark, reader in self._without:
-            if mark.excluded_by(body):
-                plain: Q = reader.read(body)
-                return plain
+        for mark, members in self._told_apart:
+            meant: Q = members[mark.in_document(body)].read(body)
+            return meant
         require_simple(body, self._deepest, self._most_keys, self._most_arrays)
         try:
             question: Q = self._validate(body, strict=True)

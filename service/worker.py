@@ -102,7 +102,9 @@ def restored(value: Any, file: Path) -> Any:
     """Return an answer whose stored arrays are mapped from the file; the file may be removed after that."""
     if isinstance(value, Problem):
         return value
-    data = np.memmap(file, np.uint8, "r") if file.exists() else np.empty(0, np.uint8)
+    # An answer may be large by many small arrays, of which none is stored: an empty file cannot be mapped.
+    stored = file.exists() and file.stat().st_size > 0
+    data = np.memmap(file, np.uint8, "r") if stored else np.empty(0, np.uint8)
     return _restored(value, data)
 
 

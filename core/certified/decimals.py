@@ -83,9 +83,15 @@ def decimal_of_fraction(number: Fraction, digits: int) -> str:
     size = abs(number)
     # 30103/100000 is log10(2) to five digits: good to one place, which the loop mends.
     place = (size.numerator.bit_length() - size.denominator.bit_length()) * 30103 // 100000 - digits
-    while size / Fraction(10) ** place >= 10**digits:
+    while True:
+        top, bottom = size.numerator * 10 ** max(0, -place), size.denominator * 10 ** max(0, place)
+        if top < bottom * 10**digits:
+            break
         place += 1
-    return numeral(round(size / Fraction(10) ** place), place, digits, number < 0)
+    whole, rest = divmod(top, bottom)
+    if 2 * rest > bottom or (2 * rest == bottom and whole % 2):
+        whole += 1
+    return numeral(whole, place, digits, number < 0)
 
 
 def numeral(whole: int, place: int, digits: int, negative: bool) -> str:

@@ -109,6 +109,9 @@ def certified_scene(
     """
     check_digits(digits, 8 * len(times or ()))
     instants = None if times is None else exact_numbers(times, ("times",))
+    for i, instant in enumerate(instants or ()):
+        if abs(instant) > LARGEST:
+            raise InvalidParameter(("times", i), "have a magnitude of at most 1e300 s")
     wanted = _wanted(scene, instants, outputs)
     first = max(BITS, bits_for(digits))
     return determined(lambda: _Question(scene, digits, first, instants, wanted).answer(times), first)

@@ -26,7 +26,7 @@ from core.rotation.constants_of_motion import (
     constants_of_motion,
 )
 from core.rotation.principal_frame import PrincipalFrame
-from core.rotation.sampling import largest_magnitude, sample_components
+from core.rotation.sampling import largest_magnitude, sample_components, turn_into_body
 
 UNIT_ROUNDOFF = 2.0**-53
 
@@ -225,8 +225,8 @@ class FreeRotation:
             sample_components(m, times, out[row[c]], out[row[1]], out[row[d]])
             return out.T
         sample_components(m, times, out[c], out[1], out[d])
-        turned: Floats = (self.inertia.axes @ out).T
-        return turned
+        turn_into_body(np.ascontiguousarray(self.inertia.axes), out)
+        return out.T
 
     def error(self, times: Floats) -> float:
         """Return a bound of the error of `sample`, relative to the largest norm, inputs taken as exact."""

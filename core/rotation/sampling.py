@@ -114,6 +114,20 @@ def sample_components(
 
 
 @kernel()
+def turn_into_body(axes: NDArray[np.float64], out: NDArray[np.float64]) -> None:
+    """Replace principal components, shape (3, n), by those in body axes; columns of `axes` are the principal axes."""
+    x, y, z = out[0], out[1], out[2]
+    a, b, c = axes[0, 0], axes[0, 1], axes[0, 2]
+    d, e, f = axes[1, 0], axes[1, 1], axes[1, 2]
+    g, h, i = axes[2, 0], axes[2, 1], axes[2, 2]
+    for n in range(x.size):
+        p, q, r = x[n], y[n], z[n]
+        x[n] = fma(a, p, fma(b, q, c * r))
+        y[n] = fma(d, p, fma(e, q, f * r))
+        z[n] = fma(g, p, fma(h, q, i * r))
+
+
+@kernel()
 def largest_magnitude(times: NDArray[np.float64]) -> float:
     """Return max |t|; infinite if any entry is not finite."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Annotated, Any, Literal, Union
@@ -165,9 +165,9 @@ def with_digits(route: Question, other: InDigits) -> Question:
     )
 
 
-def times_written(times: SpanInNumerals | list[float | str], digits: int) -> list[str]:
+def times_written(times: Iterable[Fraction], digits: int) -> list[str]:
     """Return times as decimal strings."""
-    return [decimal_of_fraction(time, digits) for time in instants(times)]
+    return [decimal_of_fraction(time, digits) for time in times]
 
 
 def affordable(times: Any, digits: int, numbers: int, budget: Budget) -> int:

@@ -152,7 +152,7 @@ def answer_trajectory(question: TrajectoryInDigits, budget: Budget) -> Answer:
         "warnings": _notices(motion.inertia),
     }
     if "time" in wanted:
-        fields["time"] = times_written(question.times, digits)
+        fields["time"] = times_written(times, digits)
     if "attitude" in wanted:
         rates, attitudes = motion.trajectory(times, digits, question.attitude or IDENTITY)
         fields |= {"angular_velocity": rates} if "angular_velocity" in wanted else {}

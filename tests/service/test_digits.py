@@ -217,6 +217,8 @@ REFUSED: list[tuple[str, dict[str, Any], str, str]] = [
     (TRAJECTORY, {"body": POINTS | {"about": "here"}}, "invalid-parameter", "/body/about"),
     (PRECESSION, {"measure": None}, "invalid-parameter", "/measure"),
     (STABILITY, {"rate": "fast"}, "invalid-parameter", "/rate"),
+    (ROD, {"times": [0, "1e301"]}, "invalid-parameter", "/times/1"),
+    (ROD, {"times": {"start": 0, "stop": "-1e301", "count": 2}}, "invalid-parameter", "/times"),
     (ROD, {"mass": "heavy"}, "invalid-parameter", "/mass"),
     (ROD, {"mass": "1e400"}, "invalid-parameter", "/mass"),
     (ROD, {"length": "2"}, "invalid-parameter", "/length"),

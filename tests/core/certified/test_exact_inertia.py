@@ -84,3 +84,27 @@ def test_momentum_and_cross_product():
     inertia = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
     assert inertia.momentum((Fraction(1), Fraction(2), Fraction(3))) == (4, 7, 15)
     assert cross((Fraction(1), Fraction(0), Fraction(0)), (Fraction(0), Fraction(1), Fraction(0))) == (0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("moments", "symmetry", "physical"),
+    [
+        (("1", "1", "1"), "spherical", True),
+        (("2", "1", "2"), "prolate", True),
+        (("1", "1", "2"), "oblate", True),
+        (("1", "1", "2.0000000000000000000001"), "oblate", False),
+        (("1", "1.0000000000000000000001", "2"), "triaxial", True),
+        (("1", "0.3", "0.7"), "triaxial", True),
+        (("1", "0.3", "0.6999999999999999999"), "triaxial", False),
+    ],
+)
+def test_symmetry_and_the_triangle_of_moments_are_decided_exactly(moments, symmetry, physical):
+    inertia = ExactInertia.of_moments(moments)
+    assert (inertia.symmetry, inertia.physical) == (symmetry, physical)
+    # Turned by a rational rotation, the tensor is full and its moments are the same.
+    (a, _, _), (_, b, _), (_, _, c) = inertia.tensor
+    s, t = Fraction(3, 5), Fraction(4, 5)
+    turned = ((s * s * a + t * t * b, s * t * (a - b), 0), (s * t * (a - b), t * t * a + s * s * b, 0), (0, 0, c))
+    same = ExactInertia.of_tensor(turned)
+    assert same.physical == physical
+    assert same.symmetry == symmetry

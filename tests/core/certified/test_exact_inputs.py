@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.balls import precision
-from core.certified.exact_inputs import LARGEST_EXPONENT, enclosed, exact, exact_numbers
+from core.certified.exact_inputs import LARGEST_EXPONENT, enclosed, evenly_spaced, exact, exact_numbers
 from core.errors import InvalidParameter
 
 
@@ -61,3 +61,9 @@ def test_the_ball_holds_the_number(number: Fraction, bits: int):
 def test_the_largest_exponents_are_cheap_and_exact():
     assert exact(f"1e{LARGEST_EXPONENT}", "x") == 10**LARGEST_EXPONENT
     assert exact(f"1e-{LARGEST_EXPONENT}", "x") * 10**LARGEST_EXPONENT == 1
+
+
+def test_evenly_spaced_numbers_are_exactly_so():
+    assert evenly_spaced(Fraction(0), Fraction(1), 4) == (0, Fraction(1, 3), Fraction(2, 3), 1)
+    assert evenly_spaced(Fraction(2), Fraction(1), 2) == (2, 1)
+    assert evenly_spaced(Fraction(5), Fraction(1), 1) == (5,)
