@@ -55,7 +55,14 @@ def table() -> tuple[Question, ...]:
 
     return (
         TRAJECTORY,
-        replace(TRAJECTORY, path="/rows", operation_id="rows", handle=handle, price=lambda question, budget: 0.0),
+        replace(
+            TRAJECTORY,
+            path="/rows",
+            operation_id="rows",
+            handle=handle,
+            price=lambda question, budget: 0.0,
+            examples={},
+        ),
     )
 
 
@@ -104,8 +111,9 @@ def serve() -> None:
     async def run() -> None:
         serving = asyncio.ensure_future(server.serve())
         watching = asyncio.ensure_future(app.watch())
-        while not (server.started and app.service.ready):
-            await asyncio.sleep(0.01)
+        async with asyncio.timeout(120):
+            while not (server.started and app.service.ready):
+                await asyncio.sleep(0.01)
         print(server.servers[0].sockets[0].getsockname()[1], flush=True)
         await serving
         watching.cancel()

@@ -36,7 +36,19 @@ OUTER = ("assessment", "work_precision", "plan")
 
 SERVICE_LAYERS = (
     {"__init__"},
-    {"settings", "problems", "logs", "metrics", "writing", "routing", "client", "figures", "rounding", "pricing"},
+    {
+        "settings",
+        "problems",
+        "logs",
+        "metrics",
+        "writing",
+        "routing",
+        "client",
+        "figures",
+        "rounding",
+        "pricing",
+        "archive",
+    },
     {"guards"},
     {"reading"},
     {"schemas"},
