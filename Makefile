@@ -47,3 +47,17 @@ $(PEERS)/made: requirements-dev.lock benchmarks/peers.txt
 clean:
 	rm -rf $(ENV) $(PEERS) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find core service -name __pycache__ -prune -exec rm -rf {} +
+
+# A longer fuzz than the tests', with a new seed each time; FUZZ is the number of questions for each endpoint.
+FUZZ ?= 2000
+
+.PHONY: fuzz schemathesis soak
+
+fuzz: environment
+	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
+
+schemathesis: environment
+	$(BIN)/python -m tests.service.schema_run
+
+soak: environment
+	$(BIN)/python -m benchmarks.soak

@@ -12,6 +12,7 @@ import uvicorn
 
 from service import VERSION
 from service.app import create_app
+from service.keys import new_key
 from service.logs import configure
 from service.settings import Settings
 
@@ -32,6 +33,7 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument("--port", type=int, help="port to listen on (default 8000)")
     parser.add_argument("--workers", type=int, help="server processes that share the port (default 1)")
     parser.add_argument("--openapi", action="store_true", help="write the OpenAPI document to standard output and stop")
+    parser.add_argument("--new-key", metavar="NAME", help="make a key, show it and its line for keys_file, and stop")
     parser.add_argument("--version", action="version", version=VERSION)
     return parser
 
@@ -39,6 +41,10 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the service until it is told to stop."""
     options = parser().parse_args(arguments)
+    if options.new_key is not None:
+        key, line = new_key(options.new_key)
+        sys.stdout.write(f"key, shown only now: {key}\nline for keys_file:  {line}\n")
+        return
     given = {name: value for name in ("host", "port", "workers") if (value := getattr(options, name)) is not None}
     settings = Settings(**given)
     if options.openapi:

@@ -20,7 +20,9 @@ from core.errors import MechanicsError
 from service import archive
 from service.answering import Answering
 from service.compute import Compute
+from service.cors import Cors
 from service.guards import ClientGone, negotiated, read_body, require_acceptable, require_json
+from service.keys import Key, Keys
 from service.logs import LOG
 from service.metrics import Metrics
 from service.problems import MEDIA_TYPE, REGISTRY, Problem, Refusal, problem_of
@@ -74,6 +76,8 @@ class Dispatcher:
     ) -> None:
         self._routes: dict[tuple[str, str], Route] = {(route.method, route.path): route for route in routes}
         self._answering, self._compute, self._metrics, self._settings = answering, compute, metrics, settings
+        self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)
+        self.cors = Cors(settings.cors_origins)
         self._kept: OrderedDict[tuple[str, bytes], tuple[bytes, bytes]] = OrderedDict()
         self._ids = map("{}-{:x}".format, _forever(secrets.token_hex(6)), count(1))
         self._log_from = {"none": 1000, "failures": 500, "all": 0}[settings.log_requests]
@@ -117,6 +121,8 @@ class Dispatcher:
 
     async def _question(self, route: Question, exchange: Exchange) -> None:
         settings, headers = self._settings, exchange.headers
+        if self._keys is not None:
+            exchange.key = self._keys.admit(headers)
         require_json(headers)
         media = None
         accept = headers.get(b"accept", b"*/*")
@@ -159,11 +165,15 @@ class Dispatcher:
         if len(body) <= self._settings.inline_bytes:
             question = self._answering.read(route, body)
             price = self._answering.price(route, question)
+            if exchange.key is not None:
+                exchange.key.work(price)
             if price <= self._settings.inline_seconds:
                 return self._answering.answer(route, question)
         else:
             # What has not been read has no price yet; reading alone takes about this long.
             price = 4e-8 * len(body)
+            if exchange.key is not None:
+                exchange.key.work(price)
         return await self._compute.answer(route, body, price, gone=exchange.gone)
 
     async def _page(self, route: Page, exchange: Exchange) -> None:
@@ -175,6 +185,10 @@ class Dispatcher:
     async def _unrouted(self, scope: Scope, receive: Receive, send: Send) -> None:
         exchange = Exchange(self, "none", scope, receive, send)
         methods = [method for method, path in self._routes if path == scope["path"]]
+        preflight = self.cors.preflight(scope["method"], exchange.headers) if self.cors and methods else None
+        if preflight is not None:
+            await exchange.empty(preflight)
+            return
         if methods:
             allowed = ", ".join(methods + (["HEAD"] if "GET" in methods else []))
             detail = f"this path answers {allowed}"
@@ -210,7 +224,19 @@ class Dispatcher:
 class Exchange:
     """One request and its response."""
 
-    __slots__ = ("_dispatcher", "_identity", "_receive", "_send", "_since", "headers", "operation", "scope", "started")
+    __slots__ = (
+        "_also",
+        "_dispatcher",
+        "_identity",
+        "_receive",
+        "_send",
+        "_since",
+        "headers",
+        "key",
+        "operation",
+        "scope",
+        "started",
+    )
 
     def __init__(self, dispatcher: Dispatcher, operation: str, scope: Scope, receive: Receive, send: Send) -> None:
         self._since = perf_counter()
@@ -218,6 +244,8 @@ class Exchange:
         self._receive, self._send = receive, send
         self.headers: dict[bytes, bytes] = dict(scope["headers"])
         self.started = False
+        self.key: Key | None = None
+        self._also = dispatcher.cors.headers(self.headers) if dispatcher.cors else ()
         given = self.headers.get(b"x-request-id")
         self._identity = given if given and _REQUEST_ID.fullmatch(given) else dispatcher.next_id()
 
@@ -252,6 +280,8 @@ class Exchange:
             (b"x-request-id", self._identity),
             (b"server-timing", b"total;dur=%.3f" % (1e3 * (perf_counter() - since))),
         ]
+        if self._also:
+            headers += self._also
         await send({"type": "http.response.start", "status": 200, "headers": headers})
         await send({"type": "http.response.body", "body": body})
         self._dispatcher.finished(self, 200, perf_counter() - since)
@@ -279,6 +309,10 @@ class Exchange:
             return
         headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
         await self._respond(200, body, headers)
+
+    async def empty(self, headers: Sequence[Header]) -> None:
+        """Send nothing but headers."""
+        await self._respond(204, b"", list(headers))
 
     async def problem(self, problem: Problem) -> None:
         """Send a problem document."""
@@ -320,6 +354,7 @@ class Exchange:
             (b"x-request-id", self._identity),
             (b"server-timing", b"total;dur=%.3f" % milliseconds),
         )
+        headers += self._also
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": headers})
 

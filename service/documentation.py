@@ -32,7 +32,7 @@ Refusals are application/problem+json (RFC 9457) with a stable code and JSON poi
 
 Serve = Callable[[Route, Any, Any, Any], Coroutine[Any, Any, None]]
 
-_PROBLEMS_OF_QUESTIONS = (400, 406, 413, 415, 422, 429, 500, 503)
+_PROBLEMS_OF_QUESTIONS = (400, 401, 406, 413, 415, 422, 429, 500, 503)
 
 
 class _Dispatched(Response):
@@ -68,6 +68,12 @@ def openapi(app: FastAPI) -> dict[str, Any]:
     document = app.openapi()
     problem = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
     document["components"]["schemas"] |= problem.pop("$defs") | {"ProblemDocument": problem}
+    document["components"]["securitySchemes"] = {
+        "key": {"type": "http", "scheme": "bearer", "description": "Needed where the service has a file of keys."}
+    }
+    for verbs in document["paths"].values():
+        if "post" in verbs:
+            verbs["post"]["security"] = [{}, {"key": []}]
     for reference in _told_apart(document):
         _require_tag(document["components"]["schemas"][reference.rsplit("/", 1)[1]])
     return document

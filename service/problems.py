@@ -60,6 +60,7 @@ REGISTRY: Mapping[str, ProblemType] = {
             "An object names a key twice",
             "Which of the two values is meant cannot be known, so neither is taken.",
         ),
+        ProblemType("unauthorized", 401, "A key is needed", "Send Authorization: Bearer with a key of this service."),
         ProblemType("not-found", 404, "There is nothing here", "GET /openapi.json lists every path."),
         ProblemType(
             "method-not-allowed", 405, "This path does not answer this method", "The Allow header lists the methods."
@@ -108,6 +109,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             429,
             "More work is waiting than can be done in time",
             "Ask again after the time in the Retry-After header.",
+        ),
+        ProblemType(
+            "quota-exceeded",
+            429,
+            "The key's quota is used up",
+            "Ask again after the time in the Retry-After header, or for less.",
         ),
         ProblemType(
             "internal-error",

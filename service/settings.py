@@ -62,6 +62,16 @@ class Settings(BaseSettings):
         default=1024, ge=0, description="Number of small answers that are kept for questions asked again; 0 keeps none."
     )
 
+    keys_file: Path | None = Field(
+        default=None,
+        description="File of the keys that may ask, one per line: name, SHA-256, requests per second, seconds of work "
+        "per minute; read again when it changes. Default: everybody may ask.",
+    )
+    cors_origins: str = Field(
+        default="",
+        description="Origins whose pages may ask from a browser, separated by commas; * allows all, empty allows none.",
+    )
+
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         default="info", description="Least severe message logged."
     )

@@ -250,6 +250,19 @@ ROTATION = (
                     "accuracy": 1e-12,
                 },
             ),
+            "points": Example(
+                "four point masses, their principal axes askew, with the attitude",
+                {
+                    "body": {
+                        "kind": "point-masses",
+                        "masses": [1.0, 2.0, 1.0, 0.5],
+                        "positions": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]],
+                    },
+                    "angular_velocity": [1.0, 2.0, 0.5],
+                    "attitude": [1.0, 0.0, 0.0, 0.0],
+                    "times": {"start": 0.0, "stop": 10.0, "count": 21},
+                },
+            ),
             "explicit-euler": Example(
                 "the same by explicit Euler, to see what that does",
                 {

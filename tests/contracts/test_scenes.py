@@ -244,7 +244,11 @@ def test_constraints_hold_and_positions_are_the_integrals_of_velocities(scene: A
     else:
         assert np.all((s["position"] >= -1e-12 * scene.length) & (s["position"] <= scene.length * (1 + 1e-12)))
         spare = s["apex_tension"] - scene.linear_density * s["velocity"] ** 2
-        assert np.min(spare) >= -1e-9 * np.max(s["apex_tension"])
+        if span_of(scene) > 0:
+            assert np.min(spare) >= -1e-9 * np.max(s["apex_tension"])
+        else:
+            # The given state is the end: the chain is already too fast for the apex to hold it, or at its end.
+            assert np.max(spare) <= 0 or s["position"][0] in (0.0, scene.length)
 
 
 @settings(deadline=None, max_examples=40, derandomize=True)

@@ -133,13 +133,15 @@ def _wrong_numbers() -> list[Case]:
         "/body/moments/0": "1.0",
         "/angular_velocity/1": "1.0, 0.1]",
         "/times/stop": '1.0, "count"',
+        "/times/start": '0.0, "stop"',
+        "/body/moments/2": "3.0]",
     }
     cases: list[Case] = []
     for name, value in values.items():
         # Not a token of any JSON dialect.
         status, code = (400, "invalid-json") if name == "-NaN" else (422, "invalid-parameter")
         for place, old in places.items():
-            content = raw(old, value + old.removeprefix("1.0").encode())
+            content = raw(old, value + old[3:].encode())
             cases.append((f"number: {name} at {place}", content, status, code, None if status == 400 else place))
     return cases
 
@@ -255,6 +257,22 @@ HEADERS: list[tuple[str, dict[str, str], int, str]] = [
     ),
     ("gzip", {"content-type": "application/json", "content-encoding": "gzip"}, 415, "unsupported-media-type"),
     ("brotli", {"content-type": "application/json", "content-encoding": "br"}, 415, "unsupported-media-type"),
+    (
+        "two codings",
+        {"content-type": "application/json", "content-encoding": "identity, gzip"},
+        415,
+        "unsupported-media-type",
+    ),
+    ("a list of types", {"content-type": "text/plain, application/json"}, 415, "unsupported-media-type"),
+    ("a quoted type", {"content-type": '"application/json"'}, 415, "unsupported-media-type"),
+    ("a long type", {"content-type": "a/" + "b" * 30_000}, 415, "unsupported-media-type"),
+    ("json refused", {"content-type": "application/json", "accept": "application/json;q=0"}, 406, "not-acceptable"),
+    ("words wanted", {"content-type": "application/json", "accept": "whatever you have"}, 406, "not-acceptable"),
+    ("a weight that is none", {"content-type": "application/json", "accept": "*/*;q=nan"}, 406, "not-acceptable"),
+    ("a weight below none", {"content-type": "application/json", "accept": "*/*;q=-1"}, 406, "not-acceptable"),
+    ("a weight in exponents", {"content-type": "application/json", "accept": "*/*;q=1e999"}, 406, "not-acceptable"),
+    ("many wanted", {"content-type": "application/json", "accept": "text/csv," * 5000}, 406, "not-acceptable"),
+    ("semicolons wanted", {"content-type": "application/json", "accept": ";" * 20_000}, 406, "not-acceptable"),
     ("csv wanted", {"content-type": "application/json", "accept": "text/csv"}, 406, "not-acceptable"),
     ("html wanted", {"content-type": "application/json", "accept": "text/html"}, 406, "not-acceptable"),
 ]
