@@ -129,7 +129,8 @@ class Compute:
             task.cancel()  # type: ignore[no-untyped-call]
             self._tasks.discard(task)
             file.unlink(missing_ok=True)
-            self._promised -= price
+            # Nothing is promised to nobody; differences would leave a rest of rounding.
+            self._promised = self._promised - price if self._tasks else 0.0
             self._metrics.backlog.set(self.backlog)
         seconds = perf_counter() - since
         self._metrics.job_seconds.observe(seconds)

@@ -162,16 +162,18 @@ class Dispatcher:
         await exchange.answer(text, etag)
 
     async def _answer(self, route: Question, body: bytes, exchange: Exchange) -> Any:
+        longest = self._settings.deadline_seconds
         if len(body) <= self._settings.inline_bytes:
             question = self._answering.read(route, body)
-            price = self._answering.price(route, question)
+            # Nothing computes for longer than the deadline, whatever was predicted.
+            price = min(self._answering.price(route, question), longest)
             if exchange.key is not None:
                 exchange.key.work(price)
             if price <= self._settings.inline_seconds:
                 return self._answering.answer(route, question)
         else:
             # What has not been read has no price yet; reading alone takes about this long.
-            price = 4e-8 * len(body)
+            price = min(4e-8 * len(body), longest)
             if exchange.key is not None:
                 exchange.key.work(price)
         return await self._compute.answer(route, body, price, gone=exchange.gone)

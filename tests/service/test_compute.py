@@ -144,3 +144,12 @@ async def test_stopping_answers_what_is_in_flight() -> None:
         response = await waiting
         assert (response.status_code, response.json()["code"]) == (503, "shutting-down")
         assert (await client.post("/v1/toy", json=sleeping(0.1))).json()["code"] in ("shutting-down", "not-ready")
+
+
+async def test_a_price_beyond_all_bounds_counts_as_the_deadline(client: httpx.AsyncClient, service: Service) -> None:
+    endless = asyncio.create_task(client.post("/v1/toy", json=sleeping(1e6)))
+    await asyncio.sleep(0.2)
+    assert service.compute.backlog <= 0.5
+    assert (await client.post("/v1/toy", json=LARGE)).status_code == 200
+    assert (await endless).json()["code"] == "deadline-exceeded"
+    assert service.compute.backlog == 0.0

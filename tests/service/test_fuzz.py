@@ -85,7 +85,7 @@ def spoilt(question: Any, spoils: list[tuple[int, str, Any]]) -> Any:
         elif how == "scale" and number and abs(product := float(old) * float(value)) < 1e308:
             container[key] = product
         else:
-            container[key] = value
+            container[key] = copy.deepcopy(value)
     return document
 
 
