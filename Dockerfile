@@ -25,7 +25,7 @@ WORKDIR /polhode
 ENV PATH=/polhode/environment/bin:$PATH \
     PYTHONDONTWRITEBYTECODE=1 \
     PYTHONUNBUFFERED=1 \
-    NUMBA_CACHE_DIR=/polhode/compiled \
+    NUMBA_CACHE_DIR=/tmp/compiled \
     NUMBA_CPU_NAME=generic \
     POLHODE_HOST=0.0.0.0
 USER 10001
@@ -33,4 +33,5 @@ EXPOSE 8000
 STOPSIGNAL SIGTERM
 HEALTHCHECK --interval=10s --timeout=2s --start-period=60s --retries=3 \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:8000/readyz', timeout=1)"]
-ENTRYPOINT ["python", "-m", "service"]
+# The compiler reads what it keeps only from where it could also write, which the root file system is not.
+ENTRYPOINT ["sh", "-c", "mkdir -p /tmp/compiled && cp -a /polhode/compiled/. /tmp/compiled/ && exec python -m service \"$@\"", "polhode"]

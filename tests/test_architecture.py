@@ -48,6 +48,8 @@ SERVICE_LAYERS = (
         "rounding",
         "pricing",
         "archive",
+        "keys",
+        "cors",
     },
     {"guards"},
     {"reading"},
