@@ -15,6 +15,7 @@ from concurrent.futures import TimeoutError
 from itertools import count
 from math import ceil
 from pathlib import Path
+from threading import Thread
 from time import perf_counter
 from typing import Any
 
@@ -65,11 +66,30 @@ class Compute:
         self._scratch = tempfile.TemporaryDirectory(prefix="polhode-", dir=directory, ignore_cleanup_errors=True)
         # The fork server has everything imported, so that a process that is lost is replaced within milliseconds;
         # forking the server process itself, with its threads and its event loop, would not be safe.
-        context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload(["service.prepared"])
-        self._pool = ProcessPool(self.size, initializer=prepare, initargs=(self.terms,), context=context)
+        self._pool = self._new_pool()
         greetings = [self._pool.schedule(_greet, (0.05,)) for _ in range(self.size)]
         await asyncio.gather(*map(asyncio.wrap_future, greetings))
+
+    def _new_pool(self) -> ProcessPool:
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload(["service.prepared"])
+        return ProcessPool(self.size, initializer=prepare, initargs=(self.terms,), context=context)
+
+    def _schedule(self, pool: ProcessPool, *question: Any) -> ProcessFuture[Any]:
+        """Hand a question to the pool; a pool that broke, as one does whose process dies while it reads, is replaced."""
+        try:
+            return pool.schedule(work, question, timeout=self._settings.deadline_seconds)
+        except RuntimeError:
+            if self._stopping:
+                raise _stopped() from None
+            LOG.exception("the pool of compute processes broke and is replaced")
+            self._metrics.workers_lost.inc()
+            self._pool = fresh = self._new_pool()
+            # Nobody would ever answer what the broken pool still has.
+            for task in tuple(self._tasks):
+                task.cancel()  # type: ignore[no-untyped-call]
+            Thread(target=_dispose, args=(pool,), daemon=True).start()
+            return fresh.schedule(work, question, timeout=self._settings.deadline_seconds)
 
     async def stop(self) -> None:
         """Refuse and kill what still runs, and release the memory."""
@@ -113,9 +133,11 @@ class Compute:
         since = perf_counter()
         self._promised += price
         self._metrics.backlog.set(self.backlog)
-        task = self._pool.schedule(
-            work, (self.terms, route.path, body, str(file)), timeout=self._settings.deadline_seconds
-        )
+        try:
+            task = self._schedule(self._pool, self.terms, route.path, body, str(file))
+        except BaseException:
+            self._promised -= price
+            raise
         self._tasks.add(task)
         future = asyncio.wrap_future(task)
         watch = asyncio.ensure_future(gone())
@@ -151,7 +173,7 @@ class Compute:
     def _outcome(self, future: asyncio.Future[Any]) -> Any:
         try:
             if future.cancelled():
-                raise _stopped()
+                raise _stopped() if self._stopping else _lost()
             return future.result()
         except TimeoutError:
             limit = self._settings.deadline_seconds
@@ -160,8 +182,17 @@ class Compute:
         except ProcessExpired as error:
             self._metrics.workers_lost.inc()
             LOG.error("a compute process died", extra={"exit_code": error.exitcode})
-            detail = "the process that computed this answer died; other questions are not affected"
-            raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
+            raise _lost() from None
+
+
+def _lost() -> Refusal:
+    detail = "the process that computed this answer died; other questions are not affected"
+    return Refusal("worker-lost", detail, headers=(("Retry-After", "1"),))
+
+
+def _dispose(pool: ProcessPool) -> None:
+    pool.stop()  # type: ignore[no-untyped-call]
+    pool.join()
 
 
 def _stopped() -> Refusal:
