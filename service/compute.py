@@ -11,7 +11,7 @@ import multiprocessing
 import os
 import tempfile
 from collections.abc import Awaitable, Callable
-from concurrent.futures import TimeoutError
+from concurrent.futures import BrokenExecutor, TimeoutError
 from itertools import count
 from math import ceil
 from pathlib import Path
@@ -76,7 +76,7 @@ class Compute:
         return ProcessPool(self.size, initializer=prepare, initargs=(self.terms,), context=context)
 
     def _schedule(self, pool: ProcessPool, *question: Any) -> ProcessFuture[Any]:
-        """Hand a question to the pool; a pool that broke, as one does whose process dies while it reads, is replaced."""
+        """Hand a question to the pool; a pool that broke (a process died while it read) is replaced."""
         try:
             return pool.schedule(work, question, timeout=self._settings.deadline_seconds)
         except RuntimeError:
@@ -182,6 +182,9 @@ class Compute:
         except ProcessExpired as error:
             self._metrics.workers_lost.inc()
             LOG.error("a compute process died", extra={"exit_code": error.exitcode})
+            raise _lost() from None
+        except BrokenExecutor:
+            # Raised for each question of a pool that found itself broken; the next one replaces the pool.
             raise _lost() from None
 
 

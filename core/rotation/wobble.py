@@ -131,8 +131,9 @@ def from_ellipticity(ellipticity: float, day: Day = "sidereal") -> Wobble:
     InvalidParameter
         If the ratio is not greater than 1.
     """
-    if not 1.0 < ellipticity < float("inf"):
-        raise InvalidParameter("ellipticity", "be finite and greater than 1: a/c of an oblate body")
+    # Beyond this the asymmetry (I1 - I)/I is one to the last digit of a double.
+    if not 1.0 < ellipticity < 1e8:
+        raise InvalidParameter("ellipticity", "be greater than 1 and less than 1e8: a/c of an oblate body")
     # e = (r^2 - 1)/(r^2 + 1), with r^2 - 1 = (r - 1)(r + 1) formed exactly.
     r = Fraction(ellipticity)
     rotations = (r * r + 1) / ((r - 1) * (r + 1))
