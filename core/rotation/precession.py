@@ -38,6 +38,7 @@ from core.rotation.attitude import FreeAttitude
 from core.rotation.closed_form import FreeRotation
 from core.rotation.constants_of_motion import PERIODIC, REST, SEPARATRIX, STEADY
 from core.rotation.exact_figures import SMALLEST, angle, double, square_root
+from core.rotation.torque_free import pinned_notices
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
 _REGIMES: Mapping[int, Regime] = {REST: "rest", STEADY: "steady", PERIODIC: "periodic", SEPARATRIX: "separatrix"}
@@ -144,7 +145,7 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
         raise InvalidParameter("angular_velocity", "be three finite numbers")
     rotation = FreeRotation(body.principal_of_motion, given)
     found = _of(rotation)
-    inherited = tuple(notice.inside("body") for notice in body.warnings)
+    inherited = tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body)))
     return replace(found, warnings=(*inherited, *found.warnings))
 
 

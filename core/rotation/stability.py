@@ -32,6 +32,7 @@ from core.quantities import AngularRate, Quantity
 from core.rotation.closed_form import FreeRotation
 from core.rotation.exact_figures import double, square_root
 from core.rotation.principal_frame import PrincipalFrame
+from core.rotation.torque_free import pinned_notices
 
 Kind = Literal["center", "saddle", "degenerate"]
 Attitude = Literal["orbital", "unstable"]
@@ -161,7 +162,7 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
         if e.eigenvalues is None or e.drift_rate is None
     ]
     flip = None if disturbance is None else _flip(inertia, moments, float(rate), disturbance)
-    inherited = [notice.inside("body") for notice in body.warnings]
+    inherited = [notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))]
     equilibria = (*shown, _rest())
     return Stability(inertia.symmetry, float(rate), equilibria, flip, (*inherited, *warnings, *outside))
 

@@ -15,6 +15,7 @@ from core.integration.methods import Method
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.initial_states import initial_states
+from core.rotation.torque_free import pinned_notices
 from service.pricing import Priced, effort, extreme, numbers
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, properties_of
@@ -101,7 +102,10 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         ],
         "time": many.time,
         "angular_velocity": samples,
-        "warnings": (*(notice.inside("body") for notice in body.warnings), *warnings.values()),
+        "warnings": (
+            *(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+            *warnings.values(),
+        ),
     }
 
 

@@ -10,8 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.mass_properties import MassProperties, diagonal
+from core.bodies.measured import PointMasses
 from core.errors import InvalidParameter, NotApplicable
 from core.rotation.closed_form import FreeRotation
+from core.rotation.precession import precession
 from core.rotation.stability import stability
 from tests.oracles.cases import T_HANDLE
 from tests.oracles.free_rotation import flip_interval
@@ -180,3 +182,9 @@ def test_refusals(rate):
         stability(diagonal((1.0, 2.0, 3.0)), 1.0, (rate, 0.0))
     with pytest.raises(InvalidParameter, match="greater than 0"):
         stability(diagonal((0.0, 1.0, 1.0)))
+
+
+def test_a_body_pinned_away_from_its_centre_of_mass_is_said_not_to_be_free():
+    body = PointMasses(1.0, [[1, 0, 0], [0, 2, 0], [0, 0, 3], [1, 1, 1]], "origin").mass_properties()
+    assert "not-free" in {notice.code for notice in stability(body).warnings}
+    assert "not-free" in {notice.code for notice in precession(body, np.array([1.0, 2.0, 3.0])).warnings}
