@@ -51,7 +51,7 @@ clean:
 # A longer fuzz than the tests', with a new seed each time; FUZZ is the number of questions for each endpoint.
 FUZZ ?= 2000
 
-.PHONY: fuzz schemathesis soak
+.PHONY: fuzz schemathesis soak image
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
@@ -61,3 +61,7 @@ schemathesis: environment
 
 soak: environment
 	$(BIN)/python -m benchmarks.soak
+
+# The steps of the Dockerfile in a clean Debian, and the image as it is meant to run; needs root and debootstrap.
+image: environment
+	$(BIN)/python -m tests.image.clean_root

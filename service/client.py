@@ -38,6 +38,8 @@ class Client:
     ----------
     url : str
         For example ``"http://127.0.0.1:8000"``.
+    key : str, optional
+        Sent as ``Authorization: Bearer``, for a service that asks for keys.
     patience : float
         How long to go on asking while the service is too busy (s).
     transport : httpx.BaseTransport, optional
@@ -52,9 +54,16 @@ class Client:
     """
 
     def __init__(
-        self, url: str, *, patience: float = 10.0, timeout: float = 60.0, transport: httpx.BaseTransport | None = None
+        self,
+        url: str,
+        *,
+        key: str | None = None,
+        patience: float = 10.0,
+        timeout: float = 60.0,
+        transport: httpx.BaseTransport | None = None,
     ) -> None:
-        self._http = httpx.Client(base_url=url, timeout=timeout, transport=transport)
+        headers = {} if key is None else {"authorization": f"Bearer {key}"}
+        self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout, transport=transport)
         self._patience = patience
 
     def __enter__(self) -> Self:

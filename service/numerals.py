@@ -20,7 +20,7 @@ from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS
 from core.certified.exact_bodies import UNIFORM, exact_body
 from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import LONGEST_NUMERAL, evenly_spaced, exact, exact_numbers
+from core.certified.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, exact, exact_numbers
 from core.errors import InvalidParameter, NotApplicable
 from core.quantities import Quantity, Rows, members_of
 from service.schemas import ObjectOrArray, Request
@@ -46,13 +46,17 @@ class Numeral:
         return {
             "type": "union",
             "mode": "left_to_right",
-            "choices": [{"type": "float", "strict": True, "allow_inf_nan": False}, {"type": "str", "strict": True}],
+            "choices": [
+                {"type": "float", "strict": True, "allow_inf_nan": False},
+                {"type": "str", "strict": True, "max_length": LONGEST_NUMERAL, "pattern": f"^(?:{NUMERAL})$"},
+            ],
             "custom_error_type": "numeral",
-            "custom_error_message": "must be a finite number or a decimal string",
+            "custom_error_message": "must be a finite number, or a decimal string of at most "
+            f'{LONGEST_NUMERAL} characters, for example "0.1" or "6.02e23"',
         }
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        text = {"type": "string", "format": "decimal", "maxLength": LONGEST_NUMERAL}
+        text = {"type": "string", "format": "decimal", "maxLength": LONGEST_NUMERAL, "pattern": f"^(?:{NUMERAL})$"}
         return {"anyOf": [{"type": "number", **self.quantity.limits}, text], "x-unit": self.quantity.unit}
 
 

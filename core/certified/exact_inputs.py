@@ -18,7 +18,9 @@ LONGEST_NUMERAL = 1100
 LARGEST_EXPONENT = 1000
 """A power of ten costs memory in proportion to itself, so its exponent is bounded."""
 
-_NUMERAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE]([+-]?[0-9]{1,5}))?")
+NUMERAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE]([+-]?[0-9]{1,5}))?"
+"""A decimal string, as a regular expression."""
+_NUMERAL = re.compile(NUMERAL)
 
 Number = float | int | str | Fraction
 

@@ -7,7 +7,7 @@ from core.bodies import PrincipalMoments
 from service.client import Client, Refused
 
 
-def answering(*responses: httpx.Response) -> tuple[Client, list[httpx.Request]]:
+def answering(*responses: httpx.Response, key: str | None = None) -> tuple[Client, list[httpx.Request]]:
     asked: list[httpx.Request] = []
     remaining = iter(responses)
 
@@ -15,7 +15,7 @@ def answering(*responses: httpx.Response) -> tuple[Client, list[httpx.Request]]:
         asked.append(request)
         return next(remaining)
 
-    return Client("http://test", transport=httpx.MockTransport(handler)), asked
+    return Client("http://test", key=key, transport=httpx.MockTransport(handler)), asked
 
 
 def test_objects_and_arrays_are_written_as_the_wire_wants_them() -> None:
@@ -46,6 +46,16 @@ def test_a_busy_service_is_asked_again() -> None:
     client, asked = answering(busy, busy, httpx.Response(200, json={"methods": []}))
     assert client.ask("/x", {}) == {"methods": []}
     assert len(asked) == 3
+
+
+def test_a_key_is_sent() -> None:
+    client, asked = answering(httpx.Response(200, json={"methods": []}), httpx.Response(200, json={}), key="secret")
+    client.methods()
+    client.mass_properties({"kind": "ball"})
+    assert [request.headers["authorization"] for request in asked] == ["Bearer secret"] * 2
+    client, asked = answering(httpx.Response(200, json={}))
+    client.mass_properties({"kind": "ball"})
+    assert "authorization" not in asked[0].headers
 
 
 def test_patience_ends() -> None:
