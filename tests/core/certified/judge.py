@@ -222,9 +222,22 @@ def report(verdicts: list[Verdict], refused: int) -> dict[str, object]:
         "unit": "2^-53 of the largest rate; of a turned unit vector",
         "refused": refused,
         "statements below the true error": [v.name for v in verdicts if v.caught],
+        "stated over true error": {
+            "angular velocity": tightness([(v.stated, v.error) for v in verdicts]),
+            "attitude": tightness([(v.attitude_stated or 0.0, v.attitude_error or 0.0) for v in verdicts]),
+        },
         "all": figures(verdicts),
         "families": {family: figures(group) for family, group in by_family.items()},
     }
+
+
+def tightness(pairs: list[tuple[float, float]]) -> dict[str, float]:
+    """Return how many times larger than the true errors the stated ones are, where there is an error to speak of."""
+    ratios = sorted(stated / true for stated, true in pairs if true > UNIT_ROUNDOFF / 8)
+    if not ratios:
+        return {}
+    ranks = {"least": 0.0, "median": 0.5, "95 %": 0.95}
+    return {name: round(ratios[int(rank * (len(ratios) - 1))], 2) for name, rank in ranks.items()}
 
 
 def main(count: int) -> None:
