@@ -106,6 +106,7 @@ def motions(count: int) -> Iterator[tuple[str, Case]]:
         _far_magnitudes,
         _long_horizon,
         _near_an_axis,
+        _to_the_last_digit,
     )
     for number in range(count):
         family = families[number % len(families)]
@@ -186,6 +187,17 @@ def _far_magnitudes(rng: Random) -> State:
 
 def _long_horizon(rng: Random) -> State:
     return _body(rng), _rates(rng), 10 ** rng.uniform(6, 9)
+
+
+def _to_the_last_digit(rng: Random) -> State:
+    """So far that the phase is hardly told from its neighbours, in periods or, nearly symmetric, in turns."""
+    moments, rates = (_body(rng), _rates(rng))
+    periods = 2.0 ** rng.uniform(40, 48)
+    if rng.random() < 0.5:
+        difference = 10 ** rng.uniform(-14, -1)
+        moments[1] = moments[0] * (1 + difference)
+        periods *= difference / 16
+    return moments, rates, periods
 
 
 def _near_an_axis(rng: Random) -> State:
