@@ -75,6 +75,10 @@ def trajectories() -> Named:
             yield f"{motion.name}, {method['kind']}", motion.question | {"times": [turn, -turn], "method": method}
     for motion in MOTIONS[::3]:
         yield f"{motion.name}, digits", motion.question | {"times": [turn_of(motion), -1.0], "digits": 17}
+    for name, question in bodies():
+        # What is derived of a body may leave the range of doubles where the body does not.
+        if name.endswith((f"number 0 is {LARGEST:g}", "all by 1e-150", "all by 1e+150", "all by 1e+16")):
+            yield name, question | {"angular_velocity": [0.3, -0.8, 0.5], "times": [1.0], "accuracy": 0.1}
 
 
 def ensembles() -> Named:
@@ -129,7 +133,7 @@ def ellipsoids() -> Named:
             grid = {"layout": "grid", "polhodes": {"count": 2}, "energy": energy}
             yield f"{motion.name}, {energy:g} J", {"body": motion.question["body"]} | CURVES | grid
     body = {"kind": "principal-moments", "moments": [1.0, 2.0, 3.0]}
-    for resolution, points in ((1, 8), (0, 8), (10**9, 8), (4, 10**9), (200, 100_000)):
+    for resolution, points in ((1, 8), (0, 8), (10**9, 8), (4, 10**9), (40, 20_000)):
         yield f"{resolution} by {points}", {"body": body, "energy": 1.0, "resolution": resolution, "points": points}
 
 
