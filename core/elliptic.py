@@ -209,7 +209,9 @@ def split_phase(
     # Adding and subtracting 1.5 2^52 rounds to the nearest integer without a branch.
     n = (sh + 6755399441055744.0) - 6755399441055744.0
     r, r_tail = two_sum(sh - n, low)
-    return n, r, r_tail
+    # Beyond 2^46 the last place of the sum is no longer small beside one, and the nearest integer may be the next.
+    beyond = (r + 6755399441055744.0) - 6755399441055744.0
+    return n + beyond, r - beyond, r_tail
 
 
 @kernel()

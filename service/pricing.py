@@ -11,12 +11,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from math import ceil, exp, log
+from math import ceil, exp, hypot, log
+from sys import float_info
 from typing import Any, Protocol, runtime_checkable
 
 from core.integration.budget import Budget
 
 Counts = Mapping[str, float]
+
+UNCOUNTABLE = 1e18
+"""What is more than this is counted as this: infinite counts, times nothing, would leave a question without a price."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +104,8 @@ def evaluations(method: Any, times: Sequence[float] | Any, speed: float) -> floa
     costs = calibration().methods[method.kind]
     if name == "step":
         return costs["evaluations"] * steps(times, value)
-    return _power(costs["evaluations"] + costs["exponent"] * log(value)) * (speed * extent(times) + 1.0)
+    turned = speed * extent(times) if speed else 0.0
+    return min(UNCOUNTABLE, _power(costs["evaluations"] + costs["exponent"] * log(value)) * (turned + 1.0))
 
 
 def error_of(method: Any, times: Sequence[float] | Any, speed: float) -> float:
@@ -112,6 +117,11 @@ def error_of(method: Any, times: Sequence[float] | Any, speed: float) -> float:
     if small == 0.0 or speed == 0.0:
         return 0.0
     return min(2.0, _power(costs["error"] + costs["error_exponent"] * log(small)) * (speed * farthest(times) + 1.0))
+
+
+def speed_of(rates: Sequence[float]) -> float:
+    """Return the magnitude of an angular velocity, at most the largest double (rad/s)."""
+    return min(hypot(*rates), float_info.max)
 
 
 def _power(logarithm: float) -> float:
@@ -136,15 +146,15 @@ def steps(times: Any, step: float) -> float:
         ordered = sorted(set(times))
         ahead, behind = [t for t in ordered if t > 0.0], [-t for t in reversed(ordered) if t < 0.0]
         gaps = [b - a for side in (ahead, behind) for a, b in zip([0.0, *side], side, strict=False)]
-        return sum(_whole(gap / step) for gap in gaps)
+        return min(UNCOUNTABLE, sum(_whole(gap / step) for gap in gaps))
     gap: float = abs(times.stop - times.start) / max(1, times.count - 1)
     outside: float = 0.0 if times.start * times.stop <= 0.0 else min(abs(times.start), abs(times.stop))
     intervals: int = times.count - 1
-    return intervals * _whole(gap / step) + (_whole(outside / step) if outside else 0.0)
+    return min(UNCOUNTABLE, intervals * _whole(gap / step) + (_whole(outside / step) if outside else 0.0))
 
 
 def _whole(number: float) -> float:
-    return float(ceil(number)) if number < 1e15 else number
+    return float(ceil(number)) if number < 1e15 else min(number, UNCOUNTABLE)
 
 
 def extent(times: Any) -> float:

@@ -114,23 +114,25 @@ def sample_count(times: Counted | list[Any], budget: Budget) -> int:
     ------
     BudgetExceeded
         For more samples than one answer may have.
+    InvalidParameter
+        For a span whose width leaves the range of doubles.
     """
     count = len(times) if isinstance(times, list) else times.count
     if count > budget.samples:
         remedy = "ask for fewer times, or in several questions"
         path = ("times",) if isinstance(times, list) else ("times", "count")
         raise BudgetExceeded("samples", count, budget.samples, path=path, remedy=remedy)
+    if isinstance(times, Span) and not isfinite(times.stop - times.start):
+        remedy = "bring start and stop nearer to each other, or give a list"
+        raise InvalidParameter(("times", "stop"), "lie within 1.8e308 s of start", remedy=remedy)
     return count
 
 
 def sample_times(times: Span | list[float], budget: Budget) -> NDArray[np.float64]:
-    """Return the times, shape (n,), or raise `BudgetExceeded`."""
+    """Return the times, shape (n,), or refuse them as `sample_count` does."""
     sample_count(times, budget)
     if not isinstance(times, Span):
         return np.array(times, dtype=np.float64)
-    if not isfinite(times.stop - times.start):
-        remedy = "bring start and stop nearer to each other, or give a list"
-        raise InvalidParameter(("times", "stop"), "lie within 1.8e308 s of start", remedy=remedy)
     return times.values()
 
 

@@ -172,9 +172,10 @@ class MassProperties:
         if self.given_by == "tensor":
             diagonal = not (self.inertia[0, 1] or self.inertia[0, 2] or self.inertia[1, 2])
             return 1.0 if diagonal else 3.0 * float(self.principal.moments[2]) / smallest
-        own = math.sqrt(float(np.trace(self.inertia)) / smallest)
+        # Divided before they are added: the trace may leave the range of doubles where its terms do not.
+        own = math.sqrt(sum(x / smallest for x in np.diag(self.inertia).tolist()))
         far = self.inertia_about_origin
-        about_origin = own if far is None else math.sqrt(float(np.trace(far)) / smallest)
+        about_origin = own if far is None else math.sqrt(sum(x / smallest for x in np.diag(far).tolist()))
         return 4.0 + 2.0 * own * max(own, about_origin)
 
     @property

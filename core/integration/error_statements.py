@@ -41,12 +41,35 @@ class Errors(NamedTuple):
     final : float
         The same at the time farthest from the start.
     components : tuple of float
-        Largest error of each component, relative to the largest magnitude that this component takes.
+        Largest error of each component, relative to the largest magnitude that this component takes; to the largest
+        norm where that magnitude is zero, or so small that the quotient leaves the range of doubles.
     """
 
     largest: float
     final: float
     components: tuple[float, ...]
+
+    def beyond(self, own: float) -> Errors:
+        """Return errors that are not below the true ones, the reference being wrong by up to `own`.
+
+        What the reference's norm is wrong by, and what the comparison rounds, counts in proportion to large errors.
+        """
+        more = 1.0 + own + ROUNDOFF
+        return Errors(
+            self.largest * more + own, self.final * more + own, tuple(c * more + own for c in self.components)
+        )
+
+
+@kernel()
+def _norm_of_far(state: Floats, exact: Floats, inverse: float) -> float:
+    """Return the norm of a difference whose square leaves the range of doubles."""
+    most, norm = 0.0, 0.0
+    for k in range(state.size):
+        most = max(most, abs(state[k] * inverse - exact[k] * inverse))
+    for k in range(state.size):
+        share = (state[k] * inverse - exact[k] * inverse) / most
+        norm += share * share
+    return most * math.sqrt(norm) if most < math.inf else most
 
 
 @kernel(types.float64(_rows, _rows, types.float64, _row, _row, _row))
@@ -69,6 +92,8 @@ def _differences(
             wrong[k] = max(wrong[k], abs(difference))
         largest = max(largest, norm)
         errors[i] = math.sqrt(error)
+        if error == math.inf:
+            errors[i] = _norm_of_far(states[i], reference[i], inverse)
     return math.sqrt(largest)
 
 
@@ -76,6 +101,11 @@ def measured(states: Floats, reference: Floats, times: Floats) -> Errors:
     """Return the errors of `states` against `reference`, both of shape (n, k) at `times` of shape (n,).
 
     A motion that is at rest has no scale of its own; its errors are then relative to the largest of `states`.
+
+    Raises
+    ------
+    NotApplicable
+        If the states are so far from the reference that a double cannot say how far; the path leads from the method.
     """
     largest = _magnitude(reference) or _magnitude(states)
     if largest == 0.0:
@@ -84,9 +114,22 @@ def measured(states: Floats, reference: Floats, times: Floats) -> Errors:
     errors = np.empty(len(states))
     wrong, magnitudes = np.zeros(states.shape[1]), np.zeros(states.shape[1])
     norm = _differences(states, reference, unit, errors, wrong, magnitudes) or largest / unit
+    if not errors.max() / norm < math.inf:
+        raise _out_of_range()
     magnitudes[magnitudes == 0.0] = norm
+    with np.errstate(over="ignore"):
+        components = wrong / magnitudes
+    components = np.where(np.isfinite(components), components, wrong / norm)
     final = int(np.abs(times).argmax())
-    return Errors(float(errors.max()) / norm, float(errors[final]) / norm, tuple(map(float, wrong / magnitudes)))
+    return Errors(float(errors.max()) / norm, float(errors[final]) / norm, tuple(map(float, components)))
+
+
+def _out_of_range() -> NotApplicable:
+    return NotApplicable(
+        "the states are so far from the motion that their error leaves the range of double precision",
+        path=("kind",),
+        remedy="give the method a finer setting, or leave it out",
+    )
 
 
 def _magnitude(rows: Floats) -> float:
@@ -162,6 +205,8 @@ def estimated(
     ------
     BudgetExceeded, InvalidParameter
         As `AbstractMethod.integrate`, for the other run.
+    NotApplicable
+        If the error leaves the range of doubles.
     """
     finer = method.finer()
     neighbour = finer or method.coarser()
@@ -181,6 +226,8 @@ def estimated(
         SAFETY * scale * difference.final + ROUNDOFF,
         tuple(SAFETY * scale * component + ROUNDOFF for component in difference.components),
     )
+    if not max(errors.largest, *errors.components) < math.inf:
+        raise _out_of_range()
     return Estimate(errors, finer, other)
 
 
@@ -192,7 +239,8 @@ def _certain_scale(system: System, states: Floats, difference: Errors) -> float:
     """
     unit = float(np.abs(states).max()) or 1.0
     norms = np.sqrt(((states / unit) ** 2).sum(axis=1))
-    start = float(np.sqrt(((system.initial_state / unit) ** 2).sum()))
+    # The square of the start may be nothing beside that of a run that blows up, and the start is all that is certain.
+    start = math.hypot(*(system.initial_state / unit).tolist())
     largest = max(float(norms.max()), start)
     left = max(largest * (1 - difference.largest), start)
     return largest / left if left > 0.0 else 1.0

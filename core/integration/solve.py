@@ -154,14 +154,14 @@ def _compared_with_closed_form(
     accuracy: float,
     input_uncertainty: float,
 ) -> Trajectory:
-    found = measured(run.states, exact.sample(times), times)
-    # The reference may be wrong by its own bound, and the statement must not be smaller than the true error.
-    own = exact.error(times)
+    reference, own = exact.sample(times), exact.error(times)
+    with _inside("method"):
+        found = measured(run.states, reference, times).beyond(own)
     stated = Accuracy(
         accuracy,
-        found.largest + own,
+        found.largest,
         "measured against closed form",
-        found.final + own,
+        found.final,
         exact.inherited(times, input_uncertainty),
         drifts(system, run.states),
     )
@@ -188,11 +188,11 @@ def _compared_with_finer_run(
         # Two runs as far apart as the motion is wide show nothing of a third; a run that does converge has to judge.
         try:
             judge = run_to_accuracy(system, times, JUDGE, budget, run.work.evaluations + spent)
+            found = measured(run.states, judge.states, times)
         except MechanicsError as fault:
             detail = f"the error is so large that it is only known to be of this order: {fault.detail}"
             uncertain = (Notice("error-uncertain", detail, ("method",)),)
         else:
-            found = measured(run.states, judge.states, times)
             errors = found._replace(
                 largest=found.largest * (1 + JUDGE) + judge.errors.largest,
                 final=found.final * (1 + JUDGE) + judge.errors.largest,

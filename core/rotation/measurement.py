@@ -12,7 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
-from core.errors import BudgetExceeded, InvalidParameter, MechanicsError
+from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError
 from core.integration.budget import Budget
 from core.integration.error_statements import drifts, measured
 from core.integration.methods import Method
@@ -121,6 +121,8 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         If the method fails with its setting, or the samples are so many that they do not differ.
     AccuracyUnreachable
         If the duration is beyond the reach of the closed form.
+    NotApplicable
+        If the samples are so far from the motion that their error leaves the range of doubles.
     """
     budget = budget or Budget()
     if measure.samples > budget.samples:
@@ -130,23 +132,28 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
     times = np.linspace(0.0, measure.duration, measure.samples)
     if times[1] == 0.0:
         raise InvalidParameter(("measure", "duration"), "be long enough for its samples to differ")
+    rotation = system.closed_form()
+    try:
+        exact = rotation.sample(times)
+    except AccuracyUnreachable as fault:
+        fault.path = ("measure", "duration")
+        raise
     try:
         run = measure.method.integrate(system, times, budget)
+        distances = _distances(run.states, system.initial_state)
+        back = first_return(distances, measure.tolerance)
+        seen = slice(0, back + 1 if back is not None else None)
+        error = measured(run.states[seen], exact[seen], times[seen]).beyond(rotation.error(times[seen])).largest
     except InvalidParameter as fault:
         raise fault.inside("measure", "method") from fault
     except MechanicsError as fault:
         fault.path = ("measure", "method", *fault.path)
         raise
-    rotation = system.closed_form()
-    distances = _distances(run.states, system.initial_state)
-    back = first_return(distances, measure.tolerance)
-    exact = rotation.sample(times)
     exact_back = first_return(_distances(exact, system.initial_state), measure.tolerance)
 
     theory = rotation.period
     theory = theory if theory is not None and theory < inf else None
     time = float(times[back]) if back is not None else None
-    seen = slice(0, back + 1 if back is not None else None)
     found = MeasuredPeriod(
         time=time,
         grid_point=back,
@@ -156,7 +163,7 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         from_grid=None,
         from_method=None,
         crossing=_crossing(system, times, run.states, back) if back is not None else None,
-        error=measured(run.states[seen], exact[seen], times[seen]).largest,
+        error=error,
         drifts=dict(drifts(system, run.states[seen])),
         explanation="",
         work=run.work,

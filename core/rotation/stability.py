@@ -19,13 +19,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import isfinite
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from core.bodies.exact import exact_vector
 from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmetry
-from core.errors import InvalidParameter, NotApplicable
+from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.integration.system import Floats
 from core.notices import Notice
 from core.quantities import AngularRate, Quantity
@@ -93,7 +94,8 @@ class Flip:
     disturbance : tuple of 2 floats
         Rates added along the axes of smallest and largest moment (rad/s).
     interval : float or None
-        Between sign changes of the component along the middle axis (s).
+        Between sign changes of the component along the middle axis; None if there are none, or they are farther apart
+        than doubles can say (s).
     reason : str
     """
 
@@ -157,7 +159,11 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
     found = [_about(moments, k, Fraction(rate)) for k in range(3)]
     shown = [_stated(e, inertia, k) for k, e in enumerate(found)]
     outside = [
-        Notice("out-of-range", "eigenvalues leave the range of double precision and are null", ("equilibria", k))
+        Notice(
+            "out-of-range",
+            f"eigenvalues of equilibrium {k} leave the range of double precision and are null",
+            ("rate",),
+        )
         for k, e in enumerate(shown)
         if e.eigenvalues is None or e.drift_rate is None
     ]
@@ -307,7 +313,14 @@ def _flip(inertia: PrincipalInertia, moments: list[Fraction], rate: float, distu
     # A body along its principal axes moves as this one does; in them the disturbance is exact.
     along = replace(inertia, axes=np.eye(3), axes_tail=np.zeros((3, 3)))
     rotation = FreeRotation(along, np.array([given[0], rate, given[1]]))
-    interval = rotation.flip_interval
+    try:
+        interval = rotation.flip_interval
+    except AccuracyUnreachable as fault:
+        fault.path = ("disturbance",)
+        raise
+    if interval is not None and not isfinite(interval):
+        reason = "it turns over, but after a time that leaves the range of double precision"
+        return Flip(given, None, f"{reason}; {rotation.model.why}")
     if interval is not None:
         return Flip(given, interval, f"it turns over every half period; {rotation.model.why}")
     return Flip(given, None, f"it never turns over; {rotation.model.why}")

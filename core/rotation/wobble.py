@@ -8,6 +8,7 @@ from math import sqrt
 from typing import Literal
 
 from core.errors import InvalidParameter
+from core.rotation.exact_figures import LARGEST
 
 Day = Literal["sidereal", "solar"]
 
@@ -114,6 +115,8 @@ def from_period(period: float, day: Day = "sidereal") -> Wobble:
     if not 0.0 < period < float("inf"):
         raise InvalidParameter("period", "be finite and greater than 0 days")
     rotations = Fraction(period) * unit
+    if rotations >= LARGEST:
+        raise InvalidParameter("period", "be less than 1.79e308 rotations", remedy="give the period in days")
     if rotations <= 1:
         raise InvalidParameter(
             "period",

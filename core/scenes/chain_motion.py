@@ -95,6 +95,11 @@ class Slide:
         """Return the chain with the opposite velocity: its future is this one's past."""
         return replace(self, velocity=-self.velocity)
 
+    def mirrored(self) -> Slide:
+        """Return the same chain with the faces exchanged: its position is the length on face 2."""
+        (m1, m2), (a, b) = self.masses, self.pulls
+        return Slide((m2, m1), (b, a), self.length, self.density, self.length - self.position, -self.velocity)
+
     def time_to(self, x: Ball, way: int) -> Ball:
         """Return the time until the chain is at x with a velocity of the sign `way`, given that it comes there."""
         gone, k = x - self.position, self.rate
@@ -196,22 +201,24 @@ class ChainMotion(Motion):
     def sample(self, times: Floats) -> Columns:
         """Evaluate by the form of the solution that cancels less at these times, column by column."""
         slide = self.slide
-        with np.errstate(over="ignore", invalid="ignore"):
-            forms = [self._from_start(times)]
-            if sign(slide.square):
-                forms.append(self._from_equilibrium(times))
-            x, dx = min(((form[0], form[2]) for form in forms), key=lambda column: _largest(column[1]))
-            v, dv = min(((form[1], form[3]) for form in forms), key=lambda column: _largest(column[1]))
-            (m1, m2), rho = (float(m) for m in slide.masses), float(slide.density)
-            unit, length = float((slide.pulls[0] + slide.pulls[1]) / slide.mass), float(slide.length)
-            left, right = m1 + rho * x, m2 + rho * (length - x)
-            tension = unit * left * right
-            slope = unit * rho * (np.abs(left) + np.abs(right))
+        with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+            x, v, dx, dv = _evaluated(slide, times)
+            # A difference from the length would lose the short side of a chain that nearly lies on the other.
+            y, _, dy, _ = _evaluated(slide.mirrored(), times)
+            # Masses are shares of the greatest there may be on a side, so that no product but the last leaves the range
+            # of doubles unless the tension does.
+            (m1, m2), chain, length = slide.masses, slide.density * slide.length, float(slide.length)
+            most = (slide.pulls[0] + slide.pulls[1]) * (m1 + chain) * (m2 + chain) / slide.mass
+            greatest, thick, thin = float(most), _share(chain, m1 + chain), _share(chain, m2 + chain)
+            left = _share(m1, m1 + chain) + thick * (x / length)
+            right = _share(m2, m2 + chain) + thin * (y / length)
+            tension = greatest * (left * right)
+            shift = np.abs(thick * (dx / length) * right) + np.abs(thin * (dy / length) * left) + SMALLEST
             values = finite({"position": x, "velocity": v, "apex_tension": tension})
             errors = {
                 "position": dx,
                 "velocity": dv,
-                "apex_tension": 8 * UNIT_ROUNDOFF * (np.abs(tension) + slope * length) + slope * dx,
+                "apex_tension": 16 * UNIT_ROUNDOFF * np.abs(tension) + greatest * shift,
             }
         given = (slide.position, slide.velocity, slide.tension(slide.position))
         scales = {
@@ -220,44 +227,59 @@ class ChainMotion(Motion):
         }
         return Columns(values, errors, scales).without_underflow({"apex_tension": given[2]})
 
-    def _from_start(self, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return x, x' and bounds of their errors from x_0 + x_0' sinh(kt)/k + x_0'' 2 sinh^2(kt/2)/k^2."""
-        slide = self.slide
-        x0, v0, a0, k = (float(ball) for ball in (slide.position, slide.velocity, slide.acceleration, slide.rate))
-        z = k * t
-        half = t * _sinhc(0.5 * z)
-        square = 0.5 * a0 * half * half
-        single = t * _sinhc(z)
-        cosh = np.cosh(z)
-        x = x0 + (v0 * single + square)
-        v = v0 * cosh + a0 * single
-        few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
-        # What numbers lose below the normal range; zeros lose nothing.
-        tiny = SMALLEST * (1.0 + np.abs(t)) * (1.0 + cosh) * ((v0 != 0.0) + (a0 != 0.0) * np.abs(t))
-        dx = few * (np.abs(x0) + np.abs(v0 * single) + np.abs(square)) + tiny * np.abs(t)
-        return x, v, dx, few * (np.abs(v0) * cosh + np.abs(a0 * single)) + tiny
 
-    def _from_equilibrium(self, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return x, x' and bounds of their errors from x_eq + P e^(kt) + N e^(-kt)."""
-        slide = self.slide
-        k = slide.rate
-        away, drift = slide.acceleration / slide.square, slide.velocity / k
-        equilibrium, growing, decaying, rate = (
-            float(ball) for ball in (slide.position - away, (away + drift) / 2, (away - drift) / 2, k)
-        )
-        z = rate * t
-        # A coefficient of zero stays zero however large its exponential.
-        up = growing * np.exp(z) if growing else np.zeros_like(z)
-        down = decaying * np.exp(-z) if decaying else np.zeros_like(z)
-        few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
-        size = np.abs(up) + np.abs(down)
-        tiny = SMALLEST * (1.0 + rate) * (size != 0.0)
-        return (
-            equilibrium + (up + down),
-            rate * (up - down),
-            few * size + 4 * UNIT_ROUNDOFF * (abs(equilibrium) + size) + tiny,
-            few * rate * size + tiny,
-        )
+def _evaluated(slide: Slide, times: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return position, velocity and bounds of their errors, each by the form that cancels less."""
+    forms = [_from_start(slide, times)]
+    if sign(slide.square):
+        forms.append(_from_equilibrium(slide, times))
+    x, dx = min(((form[0], form[2]) for form in forms), key=lambda column: _largest(column[1]))
+    v, dv = min(((form[1], form[3]) for form in forms), key=lambda column: _largest(column[1]))
+    return x, v, dx, dv
+
+
+def _from_start(slide: Slide, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return x, x' and bounds of their errors from x_0 + x_0' sinh(kt)/k + x_0'' 2 sinh^2(kt/2)/k^2."""
+    x0, v0, a0, k = (float(ball) for ball in (slide.position, slide.velocity, slide.acceleration, slide.rate))
+    z = k * t
+    half = t * _sinhc(0.5 * z)
+    square = 0.5 * a0 * half * half
+    single = t * _sinhc(z)
+    cosh = np.cosh(z)
+    x = x0 + (v0 * single + square)
+    v = v0 * cosh + a0 * single
+    few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
+    # What numbers lose below the normal range; zeros lose nothing.
+    tiny = SMALLEST * (1.0 + np.abs(t)) * (1.0 + cosh) * ((v0 != 0.0) + (a0 != 0.0) * np.abs(t))
+    dx = few * (np.abs(x0) + np.abs(v0 * single) + np.abs(square)) + tiny * np.abs(t)
+    return x, v, dx, few * (np.abs(v0) * cosh + np.abs(a0 * single)) + tiny
+
+
+def _from_equilibrium(slide: Slide, t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return x, x' and bounds of their errors from x_eq + P e^(kt) + N e^(-kt)."""
+    k = slide.rate
+    away, drift = slide.acceleration / slide.square, slide.velocity / k
+    equilibrium, growing, decaying, rate = (
+        float(ball) for ball in (slide.position - away, (away + drift) / 2, (away - drift) / 2, k)
+    )
+    z = rate * t
+    # A coefficient of zero stays zero however large its exponential.
+    up = growing * np.exp(z) if growing else np.zeros_like(z)
+    down = decaying * np.exp(-z) if decaying else np.zeros_like(z)
+    few = UNIT_ROUNDOFF * (16.0 + 4.0 * np.abs(z))
+    size = np.abs(up) + np.abs(down)
+    tiny = SMALLEST * (1.0 + rate) * (size != 0.0)
+    return (
+        equilibrium + (up + down),
+        rate * (up - down),
+        few * size + 4 * UNIT_ROUNDOFF * (abs(equilibrium) + size) + tiny,
+        few * rate * size + tiny,
+    )
+
+
+def _share(part: Ball, whole: Ball) -> float:
+    """Return a part of a mass, none of which is none."""
+    return float(part / whole) if sign(whole) else 0.0
 
 
 def _sinhc(z: Floats) -> Floats:

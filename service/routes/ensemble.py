@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import hypot
 from typing import Annotated, Any
 
 import numpy as np
@@ -16,10 +15,10 @@ from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.initial_states import initial_states
 from core.rotation.torque_free import pinned_notices
-from service.pricing import Priced, effort, extreme, numbers
+from service.pricing import Priced, effort, extreme, numbers, speed_of
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, properties_of
-from service.routes.rotation import AccuracyView, ModelView, WorkView
+from service.routes.rotation import AccuracyView, ModelView, WorkView, in_range
 from service.routes.surfaces import SOURCE_BODY, Count, Seed
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
@@ -85,21 +84,22 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
             stated = member.accuracy
             samples[k], added[k] = rounded(samples[k], question.round, stated.error + (stated.inherited or 0.0))
             told += notices_of(stated, added[k])
+    members = [
+        {
+            "model": member.model,
+            "method": member.method,
+            "period": in_range("period", member.period, told),
+            "accuracy": covering(member.accuracy, more),
+            "work": member.work,
+            "ended": member.ended,
+        }
+        for member, more in zip(many.members, added, strict=True)
+    ]
     warnings = {(notice.code, notice.detail): notice for notice in told}
     return {
         "error": max(member.accuracy.error + more for member, more in zip(many.members, added, strict=True)),
         "seed": None if question.sample is None else question.sample.seed,
-        "members": [
-            {
-                "model": member.model,
-                "method": member.method,
-                "period": member.period,
-                "accuracy": covering(member.accuracy, more),
-                "work": member.work,
-                "ended": member.ended,
-            }
-            for member, more in zip(many.members, added, strict=True)
-        ],
+        "members": members,
         "time": many.time,
         "angular_velocity": samples,
         "warnings": (
@@ -126,7 +126,7 @@ def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, floa
     starts = question.angular_velocities or []
     members = question.sample.count if question.sample is not None else len(starts)
     samples = sample_count(question.times, budget)
-    speed = max((hypot(*start) for start in starts), default=1.0)
+    speed = max((speed_of(start) for start in starts), default=1.0)
     return {
         **counts(question, budget),
         "members": members,

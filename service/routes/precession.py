@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
-from math import hypot
 from typing import Any, Literal
 
 import numpy as np
@@ -18,7 +17,7 @@ from core.rotation.measurement import Measure, MeasuredPeriod, measure_period
 from core.rotation.precession import Precession, Regime, precession
 from core.rotation.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
-from service.pricing import Priced, effort
+from service.pricing import Priced, effort, speed_of
 from service.routes.bodies import counts, properties_of
 from service.routes.rotation import T_HANDLE
 from service.routing import Answer, Example, Question
@@ -124,7 +123,7 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     if measure is None:
         return found
     times = Span(start=0.0, stop=measure.duration, count=measure.samples)
-    return found | effort(measure.method, times, hypot(*question.angular_velocity), measure.samples)
+    return found | effort(measure.method, times, speed_of(question.angular_velocity), measure.samples)
 
 
 def precession_outline(question: PrecessionRequest) -> PrecessionRequest:

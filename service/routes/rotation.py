@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, isfinite
+from math import isfinite
 from typing import Any, Literal
 
 import numpy as np
@@ -19,7 +19,7 @@ from core.notices import Notice
 from core.quantities import AngularVelocity, Quaternion, Tolerance, Uncertainty
 from core.rotation.attitude import FreeAttitude
 from core.rotation.torque_free import TorqueFree
-from service.pricing import Priced, effort, extreme, numbers
+from service.pricing import Priced, effort, extreme, numbers, speed_of
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, properties_of
 from service.routing import Answer, Example, Question
@@ -137,8 +137,8 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     fields: Answer = {
         "model": solved.model,
         "method": solved.method,
-        "period": _in_range("period", solved.period, notices),
-        "flip_interval": _in_range("flip_interval", exact.flip_interval, notices),
+        "period": in_range("period", solved.period, notices),
+        "flip_interval": in_range("flip_interval", exact.flip_interval, notices),
         "energy": system.energy,
         "angular_momentum": system.angular_momentum,
         "accuracy": accuracy,
@@ -189,7 +189,8 @@ def _require_closed_form(question: TrajectoryRequest) -> None:
         )
 
 
-def _in_range(name: str, value: float | None, notices: list[Notice]) -> float | None:
+def in_range(name: str, value: float | None, notices: list[Notice]) -> float | None:
+    """Return a figure as it is written: null, with a notice, where it is too large for a double."""
     if value is None or isfinite(value):
         return value
     notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
@@ -202,7 +203,7 @@ def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, 
     found = counts(question, budget) | {"samples": samples}
     if "attitude" in wanted:
         found |= {"attitudes": 1.0, "attitude samples": samples}
-    found |= effort(question.method, question.times, hypot(*question.angular_velocity), samples)
+    found |= effort(question.method, question.times, speed_of(question.angular_velocity), samples)
     columns = 3 * ("angular_velocity" in wanted) + 4 * ("attitude" in wanted)
     return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from math import hypot
 from typing import Annotated
 
 import numpy as np
@@ -16,7 +15,7 @@ from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
 from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
 from service.figures import Curve, Level, log_log
-from service.pricing import Priced, effort, extreme
+from service.pricing import Priced, effort, extreme, speed_of
 from service.routes.bodies import counts, properties_of
 from service.routes.rotation import T_HANDLE
 from service.routing import Answer, Example, Question
@@ -110,7 +109,7 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
     if question.methods is None:
         return found | {"ladders": repeats, "ladder samples": repeats * samples}
-    speed = hypot(*question.angular_velocity)
+    speed = speed_of(question.angular_velocity)
     for method in question.methods:
         for name, count in effort(method, question.times, speed, samples, repeats).items():
             found[name] = found.get(name, 0.0) + count

@@ -6,12 +6,13 @@ digits as are asked for; its digits are raised by what 1 - m loses.
 
 import math
 import random
+from fractions import Fraction
 
 import mpmath
 import numpy as np
 import pytest
 
-from core.elliptic import LARGEST_QUARTER, carlson_rf, complete_k, jacobi
+from core.elliptic import LARGEST_QUARTER, carlson_rf, complete_k, jacobi, split_phase
 from core.errors import AccuracyUnreachable, InvalidParameter
 
 ULP = 2.0**-53
@@ -103,3 +104,17 @@ def test_what_cannot_be_right_is_refused():
         carlson_rf(0.0, 0.0, 1.0)
     with pytest.raises(InvalidParameter):
         carlson_rf(-1.0, 0.0, 1.0)
+
+
+def test_a_phase_is_split_at_its_nearest_integer_up_to_the_last():
+    rng = random.Random("phases")
+    for _ in range(2000):
+        exponent = rng.uniform(-3, 50)
+        rate, start = rng.uniform(0.5, 1), rng.uniform(-1, 1)
+        rate_tail, time = rate * 2.0**-54 * rng.uniform(-1, 1), 2.0**exponent * rng.choice((-1, 1))
+        n, r, tail = split_phase(rate, rate_tail, time, start, 0.0)
+        exact = (Fraction(rate) + Fraction(rate_tail)) * Fraction(time) + Fraction(start)
+        assert n == round(n)
+        # The polynomials of sine and cosine hold no farther.
+        assert abs(r) <= 0.5
+        assert abs(Fraction(n) + Fraction(r) + Fraction(tail) - exact) <= Fraction(2) ** -53

@@ -51,8 +51,9 @@ def test_errors_are_those_that_the_question_has(whole) -> None:
             assert one.failure is None
             run = one.method.integrate(elliptic_functions(), TIMES)
             true = measured(run.states, reference.sample(TIMES), TIMES)
-            assert one.error == true.largest + reference.bound
-            assert one.final_error == true.final + reference.bound
+            # Never below what the reference leaves open, and above it only by rounding.
+            assert true.largest + reference.bound <= one.error <= (true.largest + reference.bound) * (1 + 1e-14)
+            assert true.final + reference.bound <= one.final_error <= (true.final + reference.bound) * (1 + 1e-14)
             assert one.evaluations == run.work.evaluations
             assert len(one.component_errors) == 3
             assert one.seconds is None

@@ -106,6 +106,7 @@ def motions(count: int) -> Iterator[tuple[str, Case]]:
         _far_magnitudes,
         _long_horizon,
         _near_an_axis,
+        _to_the_last_digit,
     )
     for number in range(count):
         family = families[number % len(families)]
@@ -188,6 +189,17 @@ def _long_horizon(rng: Random) -> State:
     return _body(rng), _rates(rng), 10 ** rng.uniform(6, 9)
 
 
+def _to_the_last_digit(rng: Random) -> State:
+    """So far that the phase is hardly told from its neighbours, in periods or, nearly symmetric, in turns."""
+    moments, rates = (_body(rng), _rates(rng))
+    periods = 2.0 ** rng.uniform(40, 48)
+    if rng.random() < 0.5:
+        difference = 10 ** rng.uniform(-14, -1)
+        moments[1] = moments[0] * (1 + difference)
+        periods *= difference / 16
+    return moments, rates, periods
+
+
 def _near_an_axis(rng: Random) -> State:
     rates = [10 ** rng.uniform(-160, -3) * rng.gauss(0, 1) for _ in range(3)]
     rates[rng.randrange(3)] = rng.choice((-1.0, 1.0)) * rng.uniform(0.5, 2)
@@ -222,9 +234,22 @@ def report(verdicts: list[Verdict], refused: int) -> dict[str, object]:
         "unit": "2^-53 of the largest rate; of a turned unit vector",
         "refused": refused,
         "statements below the true error": [v.name for v in verdicts if v.caught],
+        "stated over true error": {
+            "angular velocity": tightness([(v.stated, v.error) for v in verdicts]),
+            "attitude": tightness([(v.attitude_stated or 0.0, v.attitude_error or 0.0) for v in verdicts]),
+        },
         "all": figures(verdicts),
         "families": {family: figures(group) for family, group in by_family.items()},
     }
+
+
+def tightness(pairs: list[tuple[float, float]]) -> dict[str, float]:
+    """Return how many times larger than the true errors the stated ones are, where there is an error to speak of."""
+    ratios = sorted(stated / true for stated, true in pairs if true > UNIT_ROUNDOFF / 8)
+    if not ratios:
+        return {}
+    ranks = {"least": 0.0, "median": 0.5, "95 %": 0.95}
+    return {name: round(ratios[int(rank * (len(ratios) - 1))], 2) for name, rank in ranks.items()}
 
 
 def main(count: int) -> None:

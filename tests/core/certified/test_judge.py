@@ -4,7 +4,7 @@ import statistics
 
 import pytest
 
-from tests.core.certified.judge import UNIT_ROUNDOFF, Verdict, judged, motions, report
+from tests.core.certified.judge import UNIT_ROUNDOFF, Verdict, judged, motions, report, tightness
 from tests.oracles.cases import Case
 
 COUNT = 400
@@ -43,4 +43,5 @@ def test_the_judge_catches_what_is_wrong():
     assert not fair.caught
     overstated = Verdict(fair.name, fair.family, fair.error, fair.error / 2, None, None)
     assert overstated.caught
+    assert tightness([(3.0, 1.0), (2.0, 1.0), (9.0, 1e-20)])["least"] == 2.0
     assert report([overstated], 0)["statements below the true error"] == [case.name]

@@ -7,7 +7,7 @@ import pytest
 
 from core.errors import BudgetExceeded, MechanicsError, NotApplicable
 from core.integration.budget import Budget
-from core.integration.error_statements import drifts, estimated, measured
+from core.integration.error_statements import Errors, drifts, estimated, measured
 from core.integration.methods import (
     ClosedFormEvaluation,
     DormandPrince853,
@@ -142,3 +142,26 @@ def test_a_method_without_a_setting_cannot_be_compared_with_itself() -> None:
     run = ClosedFormEvaluation().integrate(system, TIMES)
     with pytest.raises(NotApplicable):
         estimated(ClosedFormEvaluation(), system, TIMES, run, Budget(), 0)
+
+
+def test_states_whose_error_has_no_square_in_range_have_an_error_all_the_same() -> None:
+    reference, times = np.array([[3.0, 4.0, 0.0]]), np.array([1.0])
+    for size in (1e150, 1e200, 1e300):
+        found = measured(np.array([[3.0, 4.0 - 5 * size, 0.0]]), reference, times)
+        assert found.largest == found.final == pytest.approx(size, rel=1e-15)
+        assert found.components[1] == pytest.approx(1.25 * size, rel=1e-15)
+        assert found.components[2] == 0.0
+    with pytest.raises(NotApplicable) as refused:
+        measured(np.array([[1e300, 0.0, 0.0]]), 1e-300 * reference, times)
+    assert refused.value.path == ("kind",)
+
+
+def test_a_component_too_small_to_measure_by_is_measured_by_the_whole() -> None:
+    found = measured(np.array([[1.0, 1.0]]), np.array([[2.0, 5e-324]]), np.array([1.0]))
+    assert found.components == (0.5, 0.5)
+
+
+def test_an_error_against_a_reference_covers_what_that_leaves_open() -> None:
+    found = Errors(1e9, 0.0, (1.0,)).beyond(1e-15)
+    assert found.largest > 1e9 * (1 + 1e-15)
+    assert (found.final, found.components[0] > 1.0 + 1e-15) == (1e-15, True)

@@ -1,0 +1,110 @@
+"""Questions put to the answering layer in this process, and what must hold of whatever comes back."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from core.errors import MechanicsError
+from core.integration.budget import Budget
+from service.answering import Answering
+from service.problems import REGISTRY, Problem, Refusal, problem_of
+from service.reading import Limits
+from service.routes import questions
+from service.routing import Question
+from service.writing import written
+
+ROUTES: dict[str, Question] = {route.path: route for route in questions()}
+BUDGET = Budget(samples=2_000_000, evaluations=5_000)
+ANSWERING = Answering(ROUTES.values(), BUDGET, Limits())
+
+Asked = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Reply:
+    """An answer as its reader gets it, or the problem that it was refused with."""
+
+    answer: Any
+    problem: Problem | None
+
+    @property
+    def answered(self) -> bool:
+        return self.problem is None
+
+    @property
+    def codes(self) -> set[str]:
+        """Codes of the warnings, or of the refusal."""
+        if self.problem is not None:
+            return {self.problem.type.code}
+        return {notice["code"] for notice in self.answer["warnings"]}
+
+    def of(self) -> Any:
+        """Return the answer, which there must be."""
+        assert self.problem is None, self.problem
+        return self.answer
+
+
+def ask(path: str, question: Asked) -> Reply:
+    """Read, price, answer and write a question, as the service does; nothing but a refusal may come in between."""
+    route = ROUTES[path]
+    try:
+        read = ANSWERING.read(route, json.dumps(question).encode())
+        assert ANSWERING.price(route, read) >= 0.0
+        answer = ANSWERING.answer(route, read)
+    except Refusal as refusal:
+        return Reply(None, refusal.problem)
+    except MechanicsError as error:
+        return Reply(None, problem_of(error))
+    # `written` raises for whatever is not finite; null stands for what was left out on purpose.
+    return Reply(json.loads(written(answer), parse_constant=_refuse), None)
+
+
+def _refuse(name: str) -> None:
+    raise AssertionError(f"{name} in an answer")
+
+
+@cache
+def fields_of(path: str) -> frozenset[str]:
+    """Return the names of all fields, at any depth, that a question to an endpoint may have."""
+    schema = TypeAdapter(ROUTES[path].question).json_schema()
+    forms = [schema, *schema.get("$defs", {}).values()]
+    return frozenset(name for form in forms for name in form.get("properties", {}))
+
+
+def pointed_at(path: str, question: Any, pointer: str) -> bool:
+    """Return whether a JSON pointer leads into a question, or to the place of a field that was left out."""
+    steps = [step.replace("~1", "/").replace("~0", "~") for step in pointer.split("/")[1:]]
+    for i, step in enumerate(steps):
+        if isinstance(question, dict):
+            if step not in question:
+                return i == len(steps) - 1 and step in fields_of(path)
+            question = question[step]
+        elif isinstance(question, list):
+            if not step.isdigit() or int(step) >= len(question):
+                return False
+            question = question[int(step)]
+        else:
+            return False
+    return True
+
+
+def faults_of(path: str, question: Asked, reply: Reply) -> list[str]:
+    """Return what is wrong with the form of a reply: codes, texts and pointers of its refusal or its warnings."""
+    problem = reply.problem
+    if problem is None:
+        told = reply.answer["warnings"]
+        faults = [f"no reason: {one}" for one in told if not one["code"] or len(one["detail"]) < 20]
+        astray = [one for one in told if not pointed_at(path, question, one.get("pointer", ""))]
+        return faults + [f"{one['pointer']} leads nowhere" for one in astray]
+    faults = [] if problem.type.code in REGISTRY and problem.type.status == 422 else [f"status {problem.type}"]
+    if len(problem.detail) < 20:
+        faults.append(f"no reason: {problem.detail!r}")
+    if not problem.faults and problem.type.code != "not-applicable":
+        faults.append(f"nowhere in particular: {problem.detail}")
+    faults += [f"{f.pointer} leads nowhere" for f in problem.faults if not pointed_at(path, question, f.pointer)]
+    return faults
