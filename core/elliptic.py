@@ -157,31 +157,60 @@ def theta_constants(qh: float, ql: float) -> tuple[float, float, float, float, f
     return t3h, t3l, t4h, t4l, ph, pl
 
 
+class Periods(NamedTuple):
+    """The quarter periods of one modulus."""
+
+    circular: bool
+    K: float
+    """Quarter period."""
+    K_tail: float
+    scale: float
+    """What a quarter period is in the argument of the theta functions: pi/2, or pi K/2K'."""
+    scale_tail: float
+    mean: float
+    """Arithmetic-geometric mean of 1 and k, so that K' = pi/2 mean; 0 where k is too small to matter."""
+    mean_tail: float
+    complementary_mean: float
+    """The same of 1 and k'."""
+    complementary_mean_tail: float
+
+
 @kernel()
-def lattice(kh: float, kl: float, ch: float, cl: float) -> Lattice:
-    """Return the lattice of modulus k = (kh, kl) and complementary modulus k' = (ch, cl) > 0."""
+def periods(kh: float, kl: float, ch: float, cl: float) -> Periods:
+    """Return the periods of modulus k = (kh, kl) and complementary modulus k' = (ch, cl) > 0."""
     gh, gl = agm_dd(ch, cl)
     halfpi_h, halfpi_l = 0.5 * PI[0], 0.5 * PI[1]
     Kh, Kl = dd_div(halfpi_h, halfpi_l, gh, gl)
     circular = ch * ch >= 0.5
+    if circular and kh < 1e-40:
+        # q = m/16 is below the last bit of everything it is added to.
+        return Periods(True, Kh, Kl, halfpi_h, halfpi_l, 0.0, 0.0, gh, gl)
+    ah, al = agm_dd(kh, kl)
     if circular:
-        if kh < 1e-40:
-            # q = m/16 is below the last bit of everything it is added to.
+        return Periods(True, Kh, Kl, halfpi_h, halfpi_l, ah, al, gh, gl)
+    rh, rl = dd_div(ah, al, gh, gl)
+    lh, ll = dd_mul(rh, rl, halfpi_h, halfpi_l)
+    return Periods(False, Kh, Kl, lh, ll, ah, al, gh, gl)
+
+
+@kernel()
+def lattice(kh: float, kl: float, ch: float, cl: float) -> Lattice:
+    """Return the lattice of modulus k = (kh, kl) and complementary modulus k' = (ch, cl) > 0."""
+    of = periods(kh, kl, ch, cl)
+    Kh, Kl, lh, ll = of.K, of.K_tail, of.scale, of.scale_tail
+    if of.circular:
+        if of.mean == 0.0:
             one = (1.0, 0.0)
-            return Lattice(True, Kh, Kl, 0.0, 0.0, halfpi_h, halfpi_l, one, one, one, one, (-1.0, 0.0), one)
-        ah, al = agm_dd(kh, kl)
+            return Lattice(True, Kh, Kl, 0.0, 0.0, lh, ll, one, one, one, one, (-1.0, 0.0), one)
         # pi K'/K = pi agm(1, k')/agm(1, k)
-        rh, rl = dd_div(gh, gl, ah, al)
+        rh, rl = dd_div(of.complementary_mean, of.complementary_mean_tail, of.mean, of.mean_tail)
         rh, rl = dd_mul(rh, rl, PI[0], PI[1])
         qh, ql = dd_exp(-rh, -rl)
         t3h, t3l, t4h, t4l, ph, pl = theta_constants(qh, ql)
         s = dd_div(t3h, t3l, ph, pl)
         c = dd_div(t4h, t4l, ph, pl)
         d = dd_div(t4h, t4l, t3h, t3l)
-        return Lattice(True, Kh, Kl, qh, math.sqrt(qh), halfpi_h, halfpi_l, s, c, d, s, (-c[0], -c[1]), d)
-    ah, al = agm_dd(kh, kl)
-    rh, rl = dd_div(ah, al, gh, gl)
-    lh, ll = dd_mul(rh, rl, halfpi_h, halfpi_l)
+        return Lattice(True, Kh, Kl, qh, math.sqrt(qh), lh, ll, s, c, d, s, (-c[0], -c[1]), d)
     qh, ql = 0.0, 0.0
     if lh < 300.0:
         qh, ql = dd_exp(-2.0 * lh, -2.0 * ll)

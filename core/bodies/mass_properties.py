@@ -211,4 +211,4 @@ class MassProperties:
 def diagonal(moments: Sequence[float]) -> MassProperties:
     """Return mass properties of which only principal moments are known, in body axes as given, shape (3,)."""
     a, b, c = moments
-    return MassProperties(np.array([[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]), ZEROS)
+    return MassProperties(np.array((a, 0.0, 0.0, 0.0, b, 0.0, 0.0, 0.0, c)).reshape(3, 3), ZEROS)

@@ -100,6 +100,13 @@ def pinned_notices(body: MassProperties) -> tuple[Notice, ...]:
     return (Notice("not-free", detail, ("about",)),)
 
 
+def inherited_notices(body: MassProperties) -> tuple[Notice, ...]:
+    """Return what an answer about the motion of a body has to say of the body itself; paths lead from the question."""
+    if not body.warnings and body.about != "origin":
+        return ()
+    return tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body)))
+
+
 @dataclass(frozen=True, eq=False)
 class TorqueFree:
     """A body that turns freely, its state the angular velocity in body axes (rad/s).
@@ -212,7 +219,7 @@ class TorqueFree:
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """What an answer about this motion has to say beside its figures; paths lead from the question."""
-        notices = [notice.inside("body") for notice in (*self.body.warnings, *pinned_notices(self.body))]
+        notices = list(inherited_notices(self.body))
         for name, value in (("energy", self.energy), ("angular_momentum", self.angular_momentum)):
             if value is None:
                 notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
