@@ -32,6 +32,7 @@ from core.double_double import (
     dd_add,
     dd_add_d,
     dd_div,
+    dd_div_d,
     dd_exp,
     dd_mul,
     dd_sqr,
@@ -94,7 +95,7 @@ def rf_of_roots(ah: float, al: float, bh: float, bl: float, ch: float, cl: float
             break
     sh, sl = dd_add(xh, xl, yh, yl)
     sh, sl = dd_add(sh, sl, zh, zl)
-    mh, ml = dd_div(sh, sl, 3.0, 0.0)
+    mh, ml = dd_div_d(sh, sl, 3.0)
     dh, dl = dd_sub(mh, ml, xh, xl)
     Xh, Xl = dd_div(dh, dl, mh, ml)
     dh, dl = dd_sub(mh, ml, yh, yl)
@@ -108,8 +109,8 @@ def rf_of_roots(ah: float, al: float, bh: float, bl: float, ch: float, cl: float
     # Terms of the fourth and higher degrees are below 1e-16: double precision is enough for their coefficients.
     high = e2h * e2h / 24.0 - 3.0 * e2h * e3h / 44.0 - 5.0 * e2h**3 / 208.0 + 3.0 * e3h * e3h / 104.0
     high += e2h * e2h * e3h / 16.0
-    th, tl = dd_div(e3h, e3l, 14.0, 0.0)
-    uh, ul = dd_div(e2h, e2l, 10.0, 0.0)
+    th, tl = dd_div_d(e3h, e3l, 14.0)
+    uh, ul = dd_div_d(e2h, e2l, 10.0)
     th, tl = dd_sub(th, tl, uh, ul)
     th, tl = dd_add_d(th, tl, high)
     th, tl = dd_add_d(th, tl, 1.0)

@@ -71,7 +71,9 @@ class MassProperties:
     given_by: Origin = "moments"
 
     def __post_init__(self) -> None:
-        for array in (self.inertia, self.inertia_tail, self.center_of_mass, self.center_of_mass_tail):
+        self.inertia.setflags(write=False)
+        self.inertia_tail.setflags(write=False)
+        for array in (self.center_of_mass, self.center_of_mass_tail):
             if array is not None:
                 array.setflags(write=False)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -128,7 +127,7 @@ class PrincipalInertia:
             array.setflags(write=False)
         return found
 
-    @cached_property
+    @property
     def symmetry(self) -> Symmetry:
         """The class of the body, by a test free of scale: moments within 16 eps of the largest are equal.
 

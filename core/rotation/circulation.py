@@ -8,10 +8,10 @@ circled, c the other extreme and b the middle,
     A_c^2 = X/(I_c |I_c - I_d|),   A_b^2 = X/(I_b |I_b - I_d|),   A_d^2 = Y/(I_d |I_c - I_d|),
     p^2 = |I_b - I_d| Y/(A B C),   k^2 = |I_b - I_c| X/(|I_b - I_d| Y),   k'^2 = |I_c - I_d| |D_B|/(|I_b - I_d| Y).
 
-Everything is formed in double-double with separate exponents. A product, a quotient, a root, a sum of positive terms and
-the difference of two moments each have a relative error below 4 2^-106, and none of X, Y, p, k and the amplitudes takes
-more than 20 of them one upon another: they are right to 80 2^-106 = 1e-30 of themselves. D_B, and k' by half as much,
-may be worse by the factor by which D_B cancelled: at most 2^6, as beyond that it is to be given exactly.
+Everything is formed in double-double with separate exponents. A product, a quotient, a root, a sum of positive terms
+and the difference of two moments each have a relative error below 4 2^-106, and none of X, Y, p, k and the amplitudes
+takes more than 20 of them one upon another: they are right to 80 2^-106 = 1e-30 of themselves. D_B, and k' by half as
+much, may be worse by the factor by which D_B cancelled: at most 2^6, as beyond that it is to be given exactly.
 
 References
 ----------

@@ -113,10 +113,8 @@ class FreeRotation:
     def resolved(self) -> Resolved:
         """Moments and start along ascending principal axes, as the motion takes them."""
         found, inertia = np.empty((4, 3)), self.inertia
-        resolve(
-            inertia.axes, inertia.axes_tail, inertia.moments, inertia.moments_tail,
-            *map(float, self.angular_velocity), found,
-        )  # fmt: skip
+        x, y, z = map(float, self.angular_velocity)
+        resolve(inertia.axes, inertia.axes_tail, inertia.moments, inertia.moments_tail, x, y, z, found)
         return Resolved(found[0], found[1], found[2], found[3])
 
     @property

@@ -21,7 +21,7 @@ Mechanics", 3rd ed., section 5.6. R. Montgomery, "How much does the rigid body r
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isfinite
+from math import inf, isfinite
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
@@ -33,13 +33,11 @@ from core.integration.system import Floats
 from core.notices import Notice
 from core.rotation.circulation import PERIODIC, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
 from core.rotation.closed_form import FreeRotation, exact_difference, too_near_the_separatrix
-from core.rotation.precession_figures import OUT_OF_RANGE, precession_figures
+from core.rotation.precession_figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
 from core.rotation.torque_free import inherited_notices
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
 Absent = Mapping[str, str]
-
-_NOTHING: Absent = MappingProxyType({})
 
 
 class Precession(NamedTuple):
@@ -93,7 +91,7 @@ class Precession(NamedTuple):
     order_of_directions: str | None = None
     precession_per_period: float | None = None
     mean_precession_rate: float | None = None
-    absent: Absent = _NOTHING
+    absent: Absent = MappingProxyType({})
     warnings: tuple[Notice, ...] = ()
 
 
@@ -136,7 +134,7 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
         If the start is nearer to the separatrix than doubles resolve.
     """
     given = np.ascontiguousarray(angular_velocity, dtype=np.float64)
-    x, y, z = given.tolist() if given.shape == (3,) else (OUT_OF_RANGE,) * 3
+    x, y, z = given.tolist() if given.shape == (3,) else (inf,) * 3
     if not (isfinite(x) and isfinite(y) and isfinite(z)):
         raise InvalidParameter("angular_velocity", "be three finite numbers")
     inertia, warnings = body.principal_of_motion, inherited_notices(body)
@@ -145,11 +143,11 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
         FreeRotation(inertia, given)
     symmetry = inertia.symmetry
     if x == y == z == 0.0:
-        return Precession(symmetry, "rest", absent=_AT_REST, warnings=warnings)
+        return Precession(symmetry, "rest", absent=_AT_REST.copy(), warnings=warnings)
     if symmetry == "spherical":
         if len(set(zip(inertia.moments.tolist(), inertia.moments_tail.tolist(), strict=True))) > 1:
             warnings += (_equal_within_rounding("the three moments"),)
-        return Precession(symmetry, "steady", absent=_SPHERE, warnings=warnings)
+        return Precession(symmetry, "steady", absent=_SPHERE.copy(), warnings=warnings)
     k = _SYMMETRY_AXIS[symmetry]
     parts = inertia.moments, inertia.moments_tail, inertia.axes, inertia.axes_tail
     regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, False, 0.0, 0.0, 0)
@@ -161,22 +159,31 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
     if apart:
         warnings += (_equal_within_rounding("two moments"),)
     told = _TOLD[symmetry, regime, beyond]
-    absent = told.absent
-    if OUT_OF_RANGE in figures:
-        lost = [name for name, figure in zip(FIGURES, figures, strict=True) if figure == OUT_OF_RANGE]
-        absent = MappingProxyType({**absent, **dict.fromkeys(lost, "leaves the range of double precision")})
-        warnings += tuple(
-            Notice("out-of-range", f"{name} leaves the range of double precision and is null") for name in lost
-        )
-        figures = tuple(None if figure == OUT_OF_RANGE else figure for figure in figures)
-    found = [None if figure != figure else figure for figure in figures]
+    absent = told.absent.copy()
+    if OUT_OF_RANGE in figures or UNRESOLVED in figures:
+        lost = {name: _LOST[figure] for name, figure in zip(FIGURES, figures, strict=True) if figure in _LOST}
+        absent |= {name: reason for name, (_, reason) in lost.items()}
+        warnings += tuple(Notice(code, f"{name} {reason} and is null") for name, (code, reason) in lost.items())
+    body_rate, space_rate, period, flip, to_momentum, to_velocity, between, turned, mean = (
+        figure if isfinite(figure) else None for figure in figures
+    )
     pointing: Floats = np.array(axis)
     pointing.setflags(write=False)
-    return Precession(symmetry, told.regime, pointing, *found[:7], told.order, *found[7:], absent, warnings)
+    return Precession(
+        symmetry, told.regime, pointing, body_rate, space_rate, period, flip, to_momentum, to_velocity, between,
+        told.order, turned, mean, absent, warnings,
+    )  # fmt: skip
 
 
 _SYMMETRY_AXIS: Mapping[Symmetry, int] = {"triaxial": -1, "oblate": 2, "prolate": 0, "linear": 0}
 """Number, in ascending order, of the moment that is not equal to the other two."""
+
+
+_LOST: Mapping[float, tuple[str, str]] = {
+    OUT_OF_RANGE: ("out-of-range", "leaves the range of double precision"),
+    UNRESOLVED: ("unresolved", "is too small a part of a turn to be told from none in double precision"),
+}
+"""What is said of figures that exist and cannot be stated."""
 
 
 class _Told(NamedTuple):
@@ -184,11 +191,11 @@ class _Told(NamedTuple):
 
     regime: Regime
     order: str | None
-    absent: Absent
+    absent: dict[str, str]
 
 
-def _absent(*reasons: tuple[str, tuple[str, ...]]) -> Absent:
-    return MappingProxyType({name: reason for reason, names in reasons for name in names})
+def _absent(*reasons: tuple[str, tuple[str, ...]]) -> dict[str, str]:
+    return {name: reason for reason, names in reasons for name in names}
 
 
 _AT_REST = _absent(("nothing turns", ("axis", *_OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))

@@ -31,6 +31,7 @@ from core.double_double import (
     dd_add,
     dd_add_d,
     dd_div,
+    dd_div_d,
     dd_exp,
     dd_mul,
     dd_mul_d,
@@ -80,15 +81,19 @@ class Precession(NamedTuple):
 def _sin_cos_dd(ah: float, al: float) -> tuple[float, float, float, float]:
     """Return sin a and cos a as pairs, for 0 <= a <= pi/4, by their Taylor series."""
     wh, wl = dd_sqr(ah, al)
+    # sin a/a = 1 - w/(2 3) (1 - w/(4 5) (...)),  cos a = 1 - w/(1 2) (1 - w/(3 4) (...)); what is left from the term
+    # in w^10 on is multiplied by w^10/20! < 2^-65, and doubles suffice for it.
     sh, sl, ch, cl = 0.0, 0.0, 0.0, 0.0
-    for n in range(27, 0, -2):
-        # sin a/a = 1 - w/(2 3) (1 - w/(4 5) (...)),  cos a = 1 - w/(1 2) (1 - w/(3 4) (...))
+    for n in range(27, 19, -2):
+        sh = wh / ((n + 1) * (n + 2)) * (1.0 - sh)
+        ch = wh / (n * (n + 1)) * (1.0 - ch)
+    for n in range(19, 0, -2):
         th, tl = dd_add_d(-sh, -sl, 1.0)
         th, tl = dd_mul(th, tl, wh, wl)
-        sh, sl = dd_div(th, tl, float((n + 1) * (n + 2)), 0.0)
+        sh, sl = dd_div_d(th, tl, float((n + 1) * (n + 2)))
         th, tl = dd_add_d(-ch, -cl, 1.0)
         th, tl = dd_mul(th, tl, wh, wl)
-        ch, cl = dd_div(th, tl, float(n * (n + 1)), 0.0)
+        ch, cl = dd_div_d(th, tl, float(n * (n + 1)))
     th, tl = dd_add_d(-sh, -sl, 1.0)
     sh, sl = dd_mul(th, tl, ah, al)
     ch, cl = dd_add_d(-ch, -cl, 1.0)
@@ -170,9 +175,9 @@ class Turning(NamedTuple):
     """A motion as it turns about its angular momentum, at u = 0, where w = (A_c, 0, A_d) in x', y', z'."""
 
     L: Scaled
-    m_c: Scaled
-    m_d: Scaled
-    """Angular momentum over L along c and d at u = 0."""
+    M_c: Scaled
+    M_d: Scaled
+    """Angular momentum, and its components along c and d."""
     kappa: float
     """Half of psi' there, per unit of u."""
     kappa_tail: float
@@ -194,7 +199,7 @@ def turning(c: Circulation, far_c: Scaled, far_d: Scaled) -> Turning:
     base = sc_mul(c.I_b, c.cd)
     sh, sl = sc_pair(sc_sqrt(sc_div(sc_mul(c.I_c, c.bd), base)))
     ch, cl = sc_pair(sc_sqrt(sc_div(sc_mul(c.I_d, c.bc), base)))
-    return Turning(L, sc_div(M_c, L), sc_div(M_d, L), 0.5 * kh, 0.5 * kl, sh, sl, ch, cl)
+    return Turning(L, M_c, M_d, 0.5 * kh, 0.5 * kl, sh, sl, ch, cl)
 
 
 class Quarter(NamedTuple):
@@ -268,7 +273,8 @@ def precession_constants(
     eta = 1.0 if motion.circled == 2 else -1.0
     far = amplitudes(c)
     t = turning(c, far.c, far.d)
-    a_x, a_y, a_z = sc_pair(t.m_c)[0], sc_pair(sc_div(sc_mul(c.I_b, far.b), t.L))[0], sc_pair(t.m_d)[0]
+    M_b = sc_mul(c.I_b, far.b)
+    a_x, a_y, a_z = sc_pair(sc_div(t.M_c, t.L))[0], sc_pair(sc_div(M_b, t.L))[0], sc_pair(sc_div(t.M_d, t.L))[0]
     lat = motion.lattice
     if motion.regime == SEPARATRIX:
         # m = 1: x is the angle itself, and K' = pi/2.

@@ -2,10 +2,12 @@
 
 Each is formed in double-double with separate exponents and rounded once. The figures of a symmetric body are products,
 quotients, roots and sums of positive terms, at most 25 of them one upon another, each right to 4 2^-106: before the
-last rounding they are right to 100 2^-106 < 1.3e-30. Those of three distinct moments go through the arithmetic-geometric
-mean, Carlson's R_F and theta series besides, and D_B may carry a cancellation of 2^6 (more than that is decided
-exactly): 1e-27. So each is the nearest double unless the exact number lies within 1e-11 units of the middle between two.
-Angles are arctangents, right to the unit in the last place in which the arctangent of the C library is.
+last rounding they are right to 100 2^-106 < 1.3e-30. Those of three distinct moments go through the mean of Gauss,
+Carlson's R_F and theta series besides, and D_B may carry a cancellation of 2^6 (more than that is decided exactly):
+1e-27. So each is the nearest double unless the exact number lies within 1e-11 units in the last place of the middle
+between two. There are two exceptions. Angles are arctangents, as right as those of the C library, to one unit. And the
+angle of a precession about the smallest moment is what is left of a whole turn: it is right to 1e-29 rad, and not
+stated where that would be seen. Matter hardly gets there: the moments of such a needle are as 1 to 1e14.
 """
 
 from __future__ import annotations
@@ -50,6 +52,12 @@ ABSENT = math.nan
 
 OUT_OF_RANGE = math.inf
 """In place of a figure that no normal double can state."""
+
+UNRESOLVED = -math.inf
+"""In place of an angle that is lost in the whole turn from which it is taken, and of the rate that it makes."""
+
+SMALLEST_ANGLE = 2.0**-43
+"""What 1e-29 rad are half a unit in the last place of (rad)."""
 
 Figures = tuple[float, float, float, float, float, float, float, float, float]
 Found = tuple[int, bool, bool, tuple[float, float, float], Figures]
@@ -136,12 +144,12 @@ def _elliptic(c: Circulation, k1: Scaled) -> Figures:
     eta = 1.0 if c.circled == 2 else -1.0
     h, low = dd_mul_d(q.per_quarter, q.per_quarter_tail, 8.0)
     h, low = dd_add(h, low, 2.0 * eta * PI[0], 2.0 * eta * PI[1])
-    turned = scaled(h, low, 0)
+    turned, resolved = scaled(h, low, 0), h >= SMALLEST_ANGLE
     half = sc_div(scaled(2.0 * of.K, 2.0 * of.K_tail, 0), c.p)
     period = Scaled(half.high, half.low, half.exponent + 1)
     return (
         ABSENT, ABSENT, _stated(period), _stated(half), ABSENT, ABSENT, ABSENT,
-        _stated(turned), _stated(sc_div(turned, period)),
+        _stated(turned) if resolved else UNRESOLVED, _stated(sc_div(turned, period)) if resolved else UNRESOLVED,
     )  # fmt: skip
 
 
@@ -214,7 +222,7 @@ def precession_figures(
                         spun = n
                 ax, ay, az, _ = _oriented(axes, spun)
                 return regime, False, False, (ax, ay, az), _of_a_limit(ABSENT)
-        elif regime == SEPARATRIX or regime == PERIODIC:
+        elif regime in (SEPARATRIX, PERIODIC):
             circled = 2 if found.D.high >= 0.0 else 0
             if regime == SEPARATRIX:
                 ax, ay, az, _ = _oriented(axes, 1)

@@ -107,7 +107,6 @@ def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
     start = np.array(question.angular_velocity)
     found: Precession = precession(body, start)
     answer = found._asdict()
-    answer["absent"] = dict(found.absent)
     if question.measure is not None:
         answer["measured"] = measure_period(TorqueFree(body, start), question.measure, budget)
     return answer
