@@ -64,7 +64,7 @@ Found = tuple[int, bool, bool, tuple[float, float, float], Figures]
 
 
 @kernel()
-def _stated(x: Scaled) -> float:
+def stated(x: Scaled) -> float:
     """Return the nearest double, or `OUT_OF_RANGE`."""
     if x.high == 0.0:
         return 0.0
@@ -118,14 +118,14 @@ def _regular(equal: Scaled, single: Scaled, gap: Scaled, along: Scaled, across: 
     if periodic:
         rate = sc_mul(sc_div(gap, equal), along)
         time = sc_div(scaled(2.0 * PI[0], 2.0 * PI[1], 0), sc_abs(rate))
-        body_rate, period = _stated(rate), _stated(time)
-        turned, mean = _stated(sc_mul(space_rate, time)), _stated(space_rate)
+        body_rate, period = stated(rate), stated(time)
+        turned, mean = stated(sc_mul(space_rate, time)), stated(space_rate)
     between = _angle(
         sc_mul(sc_mul(sc_abs(gap), across), forward), sc_add(sc_mul(m_across, across), sc_mul(m_along, forward)), False
     )
     obtuse = along.high < 0.0
     return (
-        body_rate, _stated(space_rate), period, ABSENT,
+        body_rate, stated(space_rate), period, ABSENT,
         _angle(m_across, m_along, obtuse), _angle(across, forward, obtuse), between, turned, mean,
     )  # fmt: skip
 
@@ -148,8 +148,8 @@ def _elliptic(c: Circulation, k1: Scaled) -> Figures:
     half = sc_div(scaled(2.0 * of.K, 2.0 * of.K_tail, 0), c.p)
     period = Scaled(half.high, half.low, half.exponent + 1)
     return (
-        ABSENT, ABSENT, _stated(period), _stated(half), ABSENT, ABSENT, ABSENT,
-        _stated(turned) if resolved else UNRESOLVED, _stated(sc_div(turned, period)) if resolved else UNRESOLVED,
+        ABSENT, ABSENT, stated(period), stated(half), ABSENT, ABSENT, ABSENT,
+        stated(turned) if resolved else UNRESOLVED, stated(sc_div(turned, period)) if resolved else UNRESOLVED,
     )  # fmt: skip
 
 
@@ -159,7 +159,7 @@ def _of_a_limit(mean: float) -> Figures:
 
 
 @kernel()
-def _oriented(axes: NDArray[np.float64], k: int) -> tuple[float, float, float, float]:
+def oriented(axes: NDArray[np.float64], k: int) -> tuple[float, float, float, float]:
     """Return a principal axis, turned to the positive side of the body axis that it is nearest to, and its sign."""
     x, y, z = axes[0, k], axes[1, k], axes[2, k]
     most = x
@@ -220,25 +220,25 @@ def precession_figures(
                 for n in (1, 2):
                     if abs(w[n]) > abs(w[spun]):
                         spun = n
-                ax, ay, az, _ = _oriented(axes, spun)
+                ax, ay, az, _ = oriented(axes, spun)
                 return regime, False, False, (ax, ay, az), _of_a_limit(ABSENT)
         elif regime in (SEPARATRIX, PERIODIC):
             circled = 2 if found.D.high >= 0.0 else 0
             if regime == SEPARATRIX:
-                ax, ay, az, _ = _oriented(axes, 1)
+                ax, ay, az, _ = oriented(axes, 1)
                 mean = sc_div(_momentum(moments, moments_tail, w, wt), scaled(moments[1], moments_tail[1], 0))
-                return regime, k >= 0, apart, (ax, ay, az), _of_a_limit(_stated(mean))
+                return regime, k >= 0, apart, (ax, ay, az), _of_a_limit(stated(mean))
             c = circulation(i, it, w, wt, circled)
             k1 = complement(c, found.D)
             if k1.exponent < SMALLEST_MODULUS:
                 return UNREACHABLE, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
             if circled != k:
-                ax, ay, az, _ = _oriented(axes, circled)
+                ax, ay, az, _ = oriented(axes, circled)
                 return regime, k >= 0, apart, (ax, ay, az), _elliptic(c, k1)
         else:
             return regime, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
     a, b = (0, 1) if k == 2 else (1, 2)
-    ax, ay, az, sign = _oriented(axes, k)
+    ax, ay, az, sign = oriented(axes, k)
     along = scaled(sign * w[k], sign * wt[k], 0)
     u, v = scaled(w[a], wt[a], 0), scaled(w[b], wt[b], 0)
     across = sc_sqrt(sc_add(sc_mul(u, u), sc_mul(v, v)))
