@@ -12,7 +12,7 @@ import numpy as np
 
 from core.bodies.mass_properties import PrincipalInertia
 from core.double_double import Scaled, dd_div, scaled
-from core.elliptic import LARGEST_QUARTER
+from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
 from core.rotation.circulation import PERIODIC, REST, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE

@@ -34,7 +34,8 @@ from core.double_double import (
     sc_pair,
     scaled,
 )
-from core.elliptic import Lattice, lattice, rf_of_roots
+from core.elliptic.integrals import rf_of_roots
+from core.elliptic.lattice import Lattice, lattice
 from core.rotation.circulation import (
     PERIODIC,
     REST,

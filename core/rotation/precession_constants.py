@@ -44,7 +44,8 @@ from core.double_double import (
     sc_pair,
     sc_sqrt,
 )
-from core.elliptic import Periods, agm_dd, rf_of_roots
+from core.elliptic.integrals import agm_dd, rf_of_roots
+from core.elliptic.lattice import Periods
 from core.rotation.circulation import SEPARATRIX, Circulation, amplitudes, circulation
 from core.rotation.constants_of_motion import Motion
 

@@ -32,7 +32,7 @@ from core.double_double import (
     sc_sqrt,
     scaled,
 )
-from core.elliptic import periods
+from core.elliptic.lattice import periods
 from core.rotation.circulation import (
     PERIODIC,
     SEPARATRIX,
