@@ -101,6 +101,13 @@ def dd_div(ah: float, al: float, bh: float, bl: float) -> Pair:
 
 
 @kernel()
+def dd_div_d(ah: float, al: float, b: float) -> Pair:
+    """Return a / b for a double b."""
+    q = ah / b
+    return fast_two_sum(q, (fma(-q, b, ah) + al) / b)
+
+
+@kernel()
 def dd_sqrt(ah: float, al: float) -> Pair:
     """Return the square root of a >= 0."""
     if ah <= 0.0:
@@ -126,12 +133,15 @@ def dd_exp(ah: float, al: float) -> Pair:
     rh, rl = dd_add(ah, al, -kh, -kl)
     rh, rl = dd_add_d(rh, rl, -k * 5.707708438416212e-34)
     rh, rl = rh / 256.0, rl / 256.0
+    # s <- r/n (1 + s), so that s ends as exp(r) - 1; what is left from the sixth power on is multiplied by r^5/5!, and
+    # doubles suffice for it.
     sh, sl = 0.0, 0.0
-    for n in range(12, 0, -1):
-        # s <- r/n (1 + s), so that s ends as exp(r) - 1.
+    for n in range(12, 5, -1):
+        sh = rh / n * (1.0 + sh)
+    for n in range(5, 0, -1):
         th, tl = dd_add_d(sh, sl, 1.0)
         th, tl = dd_mul(th, tl, rh, rl)
-        sh, sl = dd_div(th, tl, float(n), 0.0)
+        sh, sl = dd_div_d(th, tl, float(n))
     for _ in range(8):
         # (1 + s)^2 - 1 = s (2 + s): squaring without losing the small part.
         th, tl = dd_add_d(sh, sl, 2.0)

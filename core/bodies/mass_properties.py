@@ -71,7 +71,9 @@ class MassProperties:
     given_by: Origin = "moments"
 
     def __post_init__(self) -> None:
-        for array in (self.inertia, self.inertia_tail, self.center_of_mass, self.center_of_mass_tail):
+        self.inertia.setflags(write=False)
+        self.inertia_tail.setflags(write=False)
+        for array in (self.center_of_mass, self.center_of_mass_tail):
             if array is not None:
                 array.setflags(write=False)
 
@@ -212,4 +214,4 @@ class MassProperties:
 def diagonal(moments: Sequence[float]) -> MassProperties:
     """Return mass properties of which only principal moments are known, in body axes as given, shape (3,)."""
     a, b, c = moments
-    return MassProperties(np.array([[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]), ZEROS)
+    return MassProperties(np.array((a, 0.0, 0.0, 0.0, b, 0.0, 0.0, 0.0, c)).reshape(3, 3), ZEROS)

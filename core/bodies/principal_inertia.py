@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -21,6 +20,24 @@ EQUAL = 16.0 * EPSILON
 
 ZEROS = np.zeros((3, 3))
 ZEROS.setflags(write=False)
+
+_NO_TAILS = ZEROS[0]
+
+
+def _along_body_axes(order: tuple[int, int, int], sign: float) -> Floats:
+    axes = np.zeros((3, 3))
+    for column, row in enumerate(order):
+        axes[row, column] = 1.0
+    axes[order[2], 2] = sign
+    axes.setflags(write=False)
+    return axes
+
+
+_EVEN, _ODD = ((0, 1, 2), (1, 2, 0), (2, 0, 1)), ((0, 2, 1), (1, 0, 2), (2, 1, 0))
+_PERMUTED = {order: _along_body_axes(order, 1.0) for order in _EVEN} | {
+    order: _along_body_axes(order, -1.0) for order in _ODD
+}
+"""Right-handed axes by the body axes along which they lie, up to sign."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,11 +73,25 @@ class PrincipalInertia:
             If a moment is too large for a double.
         """
         tail = ZEROS if inertia_tail is None else inertia_tail
-        if inertia[0, 1] == 0.0 and inertia[0, 2] == 0.0 and inertia[1, 2] == 0.0:
-            values = [float(inertia[i, i]) for i in range(3)]
-            tails = [float(tail[i, i]) for i in range(3)]
-            return cls._sorted(values, tails, None, None)
+        (a, d, e), (_, b, f), (_, _, c) = inertia.tolist()
+        if d == 0.0 and e == 0.0 and f == 0.0:
+            return cls._permuted((a, b, c), tail)
         return cls._diagonalised(inertia, tail)
+
+    @classmethod
+    def _permuted(cls, values: tuple[float, float, float], tail: Floats) -> PrincipalInertia:
+        if tail is ZEROS:
+            order = sorted((0, 1, 2), key=values.__getitem__)
+            tails = _NO_TAILS
+        else:
+            along = np.diagonal(tail).tolist()
+            order = sorted((0, 1, 2), key=lambda i: (values[i], along[i]))
+            tails = np.array([along[i] for i in order])
+            tails.setflags(write=False)
+        i, j, k = order
+        moments = np.array((values[i], values[j], values[k]))
+        moments.setflags(write=False)
+        return cls(moments, tails, _PERMUTED[i, j, k], ZEROS)
 
     @classmethod
     def _diagonalised(cls, inertia: Floats, tail: Floats) -> PrincipalInertia:
@@ -84,26 +115,19 @@ class PrincipalInertia:
 
     @classmethod
     def _sorted(
-        cls, values: list[float], tails: list[float], vectors: Floats | None, vector_tails: Floats | None
+        cls, values: list[float], tails: list[float], vectors: Floats, vector_tails: Floats
     ) -> PrincipalInertia:
         order = sorted(range(3), key=lambda i: (values[i], tails[i]))
-        sign = -1.0 if order in ([0, 2, 1], [1, 0, 2], [2, 1, 0]) else 1.0
-        if vectors is None or vector_tails is None:
-            axes, axes_tail = np.zeros((3, 3)), ZEROS
-            for column, row in enumerate(order):
-                axes[row, column] = 1.0
-            axes[order[2], 2] = sign
-        else:
-            axes, axes_tail = vectors[:, order], vector_tails[:, order]
-            signs = [math.copysign(1.0, axes[np.argmax(np.abs(axes[:, k])), k]) for k in (0, 1)]
-            signs.append(sign * signs[0] * signs[1])
-            axes, axes_tail = axes * signs + 0.0, axes_tail * signs + 0.0
+        axes, axes_tail = vectors[:, order], vector_tails[:, order]
+        signs = [math.copysign(1.0, axes[np.argmax(np.abs(axes[:, k])), k]) for k in (0, 1)]
+        signs.append((1.0 if tuple(order) in _EVEN else -1.0) * signs[0] * signs[1])
+        axes, axes_tail = np.ascontiguousarray(axes * signs + 0.0), np.ascontiguousarray(axes_tail * signs + 0.0)
         found = cls(np.array([values[i] for i in order]), np.array([tails[i] for i in order]), axes, axes_tail)
         for array in (found.moments, found.moments_tail, found.axes, found.axes_tail):
             array.setflags(write=False)
         return found
 
-    @cached_property
+    @property
     def symmetry(self) -> Symmetry:
         """The class of the body, by a test free of scale: moments within 16 eps of the largest are equal.
 
@@ -111,7 +135,7 @@ class PrincipalInertia:
         (American football); ``"linear"`` prolate with a smallest moment below 16 eps of the largest (needle);
         ``"triaxial"`` three distinct; ``"point"`` all zero.
         """
-        low, middle, high = (float(x) for x in self.moments)
+        low, middle, high = self.moments.tolist()
         size = max(abs(low), abs(high))
         if size == 0.0:
             return "point"

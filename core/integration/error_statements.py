@@ -136,18 +136,6 @@ def _magnitude(rows: Floats) -> float:
     return max(float(rows.max()), -float(rows.min()))
 
 
-@kernel("UniTuple(float64, 2)(float64[::1], float64)")
-def _strayed(values: Floats, first: float) -> tuple[float, float]:
-    """Return the largest change from `first` and the largest magnitude, both infinite if any value is not finite."""
-    change, largest = 0.0, 0.0
-    for value in values:
-        if not math.isfinite(value):
-            return math.inf, math.inf
-        change = max(change, abs(value - first))
-        largest = max(largest, abs(value))
-    return change, largest
-
-
 def drifts(system: System, states: Floats) -> dict[str, float]:
     """Return the largest relative change of every conserved quantity from its value at the start.
 
@@ -155,12 +143,10 @@ def drifts(system: System, states: Floats) -> dict[str, float]:
     has no drift that could be stated and is left out.
     """
     found = {}
-    start = system.invariants(np.ascontiguousarray(system.initial_state)[None, :])
-    for name, values in system.invariants(states).items():
-        first = float(start[name][0])
-        change, largest = _strayed(np.ascontiguousarray(values), first)
-        scale = abs(first) or largest
-        drift = 0.0 if change == 0.0 else change / scale if scale > 0.0 else math.inf
+    for name, (first, least, largest) in system.ranges(states).items():
+        change = max(largest - first, first - least)
+        scale = abs(first) or max(abs(least), abs(largest))
+        drift = change if change == 0.0 else change / scale if scale > 0.0 else math.inf
         if math.isfinite(drift):
             found[name] = drift
     return found

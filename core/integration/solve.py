@@ -136,7 +136,7 @@ def _evaluated(
             accuracy,
             error,
             "closed form",
-            exact.error(_farthest(times)),
+            error,
             exact.inherited(times, input_uncertainty),
             drifts(system, states),
         ),
@@ -234,11 +234,6 @@ def _warnings(stated: Accuracy, method: AbstractMethod, times: Floats) -> tuple[
             detail = f"samples are at most {longest:.6g} s apart, so no step was longer than that; ask for fewer times"
             notices.append(Notice("step-shortened", detail, ("method", "step")))
     return tuple(notices)
-
-
-def _farthest(times: Floats) -> Floats:
-    at = int(np.abs(times).argmax())
-    return times[at : at + 1]
 
 
 @contextmanager

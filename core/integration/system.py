@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numba import types
@@ -71,6 +71,17 @@ class Model:
     degrees_of_freedom: int
 
 
+class Range(NamedTuple):
+    """A conserved quantity along samples: its value at the start, the least and the largest of the samples.
+
+    All in one unit that need not be SI; NaN where it is not finite.
+    """
+
+    first: float
+    least: float
+    largest: float
+
+
 class ClosedForm(Protocol):
     """An exact solution that can be evaluated at any time at the same cost."""
 
@@ -86,7 +97,10 @@ class ClosedForm(Protocol):
         """Return the states, shape (n, k), at `times`, shape (n,), in any order."""
 
     def error(self, times: Floats) -> float:
-        """Return a bound of the numerical error of `sample`, relative to the largest norm, inputs taken as exact."""
+        """Return a bound of the numerical error of `sample`, relative to the largest norm, inputs taken as exact.
+
+        It is that of the time farthest from the start, and holds for all.
+        """
 
     def inherited(self, times: Floats, uncertainty: float) -> float:
         """Return how far the states may move, relative to the largest norm, if inputs are known to `uncertainty`."""
@@ -118,5 +132,5 @@ class System(Protocol):
     def closed_form(self) -> ClosedForm | None:
         """Return the exact solution, or None where there is none."""
 
-    def invariants(self, states: Floats) -> Mapping[str, Floats]:
-        """Return the conserved quantities, by name, each of shape (n,), for states of shape (n, k)."""
+    def ranges(self, states: Floats) -> Mapping[str, Range]:
+        """Return the ranges of the conserved quantities, by name, over states of shape (n, k), n > 0."""

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from core.compiled import kernel
 from core.double_double import PI, Scaled, dd_add, dd_div, dd_mul_d, sc_add, sc_mul, sc_sqrt, scaled
-from core.elliptic import LARGEST_QUARTER
+from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats
 from core.rotation.attitude_sampling import phase_at_start, sample_attitude, sample_steady
+from core.rotation.circulation import PERIODIC, REST, SEPARATRIX, STEADY
 from core.rotation.closed_form import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
-from core.rotation.constants_of_motion import PERIODIC, REST, SEPARATRIX, STEADY
 from core.rotation.precession_constants import Precession, precession_constants
 from core.rotation.quaternions import Extended, left, quaternion_of, right, unit
 

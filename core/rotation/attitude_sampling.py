@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.compiled import fma, kernel
 from core.double_double import dd_add, two_prod
-from core.elliptic import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
+from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
 from core.rotation.constants_of_motion import Motion
 from core.rotation.precession_constants import CIRCULAR, LIMIT, Precession
 

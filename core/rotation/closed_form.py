@@ -11,21 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from core.bodies.mass_properties import PrincipalInertia
-from core.double_double import Scaled, scaled
-from core.elliptic import LARGEST_QUARTER
+from core.double_double import Scaled, dd_div, scaled
+from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
-from core.rotation.constants_of_motion import (
-    PERIODIC,
-    REST,
-    SEPARATRIX,
-    STEADY,
-    UNDECIDED,
-    UNREACHABLE,
-    Motion,
-    constants_of_motion,
-)
-from core.rotation.principal_frame import PrincipalFrame
+from core.rotation.circulation import PERIODIC, REST, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
+from core.rotation.constants_of_motion import Motion, constants_of_motion
+from core.rotation.principal_frame import PrincipalFrame, resolve
 from core.rotation.sampling import largest_magnitude, sample_components, turn_into_body
 
 UNIT_ROUNDOFF = 2.0**-53
@@ -47,12 +39,19 @@ SET_UP_ROUNDING = 2.0**-103
 DERIVED_ROUNDING = 2.0**-100
 """Error of moments and components that were themselves derived, relative to the largest moment and component."""
 
-RESOLUTION = 2.0**-96
-"""Differences of derived moments, and derived components, below this share of the largest are taken as 0."""
+
+class Resolved(NamedTuple):
+    """Principal moments, ascending, and angular velocity along their axes, each with its tail, shape (3,)."""
+
+    moments: Floats
+    moments_tail: Floats
+    angular_velocity: Floats
+    angular_velocity_tail: Floats
 
 
-def _decided(i: Floats, it: Floats, w: Floats, wt: Floats) -> Scaled:
+def exact_difference(resolved: Resolved) -> Scaled:
     """Return D_B = C (C - B) w_C^2 - A (B - A) w_A^2 from exact rational arithmetic."""
+    i, it, w, wt = resolved
     a, b, c = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(i, it, strict=True))
     wa, _, wc = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(w, wt, strict=True))
     exact = c * (c - b) * wc * wc - a * (b - a) * wa * wa
@@ -65,13 +64,15 @@ def _decided(i: Floats, it: Floats, w: Floats, wt: Floats) -> Scaled:
     return decided
 
 
-class Resolved(NamedTuple):
-    """Principal moments, ascending, and angular velocity along their axes, each with its tail, shape (3,)."""
-
-    moments: Floats
-    moments_tail: Floats
-    angular_velocity: Floats
-    angular_velocity_tail: Floats
+def too_near_the_separatrix() -> AccuracyUnreachable:
+    """Return the refusal of a start whose distance from the separatrix doubles cannot hold."""
+    return AccuracyUnreachable(
+        None,
+        2.0,
+        "the start differs from a rotation about the middle axis by less than the range of doubles resolves",
+        path=("angular_velocity",),
+        remedy="start on the axis itself, or further from it",
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,18 +112,10 @@ class FreeRotation:
     @cached_property
     def resolved(self) -> Resolved:
         """Moments and start along ascending principal axes, as the motion takes them."""
-        w, wt = self.frame.components(self.angular_velocity)
-        i, it = self.inertia.moments, self.inertia.moments_tail
-        if self.exact_inputs:
-            return Resolved(i, it, w, wt)
-        # What lies below the resolution of derived numbers is noise, and its sign would decide the regime.
-        i, it, w, wt = i.copy(), it.copy(), w.copy(), wt.copy()
-        for k in (0, 1):
-            if i[k + 1] - i[k] <= RESOLUTION * i[2]:
-                i[k + 1], it[k + 1] = i[k], it[k]
-        noise = np.abs(w) <= RESOLUTION * np.max(np.abs(w))
-        w[noise], wt[noise] = 0.0, 0.0
-        return Resolved(i, it, w, wt)
+        found, inertia = np.empty((4, 3)), self.inertia
+        x, y, z = map(float, self.angular_velocity)
+        resolve(inertia.axes, inertia.axes_tail, inertia.moments, inertia.moments_tail, x, y, z, found)
+        return Resolved(found[0], found[1], found[2], found[3])
 
     @property
     def start(self) -> tuple[Floats, Floats]:
@@ -141,15 +134,9 @@ class FreeRotation:
         i, it, w, wt = self.resolved
         motion: Motion = constants_of_motion(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
         if motion.regime == UNDECIDED:
-            motion = constants_of_motion(i, it, w, wt, True, _decided(i, it, w, wt))
+            motion = constants_of_motion(i, it, w, wt, True, exact_difference(self.resolved))
         if motion.regime == UNREACHABLE:
-            raise AccuracyUnreachable(
-                None,
-                2.0,
-                "the start differs from a rotation about the middle axis by less than the range of doubles resolves",
-                path=("angular_velocity",),
-                remedy="start on the axis itself, or further from it",
-            )
+            raise too_near_the_separatrix()
         return motion
 
     @property
@@ -165,7 +152,10 @@ class FreeRotation:
     @property
     def period(self) -> float | None:
         """Period of the angular velocity in the body, 4K/p (s); None if it is constant or on the separatrix."""
-        return 4.0 / self.motion.rate / self.motion.time_scale if self.motion.regime == PERIODIC else None
+        motion = self.motion
+        if motion.regime != PERIODIC:
+            return None
+        return float(dd_div(4.0, 0.0, motion.rate, motion.rate_tail)[0]) / motion.time_scale
 
     @property
     def flip_interval(self) -> float | None:

@@ -4,11 +4,9 @@ In principal axes with moments A <= B <= C the motion is
 
     w_c = A_c cn u,   w_b = s A_b sn u,   w_d = s A_d dn u,   u = u0 + p t,
 
-where d is the extreme axis that the motion circles, c the other extreme, b the middle and s the sign of w_d. All
-constants are sums and products of positive terms, except the one difference D_B = C(C-B) w_C^2 - A(B-A) w_A^2 that
-decides which axis is circled; they are formed in double-double with separate exponents, so that neither cancellation
-nor the range of doubles enters. Right for ascending moments in a right-handed frame, in which time never runs
-backwards.
+where d is the extreme axis that the motion circles, c the other extreme, b the middle and s the sign of w_d;
+`core.rotation.circulation` decides which and forms the amplitudes, so that neither cancellation nor the range of
+doubles enters. Right for ascending moments in a right-handed frame, in which time never runs backwards.
 
 References
 ----------
@@ -30,17 +28,27 @@ from core.double_double import (
     Scaled,
     dd_div,
     dd_mul,
-    dd_sub,
     sc_abs,
-    sc_add,
     sc_div,
     sc_mul,
-    sc_neg,
     sc_pair,
-    sc_sqrt,
     scaled,
 )
-from core.elliptic import Lattice, lattice, rf_of_roots
+from core.elliptic.integrals import rf_of_roots
+from core.elliptic.lattice import Lattice, lattice
+from core.rotation.circulation import (
+    PERIODIC,
+    REST,
+    SEPARATRIX,
+    SMALLEST_MODULUS,
+    STEADY,
+    UNDECIDED,
+    UNREACHABLE,
+    amplitudes,
+    circulation,
+    complement,
+    decision,
+)
 from core.rotation.sensitivity import (
     NONE,
     Sensitivity,
@@ -48,11 +56,6 @@ from core.rotation.sensitivity import (
     inherited_sensitivity,
     steady_sensitivity,
 )
-
-REST, STEADY, PERIODIC, SEPARATRIX, UNDECIDED, UNREACHABLE = range(6)
-
-UNDECIDED_CANCELLATION = 2.0**6
-"""Where D_B has cancelled by more than this, exact arithmetic forms it: flips near the separatrix hang on it."""
 
 
 class Weights(NamedTuple):
@@ -137,12 +140,6 @@ def _rate(f: Scaled) -> tuple[float, float, float]:
 
 
 @kernel()
-def _difference(i: NDArray[np.float64], it: NDArray[np.float64], j: int, k: int) -> Scaled:
-    h, low = dd_sub(i[j], it[j], i[k], it[k])
-    return scaled(h, low, 0)
-
-
-@kernel()
 def constants_of_motion(
     i: NDArray[np.float64],
     it: NDArray[np.float64],
@@ -165,15 +162,10 @@ def constants_of_motion(
         D_B in the units of the inputs, used if `decided`.
     """
     largest = max(abs(w[0]), abs(w[1]), abs(w[2]))
-    if largest == 0.0:
-        return _motionless(REST, NONE)
-    AB = _difference(i, it, 1, 0)
-    BC = _difference(i, it, 2, 1)
-    AC = _difference(i, it, 2, 0)
-    turning_a = BC.high != 0.0 and w[1] != 0.0 and w[2] != 0.0
-    turning_b = AC.high != 0.0 and w[0] != 0.0 and w[2] != 0.0
-    turning_c = AB.high != 0.0 and w[0] != 0.0 and w[1] != 0.0
-    if not (turning_a or turning_b or turning_c):
+    found = decision(i, it, w, wt, decided, exact)
+    if found.regime == REST or found.regime == UNDECIDED:
+        return _motionless(found.regime, NONE)
+    if found.regime == STEADY:
         axis = -1
         if int(w[0] != 0.0) + int(w[1] != 0.0) + int(w[2] != 0.0) == 1:
             axis = 0 if w[0] != 0.0 else 1 if w[1] != 0.0 else 2
@@ -181,63 +173,34 @@ def constants_of_motion(
         fastest = 2.0 * largest if axis < 0 else largest
         return _motionless(STEADY, steady_sensitivity(i[0] * unit, i[1] * unit, i[2] * unit, axis, fastest))
 
-    IA, IB, IC = scaled(i[0], it[0], 0), scaled(i[1], it[1], 0), scaled(i[2], it[2], 0)
-    WA, WB, WC = scaled(w[0], wt[0], 0), scaled(w[1], wt[1], 0), scaled(w[2], wt[2], 0)
-    WA2, WB2, WC2 = sc_mul(WA, WA), sc_mul(WB, WB), sc_mul(WC, WC)
-    t_a = sc_mul(sc_mul(IA, AB), WA2)
-    t_c = sc_mul(sc_mul(IC, BC), WC2)
-    D = sc_add(t_c, sc_neg(t_a))
-    S = sc_add(t_c, t_a)
-    if decided:
-        D = exact
-    cancellation = 1e300
-    if D.high != 0.0:
-        ratio = sc_div(S, sc_abs(D))
-        if ratio.exponent < 900:
-            cancellation = sc_pair(ratio)[0]
-    if cancellation > UNDECIDED_CANCELLATION and not decided:
-        return _motionless(UNDECIDED, NONE)
-
-    if D.high >= 0.0:
-        circled, I_d, I_c, W_d, W_c, bd = 2, IC, IA, WC, WA, BC
-        X = sc_add(sc_mul(sc_mul(IA, AC), WA2), sc_mul(sc_mul(IB, BC), WB2))
-        Y = sc_add(sc_mul(sc_mul(IC, AC), WC2), sc_mul(sc_mul(IB, AB), WB2))
-        bc = AB
-    else:
-        circled, I_d, I_c, W_d, W_c, bd = 0, IA, IC, WA, WC, AB
-        X = sc_add(sc_mul(sc_mul(IC, AC), WC2), sc_mul(sc_mul(IB, AB), WB2))
-        Y = sc_add(sc_mul(sc_mul(IA, AC), WA2), sc_mul(sc_mul(IB, BC), WB2))
-        bc = BC
-    Ac = sc_sqrt(sc_div(X, sc_mul(I_c, AC)))
-    Ab = sc_sqrt(sc_div(X, sc_mul(IB, bd)))
-    Ad = sc_sqrt(sc_div(Y, sc_mul(I_d, AC)))
-    bdY = sc_mul(bd, Y)
-    p = sc_sqrt(sc_div(bdY, sc_mul(IA, sc_mul(IB, IC))))
-    k1 = sc_sqrt(sc_div(sc_mul(AC, sc_abs(D)), bdY))
-    k0 = sc_sqrt(sc_div(sc_mul(bc, X), bdY))
+    circled = 2 if found.D.high >= 0.0 else 0
+    turning = circulation(i, it, w, wt, circled)
+    k1 = complement(turning, found.D)
+    if k1.high != 0.0 and k1.exponent < SMALLEST_MODULUS:
+        return _motionless(UNREACHABLE, NONE)
+    far, p, cancellation = amplitudes(turning), turning.p, found.cancellation
+    W_d, W_c = scaled(w[circled], wt[circled], 0), scaled(w[2 - circled], wt[2 - circled], 0)
     s = -1.0 if W_d.high < 0.0 else 1.0
 
-    sn = sc_pair(sc_div(WB, Ab))
+    sn = sc_pair(sc_div(scaled(w[1], wt[1], 0), far.b))
     sh, sl = s * sn[0], s * sn[1]
-    ch, cl = sc_pair(sc_div(W_c, Ac))
-    dh, dl = sc_pair(sc_div(sc_abs(W_d), Ad))
-    kh, kl = sc_pair(k0)
+    ch, cl = sc_pair(sc_div(W_c, far.c))
+    dh, dl = sc_pair(sc_div(sc_abs(W_d), far.d))
+    kh, kl = sc_pair(turning.k)
     k1h, k1l = sc_pair(k1)
-    if k1.high != 0.0 and k1.exponent < -946:
-        return _motionless(UNREACHABLE, NONE)
     ah, al = (sh, sl) if sh >= 0.0 else (-sh, -sl)
     gh, gl = (ch, cl) if ch >= 0.0 else (-ch, -cl)
 
-    ac, ab, ad = sc_pair(Ac), sc_pair(Ab), sc_pair(Ad)
+    ac, ab, ad = sc_pair(far.c), sc_pair(far.b), sc_pair(far.d)
     amplitude_c, amplitude_b, amplitude_d = ac[0], s * ab[0], s * ad[0]
     p_pair = sc_pair(p)
     # Sensitivities in units in which the largest moment and the largest component are of order one.
-    ie = math.ldexp(1.0, -max(-1000, min(1000, IC.exponent)))
+    ie = math.ldexp(1.0, -max(-1000, min(1000, scaled(i[2], 0.0, 0).exponent)))
     we = math.ldexp(1.0, -max(-1000, min(1000, scaled(largest, 0.0, 0).exponent)))
     m, m1 = kh * kh, k1h * k1h
     dec = (
-        sc_pair(I_c)[0] * ie, i[1] * ie, sc_pair(I_d)[0] * ie,
-        sc_pair(W_c)[0] * we, w[1] * we, sc_pair(W_d)[0] * we,
+        i[2 - circled] * ie, i[1] * ie, i[circled] * ie,
+        w[2 - circled] * we, w[1] * we, w[circled] * we,
         amplitude_c * we, abs(amplitude_b) * we, abs(amplitude_d) * we,
     )  # fmt: skip
     top = max(dec[6], dec[7], dec[8])
@@ -254,7 +217,7 @@ def constants_of_motion(
         side = -1.0 if ch < 0.0 else 1.0
         sh, sl, ch, cl = side * sh, side * sl, side * ch, side * cl
         amplitude_c, amplitude_b = side * amplitude_c, side * amplitude_b
-        missed = grown / (tA + tC) * sc_pair(sc_div(sc_mul(AC, S), bdY))[0]
+        missed = grown / (tA + tC) * sc_pair(sc_div(sc_mul(turning.cd, found.S), turning.bdY))[0]
         uh, ul = rf_of_roots(gh, gl, gh, gl, 1.0, 0.0)
         uh, ul = dd_mul(uh, ul, sh, sl)
         inherited = inherited_sensitivity(

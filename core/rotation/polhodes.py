@@ -19,8 +19,8 @@ from core.bodies.mass_properties import MassProperties, PrincipalInertia
 from core.double_double import Scaled, sc_div, sc_mul, sc_pair, sc_sqrt, scaled
 from core.errors import BudgetExceeded, InvalidParameter
 from core.integration.system import Floats
+from core.rotation.circulation import REST, SEPARATRIX, STEADY
 from core.rotation.closed_form import FreeRotation
-from core.rotation.constants_of_motion import REST, SEPARATRIX, STEADY
 from core.rotation.energy_surface import EnergyEllipsoid
 
 MOST_POINTS = 100_000

@@ -20,34 +20,27 @@ Mechanics", 3rd ed., section 5.6. R. Montgomery, "How much does the rigid body r
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
+from math import inf, isfinite
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from core.bodies.exact import PI, exact_vector
-from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmetry
+from core.bodies.mass_properties import MassProperties, Symmetry
 from core.errors import InvalidParameter
 from core.integration.system import Floats
 from core.notices import Notice
-from core.rotation.attitude import FreeAttitude
-from core.rotation.closed_form import FreeRotation
-from core.rotation.constants_of_motion import PERIODIC, REST, SEPARATRIX, STEADY
-from core.rotation.exact_figures import SMALLEST, angle, double, square_root
-from core.rotation.torque_free import pinned_notices
+from core.rotation.circulation import PERIODIC, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
+from core.rotation.closed_form import FreeRotation, exact_difference, too_near_the_separatrix
+from core.rotation.precession_figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
+from core.rotation.torque_free import inherited_notices
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
-_REGIMES: Mapping[int, Regime] = {REST: "rest", STEADY: "steady", PERIODIC: "periodic", SEPARATRIX: "separatrix"}
-
-_UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+Absent = Mapping[str, str]
 
 
-@dataclass(frozen=True, eq=False)
-class Precession:
+class Precession(NamedTuple):
     """Rates and angles of a precession; None where the motion has no such thing, and `absent` says why.
 
     Attributes
@@ -98,7 +91,7 @@ class Precession:
     order_of_directions: str | None = None
     precession_per_period: float | None = None
     mean_precession_rate: float | None = None
-    absent: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    absent: Absent = MappingProxyType({})
     warnings: tuple[Notice, ...] = ()
 
 
@@ -141,207 +134,121 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
         If the start is nearer to the separatrix than doubles resolve.
     """
     given = np.ascontiguousarray(angular_velocity, dtype=np.float64)
-    if given.shape != (3,) or not np.isfinite(given).all():
+    x, y, z = given.tolist() if given.shape == (3,) else (inf,) * 3
+    if not (isfinite(x) and isfinite(y) and isfinite(z)):
         raise InvalidParameter("angular_velocity", "be three finite numbers")
-    rotation = FreeRotation(body.principal_of_motion, given)
-    found = _of(rotation)
-    inherited = tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body)))
-    return replace(found, warnings=(*inherited, *found.warnings))
-
-
-def _of(rotation: FreeRotation) -> Precession:
-    inertia = rotation.inertia
+    inertia, warnings = body.principal_of_motion, inherited_notices(body)
+    if not inertia.moments[0] > 0.0:
+        # Refused there unless a line of matter turns across itself.
+        FreeRotation(inertia, given)
     symmetry = inertia.symmetry
-    if not np.any(rotation.angular_velocity):
-        reason = "nothing turns"
-        absent = dict.fromkeys(("axis", *_OF_SYMMETRIC_BODIES, *_OF_A_CHANGE), reason)
-        return Precession(symmetry, "rest", absent=MappingProxyType(absent))
+    if x == y == z == 0.0:
+        return Precession(symmetry, "rest", absent=_AT_REST.copy(), warnings=warnings)
     if symmetry == "spherical":
-        return _sphere(rotation)
-    if symmetry == "triaxial":
-        return _triaxial(rotation)
-    return _symmetric(rotation)
-
-
-class _Figures:
-    """Collects figures, and what is to be said about those that do not exist or leave the range of doubles."""
-
-    def __init__(self) -> None:
-        self.values: dict[str, float | None] = {}
-        self.absent: dict[str, str] = {}
-        self.notices: list[Notice] = []
-
-    def put(self, name: str, value: float | Fraction | None) -> None:
-        """State a figure; None, zero by underflow and infinity are told as out of range."""
-        found = double(value) if isinstance(value, Fraction) else value
-        if found is None or not math.isfinite(found) or 0.0 < abs(found) < SMALLEST:
-            self.lack("leaves the range of double precision", name)
-            self.notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
-            return
-        self.values[name] = found
-
-    def lack(self, reason: str, *names: str) -> None:
-        """State that figures do not exist, unless they were stated."""
-        self.absent.update({name: reason for name in names if name not in self.values and name not in self.absent})
-
-    def answer(
-        self, symmetry: Symmetry, regime: Regime, axis: Floats | None, order_of_directions: str | None = None
-    ) -> Precession:
-        """Return the answer."""
-        figures = {name: self.values.get(name) for name in FIGURES}
-        return Precession(
-            symmetry,
-            regime,
-            axis,
-            order_of_directions=order_of_directions,
-            absent=MappingProxyType(dict(self.absent)),
-            warnings=tuple(self.notices),
-            **figures,
-        )
-
-
-def _sphere(rotation: FreeRotation) -> Precession:
-    figures = _Figures()
-    i, tails = rotation.inertia.moments, rotation.inertia.moments_tail
-    if not (i[0] == i[2] and tails[0] == tails[2]):
-        figures.notices.append(_equal_within_rounding("the three moments"))
-    figures.lack("the three moments are equal, so that every axis is one of symmetry", "axis", *_OF_SYMMETRIC_BODIES)
-    figures.lack("the angular velocity is constant", *_OF_A_CHANGE)
-    return figures.answer("spherical", "steady", None)
-
-
-def _triaxial(rotation: FreeRotation) -> Precession:
-    figures = _Figures()
-    figures.lack("the three moments differ, so that no axis is one of symmetry", *_OF_SYMMETRIC_BODIES)
-    regime = _REGIMES[rotation.motion.regime]
-    if regime == "steady":
-        figures.lack("the spin lies along a principal axis and is constant", *_OF_A_CHANGE)
-        spun = int(np.argmax(np.abs(rotation.start[0])))
-        return figures.answer("triaxial", regime, _oriented(rotation.inertia, spun))
-    if regime == "separatrix":
-        figures.put("mean_precession_rate", _momentum(rotation) / _moments(rotation.inertia)[1])
-        figures.lack("on the separatrix the body tends to the middle axis and never returns", *_OF_A_CHANGE)
-        return figures.answer("triaxial", regime, _oriented(rotation.inertia, 1))
-    _put_periodic(figures, rotation)
-    return figures.answer("triaxial", regime, _oriented(rotation.inertia, rotation.motion.circled))
-
-
-def _put_periodic(figures: _Figures, rotation: FreeRotation) -> None:
-    """State what the elliptic closed form knows of a periodic motion."""
-    turned = FreeAttitude(rotation, _UPRIGHT).precession_per_period
-    motion = rotation.motion
-    figures.put("period", rotation.period)
-    figures.put("precession_per_period", turned)
-    if turned is not None:
-        per_second = Fraction(turned) * Fraction(motion.rate) * Fraction(motion.time_scale) / 4
-        figures.put("mean_precession_rate", per_second)
-    if rotation.flip_interval is None:
-        figures.lack("two moments are equal, so that there is no middle axis", "flip_interval")
-    else:
-        figures.put("flip_interval", rotation.flip_interval)
-
-
-class _Split(NamedTuple):
-    """A spin of a symmetric body, along its axis and across it."""
-
-    equal: Fraction
-    single: Fraction
-    along: Fraction
-    across_squared: Fraction
-
-
-def _symmetric(rotation: FreeRotation) -> Precession:
-    inertia = rotation.inertia
-    symmetry = inertia.symmetry
-    k = 2 if symmetry == "oblate" else 0
-    moments = _moments(inertia)
-    pair = (moments[0], moments[1]) if k == 2 else (moments[1], moments[2])
-    w = exact_vector(*rotation.start)
-    axis = _oriented(inertia, k)
-    direction = 1 if np.array_equal(axis, inertia.axes[:, k]) else -1
-    across = sum((x * x for n, x in enumerate(w) if n != k), Fraction(0))
-    split = _Split((pair[0] + pair[1]) / 2, moments[k], direction * w[k], across)
-    figures = _Figures()
-    exactly = pair[0] == pair[1]
-    if not exactly:
-        regime = _REGIMES[rotation.motion.regime]
-        figures.notices.append(_equal_within_rounding("two moments"))
-        if regime == "separatrix" or (regime == "periodic" and rotation.motion.circled != k):
-            return _beyond_symmetry(figures, rotation)
-    else:
-        regime = "steady" if across == 0 or w[k] == 0 else "periodic"
-    _put_regular(figures, split, regime == "periodic")
-    figures.lack("two moments are equal, so that there is no middle axis", "flip_interval")
-    order = _order_of_directions(symmetry, split)
-    if order is None:
-        figures.lack("two of the directions coincide", "order_of_directions")
-    return figures.answer(symmetry, regime, axis, order)
-
-
-def _put_regular(figures: _Figures, s: _Split, periodic: bool) -> None:
-    """State the figures of a regular precession, all of them rational but for square roots and pi."""
-    body_rate = (s.single - s.equal) / s.equal * s.along
-    momentum = square_root(s.equal**2 * s.across_squared + (s.single * s.along) ** 2)
-    space_rate = momentum / s.equal
-    figures.put("space_rate", space_rate)
-    if periodic:
-        period = 2 * PI / abs(body_rate)
-        figures.put("body_rate", body_rate)
-        figures.put("period", period)
-        figures.put("precession_per_period", space_rate * period)
-        figures.put("mean_precession_rate", space_rate)
-    else:
-        figures.lack("the angular velocity is constant in the body", "body_rate", *_OF_A_CHANGE)
-    direction = -1 if s.along < 0 else 1
-    along, across = s.along**2, s.across_squared
-    figures.put("axis_to_angular_momentum", angle(s.equal**2 * across, s.single**2 * along, direction))
-    figures.put("axis_to_angular_velocity", angle(across, along, direction))
-    between = angle((s.single - s.equal) ** 2 * across * along, (s.equal * across + s.single * along) ** 2)
-    figures.put("angular_momentum_to_angular_velocity", between)
-
-
-def _order_of_directions(symmetry: Symmetry, s: _Split) -> str | None:
-    if s.along == 0 or s.across_squared == 0:
-        return None
-    if symmetry == "oblate":
-        return "oblate: the angular momentum lies between the axis and the angular velocity"
-    return "prolate: the angular velocity lies between the axis and the angular momentum"
-
-
-def _beyond_symmetry(figures: _Figures, rotation: FreeRotation) -> Precession:
-    """Return the answer where a difference of moments within rounding decides which axis is circled."""
-    motion, symmetry = rotation.motion, rotation.inertia.symmetry
-    reason = (
-        "the spin lies so near the plane of two nearly equal moments that the body does not move as a symmetric one"
+        if len(set(zip(inertia.moments.tolist(), inertia.moments_tail.tolist(), strict=True))) > 1:
+            warnings += (_equal_within_rounding("the three moments"),)
+        return Precession(symmetry, "steady", absent=_SPHERE.copy(), warnings=warnings)
+    k = _SYMMETRY_AXIS[symmetry]
+    parts = inertia.moments, inertia.moments_tail, inertia.axes, inertia.axes_tail
+    regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, False, 0.0, 0.0, 0)
+    if regime == UNDECIDED:
+        exact = exact_difference(FreeRotation(inertia, given).resolved)
+        regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, True, *exact)
+    if regime == UNREACHABLE:
+        raise too_near_the_separatrix()
+    if apart:
+        warnings += (_equal_within_rounding("two moments"),)
+    told = _TOLD[symmetry, regime, beyond]
+    absent = told.absent.copy()
+    if OUT_OF_RANGE in figures or UNRESOLVED in figures:
+        lost = {name: _LOST[figure] for name, figure in zip(FIGURES, figures, strict=True) if figure in _LOST}
+        absent |= {name: reason for name, (_, reason) in lost.items()}
+        warnings += tuple(Notice(code, f"{name} {reason} and is null") for name, (code, reason) in lost.items())
+    body_rate, space_rate, period, flip, to_momentum, to_velocity, between, turned, mean = (
+        figure if isfinite(figure) else None for figure in figures
     )
-    figures.lack(reason, *_OF_SYMMETRIC_BODIES)
-    if motion.regime == SEPARATRIX:
-        figures.put("mean_precession_rate", _momentum(rotation) / _moments(rotation.inertia)[1])
-        figures.lack("on the separatrix the body tends to the middle axis and never returns", *_OF_A_CHANGE)
-        return figures.answer(symmetry, "separatrix", _oriented(rotation.inertia, 1))
-    _put_periodic(figures, rotation)
-    return figures.answer(symmetry, "periodic", _oriented(rotation.inertia, motion.circled))
+    pointing: Floats = np.array(axis)
+    pointing.setflags(write=False)
+    return Precession(
+        symmetry, told.regime, pointing, body_rate, space_rate, period, flip, to_momentum, to_velocity, between,
+        told.order, turned, mean, absent, warnings,
+    )  # fmt: skip
+
+
+_SYMMETRY_AXIS: Mapping[Symmetry, int] = {"triaxial": -1, "oblate": 2, "prolate": 0, "linear": 0}
+"""Number, in ascending order, of the moment that is not equal to the other two."""
+
+
+_LOST: Mapping[float, tuple[str, str]] = {
+    OUT_OF_RANGE: ("out-of-range", "leaves the range of double precision"),
+    UNRESOLVED: ("unresolved", "is too small a part of a turn to be told from none in double precision"),
+}
+"""What is said of figures that exist and cannot be stated."""
+
+
+class _Told(NamedTuple):
+    """What one kind of motion is called, and what is said of the figures that it does not have."""
+
+    regime: Regime
+    order: str | None
+    absent: dict[str, str]
+
+
+def _absent(*reasons: tuple[str, tuple[str, ...]]) -> dict[str, str]:
+    return {name: reason for reason, names in reasons for name in names}
+
+
+_AT_REST = _absent(("nothing turns", ("axis", *_OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
+_SPHERE = _absent(
+    ("the three moments are equal, so that every axis is one of symmetry", ("axis", *_OF_SYMMETRIC_BODIES)),
+    ("the angular velocity is constant", _OF_A_CHANGE),
+)
+_THREE = "the three moments differ, so that no axis is one of symmetry", _OF_SYMMETRIC_BODIES
+_BEYOND = (
+    "the spin lies so near the plane of two nearly equal moments that the body does not move as a symmetric one",
+    _OF_SYMMETRIC_BODIES,
+)
+_NEVER_RETURNS = "on the separatrix the body tends to the middle axis and never returns", _OF_A_CHANGE[:-1]
+_TRIAXIAL = {
+    STEADY: _Told(
+        "steady", None, _absent(_THREE, ("the spin lies along a principal axis and is constant", _OF_A_CHANGE))
+    ),
+    PERIODIC: _Told("periodic", None, _absent(_THREE)),
+    SEPARATRIX: _Told("separatrix", None, _absent(_THREE, _NEVER_RETURNS)),
+}
+_UNLIKE_SYMMETRIC = {
+    PERIODIC: _Told("periodic", None, _absent(_BEYOND)),
+    SEPARATRIX: _Told("separatrix", None, _absent(_BEYOND, _NEVER_RETURNS)),
+}
+_CONSTANT = _Told(
+    "steady",
+    None,
+    _absent(
+        ("the angular velocity is constant in the body", ("body_rate", *_OF_A_CHANGE)),
+        ("two of the directions coincide", ("order_of_directions",)),
+    ),
+)
+_NO_MIDDLE_AXIS = _absent(("two moments are equal, so that there is no middle axis", ("flip_interval",)))
+_OBLATE = "oblate: the angular momentum lies between the axis and the angular velocity"
+_PROLATE = "prolate: the angular velocity lies between the axis and the angular momentum"
+
+
+def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], _Told]:
+    """Return what is told by symmetry, regime and whether a symmetric body does not move as one."""
+    found: dict[tuple[Symmetry, int, bool], _Told] = {
+        ("triaxial", regime, False): told for regime, told in _TRIAXIAL.items()
+    }
+    orders: dict[Symmetry, str] = {"oblate": _OBLATE, "prolate": _PROLATE, "linear": _PROLATE}
+    for symmetry, order in orders.items():
+        found[symmetry, STEADY, False] = _CONSTANT
+        found[symmetry, PERIODIC, False] = _Told("periodic", order, _NO_MIDDLE_AXIS)
+        found |= {(symmetry, regime, True): told for regime, told in _UNLIKE_SYMMETRIC.items()}
+    return found
+
+
+_TOLD = _told_of_all()
 
 
 def _equal_within_rounding(which: str) -> Notice:
     detail = f"{which} differ by less than 16 units in the last place of the largest and are taken as equal"
     return Notice("moments-equal-within-rounding", detail, ("body",))
-
-
-def _moments(inertia: PrincipalInertia) -> list[Fraction]:
-    return exact_vector(inertia.moments, inertia.moments_tail)
-
-
-def _momentum(rotation: FreeRotation) -> Fraction:
-    """Magnitude of the angular momentum."""
-    i, w = _moments(rotation.inertia), exact_vector(*rotation.start)
-    return square_root(sum(((m * x) ** 2 for m, x in zip(i, w, strict=True)), Fraction(0)))
-
-
-def _oriented(inertia: PrincipalInertia, k: int) -> Floats:
-    """Return a principal axis, turned to the positive side of the body axis that it is nearest to."""
-    axis: Floats = inertia.axes[:, k].copy()
-    if axis[np.argmax(np.abs(axis))] < 0.0:
-        axis = 0.0 - axis
-    axis.setflags(write=False)
-    return axis

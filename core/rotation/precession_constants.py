@@ -27,25 +27,27 @@ from core.compiled import kernel
 from core.double_double import (
     PI,
     Pair,
+    Scaled,
     dd_add,
     dd_add_d,
     dd_div,
+    dd_div_d,
     dd_exp,
     dd_mul,
     dd_mul_d,
     dd_sqr,
     dd_sqrt,
     dd_sub,
-    sc_abs,
     sc_add,
     sc_div,
     sc_mul,
     sc_pair,
     sc_sqrt,
-    scaled,
 )
-from core.elliptic import agm_dd, rf_of_roots
-from core.rotation.constants_of_motion import SEPARATRIX, Motion
+from core.elliptic.integrals import agm_dd, rf_of_roots
+from core.elliptic.lattice import Periods
+from core.rotation.circulation import SEPARATRIX, Circulation, amplitudes, circulation
+from core.rotation.constants_of_motion import Motion
 
 CIRCULAR, HYPERBOLIC, LIMIT = range(3)
 
@@ -80,15 +82,19 @@ class Precession(NamedTuple):
 def _sin_cos_dd(ah: float, al: float) -> tuple[float, float, float, float]:
     """Return sin a and cos a as pairs, for 0 <= a <= pi/4, by their Taylor series."""
     wh, wl = dd_sqr(ah, al)
+    # sin a/a = 1 - w/(2 3) (1 - w/(4 5) (...)),  cos a = 1 - w/(1 2) (1 - w/(3 4) (...)); what is left from the term
+    # in w^10 on is multiplied by w^10/20! < 2^-65, and doubles suffice for it.
     sh, sl, ch, cl = 0.0, 0.0, 0.0, 0.0
-    for n in range(27, 0, -2):
-        # sin a/a = 1 - w/(2 3) (1 - w/(4 5) (...)),  cos a = 1 - w/(1 2) (1 - w/(3 4) (...))
+    for n in range(27, 19, -2):
+        sh = wh / ((n + 1) * (n + 2)) * (1.0 - sh)
+        ch = wh / (n * (n + 1)) * (1.0 - ch)
+    for n in range(19, 0, -2):
         th, tl = dd_add_d(-sh, -sl, 1.0)
         th, tl = dd_mul(th, tl, wh, wl)
-        sh, sl = dd_div(th, tl, float((n + 1) * (n + 2)), 0.0)
+        sh, sl = dd_div_d(th, tl, float((n + 1) * (n + 2)))
         th, tl = dd_add_d(-ch, -cl, 1.0)
         th, tl = dd_mul(th, tl, wh, wl)
-        ch, cl = dd_div(th, tl, float(n * (n + 1)), 0.0)
+        ch, cl = dd_div_d(th, tl, float(n * (n + 1)))
     th, tl = dd_add_d(-sh, -sl, 1.0)
     sh, sl = dd_mul(th, tl, ah, al)
     ch, cl = dd_add_d(-ch, -cl, 1.0)
@@ -166,6 +172,93 @@ def _theta4_slope(xh: float, xl: float, qh: float, ql: float) -> tuple[float, fl
     return oh, ol, c1, s1, c2, s2
 
 
+class Turning(NamedTuple):
+    """A motion as it turns about its angular momentum, at u = 0, where w = (A_c, 0, A_d) in x', y', z'."""
+
+    L: Scaled
+    M_c: Scaled
+    M_d: Scaled
+    """Angular momentum, and its components along c and d."""
+    kappa: float
+    """Half of psi' there, per unit of u."""
+    kappa_tail: float
+    sine: float
+    """Sine and cosine of the amplitude of x: I_c|I_d-I_b|/(I_b|I_d-I_c|) and I_d|I_b-I_c|/(I_b|I_d-I_c|), roots."""
+    sine_tail: float
+    cosine: float
+    cosine_tail: float
+
+
+@kernel()
+def turning(c: Circulation, far_c: Scaled, far_d: Scaled) -> Turning:
+    """Return what a motion with amplitudes `far_c` and `far_d` is at u = 0."""
+    M_c, M_d = sc_mul(c.I_c, far_c), sc_mul(c.I_d, far_d)
+    L = sc_sqrt(sc_add(sc_mul(M_c, M_c), sc_mul(M_d, M_d)))
+    top = sc_add(sc_add(sc_mul(M_c, far_c), sc_mul(M_d, far_d)), sc_mul(L, far_d))
+    slope = sc_div(top, sc_add(L, M_d))
+    kh, kl = sc_pair(sc_div(slope, c.p))
+    base = sc_mul(c.I_b, c.cd)
+    sh, sl = sc_pair(sc_sqrt(sc_div(sc_mul(c.I_c, c.bd), base)))
+    ch, cl = sc_pair(sc_sqrt(sc_div(sc_mul(c.I_d, c.bc), base)))
+    return Turning(L, M_c, M_d, 0.5 * kh, 0.5 * kl, sh, sl, ch, cl)
+
+
+class Quarter(NamedTuple):
+    """What psi/2 does in a quarter period, and constants for sampling as in `Precession`."""
+
+    per_quarter: float
+    per_quarter_tail: float
+    eta_x: float
+    cos_x: float
+    sin_x: float
+    theta_c1: float
+    theta_s1: float
+    theta_c2: float
+    theta_s2: float
+
+
+@kernel()
+def quarter_turn(c: Circulation, t: Turning, of: Periods) -> Quarter:
+    """Return the angle by which psi/2 grows in a quarter period, with its periodic part."""
+    eta = 1.0 if c.circled == 2 else -1.0
+    ah, al = dd_mul(t.kappa, t.kappa_tail, of.K, of.K_tail)
+    kh, kl = sc_pair(c.k)
+    if of.circular and kh < 1e-33:
+        return Quarter(ah, al, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    # dn-like root cos^2 + m sin^2
+    mh, ml = dd_mul(kh, kl, t.sine, t.sine_tail)
+    ch, cl = dd_sqr(t.cosine, t.cosine_tail)
+    mh, ml = dd_sqr(mh, ml)
+    dh, dl = dd_add(ch, cl, mh, ml)
+    dh, dl = dd_sqrt(dh, dl)
+    xh, xl = rf_of_roots(t.cosine, t.cosine_tail, dh, dl, 1.0, 0.0)
+    xh, xl = dd_mul(xh, xl, t.sine, t.sine_tail)
+    if of.circular:
+        # xi = pi x/2K; q = exp(-pi K'/K) with K' = pi/2 agm(1, k').
+        zh, zl = dd_div(xh, xl, of.K, of.K_tail)
+        zh, zl = dd_mul(zh, zl, 0.5 * PI[0], 0.5 * PI[1])
+        gh, gl = dd_mul(of.mean, of.mean_tail, of.K, of.K_tail)
+        qh, ql = dd_div(-0.5 * PI[0], -0.5 * PI[1], gh, gl)
+        qh, ql = dd_mul(qh, ql, PI[0], PI[1])
+        qh, ql = dd_exp(qh, ql)
+        nh, nl, c1, s1, c2, s2 = _theta4_slope(zh, zl, qh, ql)
+        nh, nl = dd_mul(nh, nl, 0.5 * PI[0], 0.5 * PI[1])
+        ah, al = dd_add(ah, al, eta * nh, eta * nl)
+        return Quarter(ah, al, 0.0, 1.0, 0.0, c1, s1, c2, s2)
+    # eta_x = pi x/4K' = x agm(1, k)/2.
+    zh, zl = dd_mul(xh, xl, of.mean, of.mean_tail)
+    zh, zl = 0.5 * zh, 0.5 * zl
+    qh, ql = 0.0, 0.0
+    if of.scale < 300.0:
+        qh, ql = dd_exp(-2.0 * of.scale, -2.0 * of.scale_tail)
+    sh, sl, ch, cl = _sin_cos_dd(zh, zl)
+    nh, nl = _theta2_slope(sh, sl, ch, cl, qh, ql)
+    nh, nl = dd_mul(nh, nl, 0.5 * of.scale, 0.5 * of.scale_tail)
+    nh, nl = dd_sub(zh, zl, nh, nl)
+    ah, al = dd_add(ah, al, -eta * nh, -eta * nl)
+    return Quarter(ah, al, zh, ch, sh, 0.0, 0.0, 0.0, 0.0)
+
+
 @kernel()
 def precession_constants(
     motion: Motion, i: NDArray[np.float64], it: NDArray[np.float64], w: NDArray[np.float64], wt: NDArray[np.float64]
@@ -177,90 +270,35 @@ def precession_constants(
     i, it, w, wt : ndarray, shape (3,)
         As in `constants_of_motion`.
     """
-    IA, IB, IC = scaled(i[0], it[0], 0), scaled(i[1], it[1], 0), scaled(i[2], it[2], 0)
-    WA, WB, WC = sc_abs(scaled(w[0], wt[0], 0)), sc_abs(scaled(w[1], wt[1], 0)), sc_abs(scaled(w[2], wt[2], 0))
-    bc, bl = dd_sub(i[1], it[1], i[0], it[0])
-    AB = scaled(bc, bl, 0)
-    bc, bl = dd_sub(i[2], it[2], i[1], it[1])
-    BC = scaled(bc, bl, 0)
-    bc, bl = dd_sub(i[2], it[2], i[0], it[0])
-    AC = scaled(bc, bl, 0)
-    TA, TB, TC = sc_mul(WA, WA), sc_mul(WB, WB), sc_mul(WC, WC)
-    if motion.circled == 2:
-        eta, I_d, I_c, db, cb = 1.0, IC, IA, BC, AB
-        X = sc_add(sc_mul(sc_mul(IA, AC), TA), sc_mul(sc_mul(IB, BC), TB))
-        Y = sc_add(sc_mul(sc_mul(IC, AC), TC), sc_mul(sc_mul(IB, AB), TB))
-    else:
-        eta, I_d, I_c, db, cb = -1.0, IA, IC, AB, BC
-        X = sc_add(sc_mul(sc_mul(IC, AC), TC), sc_mul(sc_mul(IB, AB), TB))
-        Y = sc_add(sc_mul(sc_mul(IA, AC), TA), sc_mul(sc_mul(IB, BC), TB))
-    Ac = sc_sqrt(sc_div(X, sc_mul(I_c, AC)))
-    Ab = sc_sqrt(sc_div(X, sc_mul(IB, db)))
-    Ad = sc_sqrt(sc_div(Y, sc_mul(I_d, AC)))
-    Mc, Mb, Md = sc_mul(I_c, Ac), sc_mul(IB, Ab), sc_mul(I_d, Ad)
-    L = sc_sqrt(sc_add(sc_mul(Mc, Mc), sc_mul(Md, Md)))
-    a_x, a_y, a_z = sc_pair(sc_div(Mc, L))[0], sc_pair(sc_div(Mb, L))[0], sc_pair(sc_div(Md, L))[0]
-    # psi' at u = 0, where w = (A_c, 0, A_d) in x', y', z'.
-    top = sc_add(sc_add(sc_mul(Mc, Ac), sc_mul(Md, Ad)), sc_mul(L, Ad))
-    slope = sc_div(top, sc_add(L, Md))
-    p = sc_sqrt(sc_div(sc_mul(db, Y), sc_mul(IA, sc_mul(IB, IC))))
-    kh, kl = sc_pair(sc_div(slope, p))
-    kh, kl = 0.5 * kh, 0.5 * kl
-    # x by R_F; sin^2 = I_c|I_d-I_b|/(I_b|I_d-I_c|), cos^2 = I_d|I_b-I_c|/(I_b|I_d-I_c|).
-    base = sc_mul(IB, AC)
-    sinh_, sinl = sc_pair(sc_sqrt(sc_div(sc_mul(I_c, db), base)))
-    cosh_, cosl = sc_pair(sc_sqrt(sc_div(sc_mul(I_d, cb), base)))
+    c = circulation(i, it, w, wt, motion.circled)
+    eta = 1.0 if motion.circled == 2 else -1.0
+    far = amplitudes(c)
+    t = turning(c, far.c, far.d)
+    M_b = sc_mul(c.I_b, far.b)
+    a_x, a_y, a_z = sc_pair(sc_div(t.M_c, t.L))[0], sc_pair(sc_div(M_b, t.L))[0], sc_pair(sc_div(t.M_d, t.L))[0]
     lat = motion.lattice
     if motion.regime == SEPARATRIX:
         # m = 1: x is the angle itself, and K' = pi/2.
-        xh, xl = rf_of_roots(cosh_, cosl, 1.0, 0.0, 1.0, 0.0)
-        xh, xl = dd_mul(xh, xl, sinh_, sinl)
+        xh, xl = rf_of_roots(t.cosine, t.cosine_tail, 1.0, 0.0, 1.0, 0.0)
+        xh, xl = dd_mul(xh, xl, t.sine, t.sine_tail)
         xh, xl = 0.5 * xh, 0.5 * xl
         sh, sl, ch, cl = _sin_cos_dd(xh, xl)
         nh, nl = dd_div(sh, sl, ch, cl)
-        th, tl = dd_add(kh, kl, 0.5 * eta * nh, 0.5 * eta * nl)
+        th, tl = dd_add(t.kappa, t.kappa_tail, 0.5 * eta * nh, 0.5 * eta * nl)
         # u per scaled time is the rate; quarter turns are pi/2.
         rh, rl = dd_mul(th, tl, motion.rate, motion.rate_tail)
         rh, rl = dd_div(rh, rl, 0.5 * PI[0], 0.5 * PI[1])
         return Precession(LIMIT, eta, a_x, eta * a_y, a_z, rh, rl, 0.0, 0.0, xh, ch, sh, 0.0, 0.0, 0.0, 0.0)
-    ah, al = dd_mul(kh, kl, lat.K, lat.K_tail)
-    k1h, k1l = sc_pair(sc_sqrt(sc_div(sc_mul(cb, X), sc_mul(db, Y))))
-    eta_x, cos_x, sin_x, c1, s1, c2, s2 = 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    if not (lat.circular and k1h < 1e-33):
-        # dn-like root cos^2 + m sin^2
-        mh, ml = dd_mul(k1h, k1l, sinh_, sinl)
-        ch, cl = dd_sqr(cosh_, cosl)
-        mh, ml = dd_sqr(mh, ml)
-        dh, dl = dd_add(ch, cl, mh, ml)
-        dh, dl = dd_sqrt(dh, dl)
-        xh, xl = rf_of_roots(cosh_, cosl, dh, dl, 1.0, 0.0)
-        xh, xl = dd_mul(xh, xl, sinh_, sinl)
-        gh, gl = agm_dd(k1h, k1l)
-        if lat.circular:
-            # xi = pi x/2K; q = exp(-pi K'/K) with K' = pi/2 agm(1, k).
-            zh, zl = dd_div(xh, xl, lat.K, lat.K_tail)
-            zh, zl = dd_mul(zh, zl, 0.5 * PI[0], 0.5 * PI[1])
-            gh, gl = dd_mul(gh, gl, lat.K, lat.K_tail)
-            qh, ql = dd_div(-0.5 * PI[0], -0.5 * PI[1], gh, gl)
-            qh, ql = dd_mul(qh, ql, PI[0], PI[1])
-            qh, ql = dd_exp(qh, ql)
-            nh, nl, c1, s1, c2, s2 = _theta4_slope(zh, zl, qh, ql)
-            nh, nl = dd_mul(nh, nl, 0.5 * PI[0], 0.5 * PI[1])
-            ah, al = dd_add(ah, al, eta * nh, eta * nl)
-        else:
-            # eta_x = pi x/4K' = x agm(1, k)/2.
-            zh, zl = dd_mul(xh, xl, gh, gl)
-            zh, zl = 0.5 * zh, 0.5 * zl
-            qh, ql = 0.0, 0.0
-            if lat.scale < 300.0:
-                qh, ql = dd_exp(-2.0 * lat.scale, -2.0 * lat.scale_tail)
-            sh, sl, ch, cl = _sin_cos_dd(zh, zl)
-            nh, nl = _theta2_slope(sh, sl, ch, cl, qh, ql)
-            nh, nl = dd_mul(nh, nl, 0.5 * lat.scale, 0.5 * lat.scale_tail)
-            nh, nl = dd_sub(zh, zl, nh, nl)
-            ah, al = dd_add(ah, al, -eta * nh, -eta * nl)
-            eta_x, cos_x, sin_x = zh, ch, sh
-    rh, rl = dd_mul(ah, al, motion.rate, motion.rate_tail)
+    mean = 0.0, 0.0
+    kh, kl = sc_pair(c.k)
+    if kh > 0.0:
+        mean = agm_dd(kh, kl)
+    of = Periods(lat.circular, lat.K, lat.K_tail, lat.scale, lat.scale_tail, mean[0], mean[1], 0.0, 0.0)
+    q = quarter_turn(c, t, of)
+    rh, rl = dd_mul(q.per_quarter, q.per_quarter_tail, motion.rate, motion.rate_tail)
     rh, rl = dd_div(rh, rl, 0.5 * PI[0], 0.5 * PI[1])
     branch = CIRCULAR if lat.circular else HYPERBOLIC
-    return Precession(branch, eta, a_x, eta * a_y, a_z, rh, rl, ah, al, eta_x, cos_x, sin_x, c1, s1, c2, s2)
+    return Precession(
+        branch, eta, a_x, eta * a_y, a_z, rh, rl, q.per_quarter, q.per_quarter_tail,
+        q.eta_x, q.cos_x, q.sin_x, q.theta_c1, q.theta_s1, q.theta_c2, q.theta_s2,
+    )  # fmt: skip

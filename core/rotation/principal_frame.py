@@ -12,17 +12,53 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.integration.system import Floats
 
+RESOLUTION = 2.0**-96
+"""Differences of derived moments, and derived components, below this share of the largest are taken as 0."""
+
 
 @kernel()
-def _components(
-    axes: NDArray[np.float64], tail: NDArray[np.float64], v: NDArray[np.float64], out: NDArray[np.float64]
+def _own_axes(axes: NDArray[np.float64], tail: NDArray[np.float64]) -> bool:
+    for row in range(3):
+        for column in range(3):
+            x = axes[row, column]
+            if not (x == 0.0 or x == 1.0 or x == -1.0) or tail[row, column] != 0.0:
+                return False
+    return True
+
+
+@kernel()
+def resolve(
+    axes: NDArray[np.float64],
+    axes_tail: NDArray[np.float64],
+    moments: NDArray[np.float64],
+    moments_tail: NDArray[np.float64],
+    x: float,
+    y: float,
+    z: float,
+    out: NDArray[np.float64],
 ) -> None:
+    """Fill `out`, shape (4, 3), with moments, angular velocity along their axes and the tails of each, in pairs.
+
+    The moments are those of the motion and (x, y, z) the angular velocity in body axes. Where either was derived, what
+    lies below the resolution of derived numbers is noise, whose sign would decide the regime, and is taken as 0.
+    """
     for k in range(3):
-        h, low = 0.0, 0.0
-        for j in range(3):
-            ph, pl = dd_mul_d(axes[j, k], tail[j, k], v[j])
-            h, low = dd_add(h, low, ph, pl)
-        out[0, k], out[1, k] = h, low
+        out[0, k], out[1, k] = moments[k], moments_tail[k]
+        # Along body axes, in whatever order, the sum has one term that is not 0, and is exact.
+        h, low = dd_mul_d(axes[0, k], axes_tail[0, k], x)
+        ph, pl = dd_mul_d(axes[1, k], axes_tail[1, k], y)
+        h, low = dd_add(h, low, ph, pl)
+        ph, pl = dd_mul_d(axes[2, k], axes_tail[2, k], z)
+        out[2, k], out[3, k] = dd_add(h, low, ph, pl)
+    if moments_tail[0] == 0.0 and moments_tail[1] == 0.0 and moments_tail[2] == 0.0 and _own_axes(axes, axes_tail):
+        return
+    for k in range(2):
+        if out[0, k + 1] - out[0, k] <= RESOLUTION * moments[2]:
+            out[0, k + 1], out[1, k + 1] = out[0, k], out[1, k]
+    largest = max(abs(out[2, 0]), abs(out[2, 1]), abs(out[2, 2]))
+    for k in range(3):
+        if abs(out[2, k]) <= RESOLUTION * largest:
+            out[2, k], out[3, k] = 0.0, 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +71,7 @@ class PrincipalFrame:
     @cached_property
     def aligned(self) -> bool:
         """Whether the principal axes are the body axes, in some order and with some signs, exactly."""
-        # Nine numbers: plain Python is quicker than arrays.
-        entries = (x for row in self.axes.tolist() for x in row)
-        return all(x in (0.0, 1.0, -1.0) for x in entries) and not any(
-            x for row in self.axes_tail.tolist() for x in row
-        )
+        return bool(_own_axes(self.axes, self.axes_tail))
 
     @cached_property
     def rows(self) -> list[int]:
@@ -61,18 +93,3 @@ class PrincipalFrame:
         for k, (row, sign) in enumerate(zip(self.rows, self.signs, strict=True)):
             body[:, row] = sign * vectors[:, k]
         return body
-
-    def components(self, vector: Floats) -> tuple[Floats, Floats]:
-        """Return a vector's principal components and their tails, each of shape (3,), exact where axes are aligned."""
-        if self.aligned:
-            given = vector.tolist()
-            exact = np.array([sign * given[row] for row, sign in zip(self.rows, self.signs, strict=True)])
-            return exact, np.zeros(3)
-        out = np.empty((2, 3))
-        _components(
-            np.ascontiguousarray(self.axes),
-            np.ascontiguousarray(self.axes_tail),
-            np.ascontiguousarray(vector, dtype=np.float64),
-            out,
-        )
-        return out[0], out[1]

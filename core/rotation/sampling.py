@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from core.compiled import fma, kernel
 from core.double_double import two_prod
-from core.elliptic import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
-from core.rotation.constants_of_motion import PERIODIC, Motion
+from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
+from core.rotation.circulation import PERIODIC
+from core.rotation.constants_of_motion import Motion
 
 
 @kernel()

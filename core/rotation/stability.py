@@ -24,16 +24,17 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from core.bodies.exact import exact_vector
+from core.bodies.exact import exact_vector, vector_pairs
 from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmetry
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.integration.system import Floats
 from core.notices import Notice
 from core.quantities import AngularRate, Quantity
 from core.rotation.closed_form import FreeRotation
-from core.rotation.exact_figures import double, square_root
+from core.rotation.linearised import LinearRates, linear_rates
+from core.rotation.precession_figures import OUT_OF_RANGE, oriented
 from core.rotation.principal_frame import PrincipalFrame
-from core.rotation.torque_free import pinned_notices
+from core.rotation.torque_free import inherited_notices
 
 Kind = Literal["center", "saddle", "degenerate"]
 Attitude = Literal["orbital", "unstable"]
@@ -42,8 +43,7 @@ Eigenvalue = tuple[float, float]
 _finite_rate = Quantity("rad s^-1")
 
 
-@dataclass(frozen=True, eq=False)
-class Equilibrium:
+class Equilibrium(NamedTuple):
     """A constant angular velocity.
 
     Attributes
@@ -104,8 +104,7 @@ class Flip:
     reason: str
 
 
-@dataclass(frozen=True, eq=False)
-class Stability:
+class Stability(NamedTuple):
     """All equilibria of a free body at one rate.
 
     Attributes
@@ -156,8 +155,9 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
         rule = "have three moments of inertia greater than 0 to rotate freely"
         raise InvalidParameter("body", rule, remedy="give a body with extent in at least two directions")
     moments, warnings = _moments(inertia)
-    found = [_about(moments, k, Fraction(rate)) for k in range(3)]
-    shown = [_stated(e, inertia, k) for k, e in enumerate(found)]
+    rates = linear_rates(*moments, float(rate))
+    pairs = list(zip(*(part.tolist() for part in moments), strict=True))
+    shown = [_about(pairs, k, rates[k], inertia) for k in range(3)]
     outside = [
         Notice(
             "out-of-range",
@@ -167,43 +167,54 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
         for k, e in enumerate(shown)
         if e.eigenvalues is None or e.drift_rate is None
     ]
-    flip = None if disturbance is None else _flip(inertia, moments, float(rate), disturbance)
-    inherited = [notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))]
-    equilibria = (*shown, _rest())
-    return Stability(inertia.symmetry, float(rate), equilibria, flip, (*inherited, *warnings, *outside))
+    flip = None if disturbance is None else _flip(inertia, len(set(pairs)), float(rate), disturbance)
+    return Stability(
+        inertia.symmetry, float(rate), (*shown, _AT_REST), flip, (*inherited_notices(body), *warnings, *outside)
+    )
 
 
-class _Found(NamedTuple):
-    """An equilibrium in exact figures."""
-
-    kind: Kind
-    square: Fraction
-    drift: Fraction
-    stable: bool
-    linearly_stable: bool
-    dissipates: bool
-    reason: str
-
-
-def _about(moments: list[Fraction], axis: int, rate: Fraction) -> _Found:
+def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, inertia: PrincipalInertia) -> Equilibrium:
     own, (low, high) = moments[axis], (moments[n] for n in range(3) if n != axis)
-    square = rate**2 * (own - low) * (high - own) / (low * high)
     survives = own == moments[2]
     after = _DISSIPATION[survives]
-    if rate == 0:
-        return _Found("degenerate", square, Fraction(0), True, True, survives, _REST)
-    if low == own == high:
-        return _Found("degenerate", square, Fraction(0), True, True, True, _SPHERE)
-    if own in (low, high):
-        other = high if own == low else low
-        drift = abs(rate * (other - own)) / own
-        return _Found("degenerate", square, drift, False, False, survives, f"{_PLANE} {after}")
-    if square > 0:
-        return _Found("saddle", square, Fraction(0), False, False, False, f"{_SADDLE} {after}")
-    size = "largest" if survives else "smallest"
-    extremum = "least" if survives else "greatest"
-    reason = _CENTER.format(size=size, extremum=extremum)
-    return _Found("center", square, Fraction(0), True, True, survives, f"{reason} {after}")
+    kind: Kind = "degenerate"
+    stable = linearly_stable = True
+    if rates.turning == 0.0:
+        reason = _REST
+    elif low == own == high:
+        reason = _SPHERE
+    elif own in (low, high):
+        stable = linearly_stable = False
+        reason = f"{_PLANE} {after}"
+    elif low < own < high:
+        kind, stable, linearly_stable = "saddle", False, False
+        reason = f"{_SADDLE} {after}"
+    else:
+        kind, reason = "center", _CENTERS[survives]
+    size = None if rates.size == OUT_OF_RANGE else rates.size
+    pair: tuple[Eigenvalue, Eigenvalue] | None = None
+    growth: float | None = 0.0
+    if kind == "saddle":
+        growth = size
+    if size is not None:
+        back = -size if size else 0.0
+        pair = ((size, 0.0), (back, 0.0)) if kind == "saddle" else ((0.0, size), (0.0, back))
+    *pointing, _ = oriented(inertia.axes, axis)
+    axis_of: Floats = np.array(pointing)
+    axis_of.setflags(write=False)
+    return Equilibrium(
+        axis_of,
+        float(inertia.moments[axis]),
+        None if pair is None else (*pair, (0.0, 0.0)),
+        kind,
+        stable,
+        growth,
+        None if rates.drift == OUT_OF_RANGE else rates.drift,
+        linearly_stable,
+        "orbital" if stable and rates.turning != 0.0 else "unstable",
+        survives,
+        reason,
+    )
 
 
 _CENTER = (
@@ -235,59 +246,34 @@ _DISSIPATION = {
 }
 
 
-def _stated(found: _Found, inertia: PrincipalInertia, k: int) -> Equilibrium:
-    size = double(square_root(abs(found.square)))
-    drift = double(found.drift)
-    pair: tuple[Eigenvalue, Eigenvalue] | None
-    if size is None:
-        pair, growth = None, None if found.kind == "saddle" else 0.0
-    elif found.kind == "saddle":
-        pair, growth = ((size, 0.0), (-size, 0.0)), size
-    else:
-        pair, growth = ((0.0, size), (0.0, -size if size else 0.0)), 0.0
-    axis: Floats = inertia.axes[:, k].copy()
-    if axis[np.argmax(np.abs(axis))] < 0.0:
-        axis = 0.0 - axis
-    axis.setflags(write=False)
-    return Equilibrium(
-        axis,
-        float(inertia.moments[k]),
-        None if pair is None else (*pair, (0.0, 0.0)),
-        found.kind,
-        found.stable,
-        growth,
-        drift,
-        found.linearly_stable,
-        "orbital" if found.stable and found.reason != _REST else "unstable",
-        found.dissipates,
-        found.reason,
-    )
+_CENTERS = {
+    True: f"{_CENTER.format(size='largest', extremum='least')} {_DISSIPATION[True]}",
+    False: f"{_CENTER.format(size='smallest', extremum='greatest')} {_DISSIPATION[False]}",
+}
+
+_ZERO = (0.0, 0.0)
+_AT_REST = Equilibrium(
+    None, None, (_ZERO, _ZERO, _ZERO), "degenerate", True, 0.0, 0.0, True, "unstable", False, _REST
+)  # fmt: skip
 
 
-def _rest() -> Equilibrium:
-    zero = (0.0, 0.0)
-    return Equilibrium(
-        None, None, (zero, zero, zero), "degenerate", True, 0.0, 0.0, True, "unstable", False, _REST
-    )  # fmt: skip
-
-
-def _moments(inertia: PrincipalInertia) -> tuple[list[Fraction], list[Notice]]:
-    """Return the moments as they count, and what is to be said of those that are nearly equal.
+def _moments(inertia: PrincipalInertia) -> tuple[tuple[Floats, Floats], list[Notice]]:
+    """Return the moments as they count, with their tails, and what is to be said of those that are nearly equal.
 
     Along body axes they are the client's own and differ if they differ. Those of a turned tensor carry the rounding of
     its components, and the sign of a smaller difference would be that of rounding.
     """
-    exact = exact_vector(inertia.moments, inertia.moments_tail)
+    given = inertia.moments, inertia.moments_tail
     distinct = {"triaxial": 3, "oblate": 2, "prolate": 2, "linear": 2, "spherical": 1}[inertia.symmetry]
-    if len(set(exact)) == distinct:
-        return exact, []
+    if len(set(zip(*(part.tolist() for part in given), strict=True))) == distinct:
+        return given, []
     if PrincipalFrame(inertia.axes, inertia.axes_tail).aligned:
         detail = (
             "moments differ by less than 16 units in the last place of the largest; the difference is taken as given, "
             "and half a unit in a moment may change the kind of an equilibrium"
         )
-        return exact, [Notice("moments-nearly-equal", detail, ("body",))]
-    low, middle, high = exact
+        return given, [Notice("moments-nearly-equal", detail, ("body",))]
+    low, middle, high = exact = exact_vector(*given)
     if distinct == 1:
         merged = [sum(exact, Fraction(0)) / 3] * 3
     elif inertia.symmetry == "oblate":
@@ -295,15 +281,15 @@ def _moments(inertia: PrincipalInertia) -> tuple[list[Fraction], list[Notice]]:
     else:
         merged = [low] + [(middle + high) / 2] * 2
     detail = "moments differ by less than 16 units in the last place of the largest and are taken as equal"
-    return merged, [Notice("moments-equal-within-rounding", detail, ("body",))]
+    return vector_pairs(merged), [Notice("moments-equal-within-rounding", detail, ("body",))]
 
 
-def _flip(inertia: PrincipalInertia, moments: list[Fraction], rate: float, disturbance: tuple[float, float]) -> Flip:
+def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tuple[float, float]) -> Flip:
     if len(disturbance) != 2:
         raise InvalidParameter("disturbance", "be two rates, along the axes of smallest and largest moment")
     for n, x in enumerate(disturbance):
         _finite_rate.check(("disturbance", n), x)
-    if len(set(moments)) < 3:
+    if distinct < 3:
         raise NotApplicable(
             "two moments are equal, so that there is no middle axis to be disturbed",
             path=("disturbance",),

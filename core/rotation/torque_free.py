@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 
 from core.bodies.mass_properties import MassProperties
 from core.compiled import kernel
-from core.integration.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Splitting, Structure
+from core.integration.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 from core.notices import Notice
 from core.rotation.closed_form import FreeRotation
 
 PARTS = 3
+
+_PIECE = 512
+"""Samples whose energies are formed at a time."""
 
 AT_THE_ORIGIN = 2.0**-48
 """Distance of the centre of mass from the origin, over the radius of gyration, that rounding explains."""
@@ -67,16 +70,64 @@ def _turn_momentum(part: int, duration: float, state: NDArray[np.float64], param
 
 
 @kernel()
-def _invariants(
-    tensor: NDArray[np.float64], states: NDArray[np.float64], unit: float, out: NDArray[np.float64]
+def _energy_and_momentum(
+    a: float,
+    b: float,
+    c: float,
+    unit: float,
+    p: NDArray[np.float64],
+    q: NDArray[np.float64],
+    r: NDArray[np.float64],
+    energy: NDArray[np.float64],
+    square: NDArray[np.float64],
 ) -> None:
-    a, b, c = tensor[0, 0], tensor[1, 1], tensor[2, 2]
-    d, e, f = tensor[0, 1], tensor[0, 2], tensor[1, 2]
-    for n in range(states.shape[1]):
-        x, y, z = unit * states[0, n], unit * states[1, n], unit * states[2, n]
-        mx, my, mz = a * x + d * y + e * z, d * x + b * y + f * z, e * x + f * y + c * z
-        out[0, n] = 0.5 * (x * mx + y * my + z * mz)
-        out[1, n] = math.sqrt(mx * mx + my * my + mz * mz)
+    """Fill in 2 E and L^2 of rotations with components p, q, r, times a unit, along the axes of moments a, b, c."""
+    for n in range(p.size):
+        x, y, z = unit * p[n], unit * q[n], unit * r[n]
+        mx, my, mz = a * x, b * y, c * z
+        energy[n] = x * mx + y * my + z * mz
+        square[n] = mx * mx + my * my + mz * mz
+
+
+@kernel()
+def _widen(values: NDArray[np.float64], least: NDArray[np.float64], largest: NDArray[np.float64]) -> None:
+    """Let the range of every place take in one more value."""
+    for n in range(values.size):
+        value = values[n]
+        least[n] = value if value < least[n] else least[n]
+        largest[n] = value if value > largest[n] else largest[n]
+
+
+@kernel()
+def _ranges(
+    moments: NDArray[np.float64], start: NDArray[np.float64], states: NDArray[np.float64], unit: float
+) -> tuple[float, float, float, float, float, float]:
+    """Return E at the start with the least and largest of all samples, and the same of L, in the unit's units.
+
+    Samples are taken a piece at a time, and every place in a piece has a range of its own: so the processor works on
+    several at once and in its nearest memory, without any change of the order in which anything is rounded.
+    """
+    a, b, c = moments[0], moments[1], moments[2]
+    energy, square = np.empty(_PIECE), np.empty(_PIECE)
+    e_least, e_largest = np.full(_PIECE, np.inf), np.full(_PIECE, -np.inf)
+    m_least, m_largest = np.full(_PIECE, np.inf), np.full(_PIECE, -np.inf)
+    odd = np.zeros(_PIECE)
+    for begin in range(0, states.shape[1], _PIECE):
+        end = min(begin + _PIECE, states.shape[1])
+        _energy_and_momentum(
+            a, b, c, unit, states[0, begin:end], states[1, begin:end], states[2, begin:end], energy, square
+        )
+        _widen(energy[: end - begin], e_least, e_largest)
+        _widen(square[: end - begin], m_least, m_largest)
+        for n in range(end - begin):
+            # 0, or NaN where either is not finite.
+            odd[n] += (energy[n] - energy[n]) + (square[n] - square[n])
+    _energy_and_momentum(a, b, c, unit, start[0], start[1], start[2], energy, square)
+    spoilt = odd.sum()
+    return (
+        0.5 * energy[0], 0.5 * e_least.min() + spoilt, 0.5 * e_largest.max() + spoilt,
+        math.sqrt(square[0]), math.sqrt(m_least.min()) + spoilt, math.sqrt(m_largest.max()) + spoilt,
+    )  # fmt: skip
 
 
 def pinned_notices(body: MassProperties) -> tuple[Notice, ...]:
@@ -98,6 +149,13 @@ def pinned_notices(body: MassProperties) -> tuple[Notice, ...]:
         'centre of mass: leave out about, or give "center-of-mass"'
     )
     return (Notice("not-free", detail, ("about",)),)
+
+
+def inherited_notices(body: MassProperties) -> tuple[Notice, ...]:
+    """Return what an answer about the motion of a body has to say of the body itself; paths lead from the question."""
+    if not body.warnings and body.about != "origin":
+        return ()
+    return tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,19 +232,20 @@ class TorqueFree:
     def _exact(self) -> FreeRotation:
         return FreeRotation(self.body.principal_of_motion, self.angular_velocity, self.body.conditioning)
 
-    def invariants(self, states: Floats) -> Mapping[str, Floats]:
-        """Return energy and |L| in units in which the largest moment and the largest initial rate are of order one."""
-        largest = float(np.max(np.abs(self.angular_velocity)))
+    def ranges(self, states: Floats) -> Mapping[str, Range]:
+        """Return the ranges of energy and |L|, both times a power of two that brings them near one."""
+        largest = float(np.abs(self.angular_velocity).max())
         unit = math.ldexp(1.0, max(-1000, min(1000, -math.frexp(largest)[1])))
-        out = np.empty((2, len(states)))
+        start, along = self.angular_velocity[:, None], states.T
         if self._diagonal:
-            _invariants(self.tensor, np.ascontiguousarray(states.T), unit, out)
+            moments = np.diagonal(self.tensor).copy()
         else:
             # Along principal axes no term is negative, and a small moment is not lost in the tensor's components.
             principal = self.body.principal_of_motion
-            moments = np.diag(np.ldexp(principal.moments, -self._exponent))
-            _invariants(moments, np.ascontiguousarray((states @ principal.axes).T), unit, out)
-        return {"energy": out[0], "angular_momentum": out[1]}
+            moments = np.ldexp(principal.moments, -self._exponent)
+            start, along = principal.axes.T @ start, principal.axes.T @ along
+        found = _ranges(moments, np.ascontiguousarray(start), np.ascontiguousarray(along), unit)
+        return {"energy": Range(*found[:3]), "angular_momentum": Range(*found[3:])}
 
     @property
     def energy(self) -> float | None:
@@ -212,7 +271,7 @@ class TorqueFree:
     @property
     def warnings(self) -> tuple[Notice, ...]:
         """What an answer about this motion has to say beside its figures; paths lead from the question."""
-        notices = [notice.inside("body") for notice in (*self.body.warnings, *pinned_notices(self.body))]
+        notices = list(inherited_notices(self.body))
         for name, value in (("energy", self.energy), ("angular_momentum", self.angular_momentum)):
             if value is None:
                 notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))

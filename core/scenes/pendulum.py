@@ -23,7 +23,8 @@ import numpy as np
 
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
-from core.elliptic import LARGEST_QUARTER, Lattice, jacobi_at, lattice, separatrix_at, split_phase
+from core.elliptic.functions import LARGEST_QUARTER, jacobi_at, separatrix_at, split_phase
+from core.elliptic.lattice import Lattice, lattice
 from core.errors import AccuracyUnreachable
 from core.integration.system import Floats
 from core.scenes.enclosure import ONE, UNIT_ROUNDOFF, ZERO, Ball, as_pair, exact, rf, sign, square_root

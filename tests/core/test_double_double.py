@@ -41,6 +41,7 @@ def test_operations_are_right_to_two_units_of_106_bits(a, b):
     x, y = value(a), value(b)
     assert abs(value(dd.dd_mul(*a, *b)) - x * y) <= 3 * UNIT * abs(x * y)
     assert abs(value(dd.dd_div(*a, *b)) - x / y) <= 3 * UNIT * abs(x / y)
+    assert abs(value(dd.dd_div_d(*a, b[0])) - x / b[0]) <= 3 * UNIT * abs(x / b[0])
     assert abs(value(dd.dd_add(*a, *b)) - (x + y)) <= 3 * UNIT * (abs(x) + abs(y))
     if x > 0:
         assert abs(value(dd.dd_sqrt(*a)) - mpmath.sqrt(x)) <= 3 * UNIT * mpmath.sqrt(x)

@@ -12,7 +12,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from core.elliptic import LARGEST_QUARTER, carlson_rf, complete_k, jacobi, split_phase
+from core.elliptic.functions import LARGEST_QUARTER, jacobi, split_phase
+from core.elliptic.integrals import carlson_rf, complete_k
 from core.errors import AccuracyUnreachable, InvalidParameter
 
 ULP = 2.0**-53

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import ellipj
 
 from core.compiled import kernel
-from core.integration.system import PART_FLOW, VECTOR_FIELD, ClosedForm, Floats, Model, Splitting, Structure
+from core.integration.system import PART_FLOW, VECTOR_FIELD, ClosedForm, Floats, Model, Range, Splitting, Structure
 
 MODEL = Model("test system", "regular", "the test asks for it", 1)
 
@@ -51,6 +51,13 @@ class Given:
 
     def invariants(self, states: Floats) -> Mapping[str, Floats]:
         return self.conserved(states)
+
+    def ranges(self, states: Floats) -> Mapping[str, Range]:
+        first = self.invariants(self.initial_state[None, :])
+        return {
+            name: Range(float(first[name][0]), float(values.min()), float(values.max()))
+            for name, values in self.invariants(states).items()
+        }
 
 
 @kernel(VECTOR_FIELD)

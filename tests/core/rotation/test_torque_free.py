@@ -1,4 +1,4 @@
-"""A body held away from its centre of mass is said not to be free."""
+"""Ranges of energy and angular momentum; a body held away from its centre of mass is said not to be free."""
 
 import numpy as np
 import pytest
@@ -7,6 +7,7 @@ from core.bodies.composite import Composite, Part
 from core.bodies.examples import t_handle_points
 from core.bodies.measured import PointMasses, PrincipalMoments
 from core.bodies.solids import Ball
+from core.integration.error_statements import drifts
 from core.rotation.torque_free import TorqueFree
 
 CROSS = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 2, 0], [0, -2, 0], [0, 0, 3], [0, 0, -3]])
@@ -51,3 +52,29 @@ def test_the_distance_is_named():
     body = PointMasses(1.0, CROSS + np.array([0.25, 0, 0]), about="origin").mass_properties()
     (notice,) = TorqueFree(body, np.array([1.0, 0.0, 0.0])).warnings
     assert "0.25 m" in notice.detail
+
+
+@pytest.mark.parametrize("scale", [5e-324, 1e-300, 1.0, 1e300])
+@pytest.mark.parametrize("count", [1, 511, 512, 1025])
+@pytest.mark.parametrize("body", [PrincipalMoments((3.0, 1.0, 2.5)), t_handle_points()])
+def test_drifts_are_the_largest_changes_of_energy_and_momentum(body, count, scale):
+    """Against longdoubles, whose exponents reach much further, sample by sample."""
+    properties = body.mass_properties()
+    rows = np.random.default_rng(count).integers(1, 9, (count, 3)) * scale
+    system = TorqueFree(properties, np.array([3.0, 5.0, 2.0]) * scale)
+    tensor = properties.inertia.astype(np.longdouble)
+    w = np.vstack([system.angular_velocity, rows]).astype(np.longdouble)
+    m = w @ tensor
+    energy, momentum = (w * m).sum(axis=1) / 2, np.sqrt((m * m).sum(axis=1))
+    found = drifts(system, rows)
+    for name, values in (("energy", energy), ("angular_momentum", momentum)):
+        want = np.abs(values[1:] - values[0]).max() / values[0]
+        assert found[name] == pytest.approx(float(want), rel=1e-13, abs=1e-15)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("place", [0, 600, 1029])
+def test_a_state_that_is_not_finite_has_no_drift(bad, place):
+    rows = np.ones((1030, 3))
+    rows[place, 1] = bad
+    assert drifts(TorqueFree(PrincipalMoments((3.0, 1.0, 2.5)).mass_properties(), np.ones(3)), rows) == {}
