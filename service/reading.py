@@ -15,7 +15,9 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
 from core.errors import InvalidParameter
+from core.quantities import Rows
 from service.guards import LONGEST_KEY_SHOWN, require_distinct_keys, require_simple
+from service.large_arrays import Taken, take_out, taking
 from service.problems import MOST_FAULTS, Fault, Refusal, code_of, pointer_of
 
 Q = TypeVar("Q")
@@ -63,7 +65,7 @@ _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 
 @dataclass(frozen=True)
 class Limits:
-    """What a document may have: levels of nesting, keys, arrays and objects."""
+    """What a document may have: levels of nesting, keys, arrays and objects beside the rows of large arrays."""
 
     nesting: int = 32
     keys: int = 4000
@@ -121,7 +123,8 @@ class Reader(Generic[Q]):
     """
 
     def __init__(self, question: type[Q], limits: Limits) -> None:
-        schema = _failing_fast(TypeAdapter(question).core_schema)
+        self._arrays: dict[str, Rows] = {}
+        schema = _failing_fast(taking(TypeAdapter(question).core_schema, self._arrays))
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
         self._tags = _tags_of(schema)
@@ -143,12 +146,23 @@ class Reader(Generic[Q]):
         for mark, members in self._told_apart:
             meant: Q = members[mark.in_document(body)].read(body)
             return meant
-        require_simple(body, self._deepest, self._most_keys, self._most_arrays)
+        rest, taken = take_out(body, self._arrays)
+        if taken:
+            try:
+                return self._validated(rest, taken)
+            except ValidationError as error:
+                # Faults of what is not JSON, or of an array where none is meant, are told of the document as it was.
+                if taken.complete and error.errors(include_url=False, include_input=False)[0]["type"] != "json_invalid":
+                    raise self._refusal(error) from None
         try:
-            question: Q = self._validate(body, strict=True)
+            return self._validated(body)
         except ValidationError as error:
             raise self._refusal(error) from None
-        require_distinct_keys(body)
+
+    def _validated(self, document: bytes, taken: Taken | None = None) -> Q:
+        require_simple(document, self._deepest, self._most_keys, self._most_arrays)
+        question: Q = self._validate(document, strict=True, context=taken)
+        require_distinct_keys(document)
         return question
 
     def _refusal(self, error: ValidationError) -> Refusal:
