@@ -53,6 +53,7 @@ SERVICE_LAYERS = (
         "cors",
     },
     {"guards", "large_arrays"},
+    {"faults"},
     {"reading"},
     {"schemas"},
     {"numerals"},
