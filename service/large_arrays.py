@@ -14,17 +14,13 @@ from itertools import islice
 from secrets import token_hex
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from core.decimal_rows import read_rows
 from core.quantities import Rows
 
-LEAST_BYTES = 8192
-"""Shorter documents are validated as they are."""
-
-LEAST_NUMBERS = 256
-"""Arrays of fewer numbers stay in the document."""
+LEAST_BYTES = 2048
+"""Shorter arrays stay in the document."""
 
 MOST = 64
 """Arrays that are looked at in one document."""
@@ -50,12 +46,14 @@ class Taken:
         return b'"%s"' % token.encode()
 
     def array_for(self, value: Any) -> Any:
-        """Return the array for a token, anything else as it is."""
-        found = self._arrays.get(value) if type(value) is str else None
+        """Return the array for a token, the rows of an array that goes on wrongly as a list, anything else as it is."""
+        goes_on = type(value) is list and len(value) > 1
+        token = value[0] if goes_on else value
+        found = self._arrays.get(token) if type(token) is str else None
         if found is None:
             return value
-        self._placed.add(value)
-        return found
+        self._placed.add(token)
+        return [*found.tolist(), *value[1:]] if goes_on else found
 
     @property
     def complete(self) -> bool:
@@ -79,13 +77,17 @@ def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken]
         return document, taken
     parts, done = [], 0
     for match in islice(_opening(tuple(fields)).finditer(document), MOST):
-        rows = read_rows(document, match.end() - 1)
-        if rows is None or rows.values.size < LEAST_NUMBERS:
+        start = match.end() - 1
+        mark = fields[match[1].decode()]
+        rows = read_rows(document, start, whole=mark.whole)
+        if rows is None or rows.end - start < LEAST_BYTES:
             continue
-        if fields[match[1].decode()].whole and rows.values.dtype != np.int64:
-            # Which of them is not written as an integer is known only to who reads it again.
-            continue
-        parts += [document[done : match.end() - 1], taken.add(rows.values)]
+        array = taken.add(rows.values)
+        if rows.wrong is not None:
+            # What follows can mend nothing; of the rest only the first fault is looked at, by who names it.
+            # It stands as often as makes entries enough: not their number is at fault.
+            array = b"[" + b",".join([array, *[rows.wrong] * max(1, mark.at_least - len(rows.values))]) + b"]"
+        parts += [document[done:start], array]
         done = rows.end
     return (b"".join([*parts, document[done:]]) if parts else document), taken
 

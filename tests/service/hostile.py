@@ -90,6 +90,7 @@ def _too_complex() -> list[Case]:
         "a mixture": b'[{"a":' * 500,
         "deep in a field": raw("1.0", b"[" * 40 + b"1.0" + b"]" * 40),
         "arrays in a row": b"[" + b"[]," * 200_000 + b"[]]",
+        "bad rows": json.dumps({**QUESTION, "times": [[1, 2]] * 100_000}).encode(),
         "keys": json.dumps({f"key{i}": i for i in range(50_000)}).encode(),
         "equal keys": b"{" + b'"a":1,' * 100_000 + b'"a":1}',
         "empty keys": b"{" + b'"" :1,' * 100_000 + b'"":1}',
@@ -212,7 +213,7 @@ def _wrong_shapes() -> list[Case]:
         ("count a string", text(times={**q["times"], "count": "3"}), "/times/count"),
         ("count beyond 64 bits", text(times={**q["times"], "count": 2**70}), "/times/count"),
         ("count of 4000 digits", raw('"count": 3', b'"count": ' + b"9" * 4000), "/times/count"),
-        ("bad rows", json.dumps({**q, "times": [[1, 2]] * 100_000}).encode(), "/times/0"),
+        ("bad rows", json.dumps({**q, "times": [[1, 2]] * 45_000}).encode(), "/times/0"),
         ("late bad entry", json.dumps({**q, "times": [0.5] * 200_000 + [None]}).encode(), "/times/200000"),
     ]
     return [(f"shape: {name}", content, 422, "invalid-parameter", at) for name, content, at in listed]
