@@ -51,6 +51,7 @@ SERVICE_LAYERS = (
         "archive",
         "keys",
         "cors",
+        "descriptions",
     },
     {"guards", "large_arrays"},
     {"faults"},
