@@ -30,9 +30,16 @@ _TOKEN = token_hex(16)
 
 
 class Taken:
-    """The arrays that were taken out of a document, by their tokens."""
+    """The arrays that were taken out of a document, by their tokens.
+
+    Attributes
+    ----------
+    shortened : bool
+        Whether an array was left off at a fault, so that the document can only be refused.
+    """
 
     def __init__(self) -> None:
+        self.shortened = False
         self._arrays: dict[str, NDArray[Any]] = {}
         self._placed: set[str] = set()
 
@@ -84,6 +91,7 @@ def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken]
             continue
         array = taken.add(rows.values)
         if rows.wrong is not None:
+            taken.shortened = True
             # What follows can mend nothing; of the rest only the first fault is looked at, by who names it.
             # It stands as often as makes entries enough: not their number is at fault.
             array = b"[" + b",".join([array, *[rows.wrong] * max(1, mark.at_least - len(rows.values))]) + b"]"

@@ -111,19 +111,25 @@ class Reader(Generic[Q]):
         Refusal
             With the pointers of what is wrong.
         """
-        for mark, members in self._told_apart:
-            meant: Q = members[mark.in_document(body)].read(body)
-            return meant
         if len(body) < LARGE:
             return self._read(body)
         with _collecting_later():
             return self._read(body)
 
     def _read(self, body: bytes) -> Q:
-        rest, taken = take_out(body, self._arrays)
+        return self._told(body, *take_out(body, self._arrays))
+
+    def _told(self, body: bytes, rest: bytes, taken: Taken) -> Q:
+        """Return the question of a document, from which arrays may have been taken out."""
+        for mark, (without, having) in self._told_apart:
+            require_simple(rest, self._deepest, self._most_keys, self._most_arrays)
+            meant: Q = having._read(body) if mark.in_document(rest) else without._told(body, rest, taken)
+            return meant
         if taken:
             try:
-                return self._validated(rest, taken)
+                question = self._validated(rest, taken)
+                if not taken.shortened:
+                    return question
             except ValidationError as error:
                 # Faults of what is not JSON, or of an array where none is meant, are told of the document as it was.
                 if taken.complete and error.errors(include_url=False, include_input=False)[0]["type"] != "json_invalid":

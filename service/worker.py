@@ -95,12 +95,15 @@ def work(terms: Terms, path: str, body: bytes, file: str) -> Any:
 
 
 def _stored(value: Any, out: BinaryIO) -> Any:
-    """Return an answer with its large arrays moved to a file, C-contiguous, so that they are copied only once."""
+    """Return an answer with its large arrays moved to a file, C-contiguous."""
     if isinstance(value, np.ndarray) and value.size > SMALL:
         # Numbers of eight bytes are read where eight divides the address.
         out.write(bytes(-out.tell() % 8))
         stored = Stored(out.tell(), value.shape, value.dtype.str)
-        out.write(np.ascontiguousarray(value).data)
+        # In blocks that fit caches, so that what is not contiguous needs no second array of its size.
+        rows = max(1, SMALL * len(value) // value.size)
+        for start in range(0, len(value), rows):
+            out.write(np.ascontiguousarray(value[start : start + rows]).data)
         return stored
     strings = strings_in(value)
     if strings > SMALL:
