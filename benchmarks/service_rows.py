@@ -30,6 +30,7 @@ import uvloop
 from benchmarks.machine import RESULTS, described
 from core.integration.budget import Budget
 from service.archive import MEDIA_TYPE
+from service.routes.bodies import BODIES
 from service.routes.rotation import ROTATION
 from service.routing import Question
 from service.settings import Settings
@@ -37,6 +38,7 @@ from service.settings import Settings
 COUNTS = (10_000, 100_000, 1_000_000)
 TABLE = "benchmarks.service_rows:table"
 TRAJECTORY = next(route for route in ROTATION if route.path.endswith("/trajectory"))
+MASS_PROPERTIES = BODIES[0]
 T_HANDLE = {"kind": "principal-moments", "moments": [795.792181070, 713.509259259, 395.782921811]}
 GOALS = {"json": {10_000: 3.5, 100_000: 1.6, 1_000_000: 0.75}, "npz": {100_000: 0.35}}
 
@@ -47,7 +49,7 @@ def rows(count: int) -> np.ndarray[Any, Any]:
 
 
 def table() -> tuple[Question, ...]:
-    """Return the route table of the benchmark: the trajectory, and constant rows."""
+    """Return the route table of the benchmarks: the trajectory, constant rows, and how many points a body has."""
     constant = {count: rows(count) for count in COUNTS} if os.environ.get("POLHODE_ROWS") else {}
 
     def handle(question: Any, budget: Budget) -> dict[str, Any]:
@@ -61,6 +63,13 @@ def table() -> tuple[Question, ...]:
             operation_id="rows",
             handle=handle,
             price=lambda question, budget: 0.0,
+            examples={},
+        ),
+        replace(
+            MASS_PROPERTIES,
+            path="/points",
+            operation_id="points",
+            handle=lambda question, budget: {"points": len(question.body.positions)},
             examples={},
         ),
     )

@@ -92,7 +92,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of numbers kept as one array, read without a Python object per check.
+    """Rows of numbers kept as one array, checked without a Python object per number where they are an array already.
 
     Parameters
     ----------
@@ -120,6 +120,8 @@ class Rows:
         InvalidParameter
             Naming the first entry that is no finite number of the right kind.
         """
+        if isinstance(value, np.ndarray) and value.dtype.kind in ("iu" if self.whole else "fiu"):
+            return self._kept(path, value)
         rows = value.tolist() if isinstance(value, np.ndarray) else value
         if not isinstance(rows, (list, tuple)):
             raise InvalidParameter(path, "be a list")
@@ -146,6 +148,27 @@ class Rows:
             for i, entry in enumerate(flat):
                 self.quantity.check((*path, *self._place(i)), entry)
         array = array.reshape(-1, self.width) if self.width else array
+        array.setflags(write=False)
+        return array
+
+    def _kept(self, path: Path, value: NDArray[Any]) -> NDArray[Any]:
+        """Return a copy of an array of numbers that cannot be written, no number of it looked at by itself."""
+        if value.ndim == 0:
+            raise InvalidParameter(path, "be a list")
+        if not self.at_least <= len(value) <= self.at_most:
+            raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(value)}")
+        if value.shape[1:] != ((self.width,) if self.width else ()):
+            raise InvalidParameter((*path, 0), f"be a list of {self.width} numbers" if self.width else "be a number")
+        kind: type[np.generic] = np.int64 if self.whole else np.float64
+        if value.dtype.kind == "u" and self.whole and value.max(initial=0) > np.iinfo(np.int64).max:
+            at = int(np.argmax(value > np.iinfo(np.int64).max))
+            raise InvalidParameter((*path, *self._place(at)), "be within the range of 64-bit integers")
+        array = np.array(value, dtype=kind, order="C")
+        if not self._inside(array):
+            flat, q = array.reshape(-1), self.quantity
+            good = np.isfinite(flat) & (flat > q.above) & (flat >= q.at_least) & (flat <= q.at_most) & (flat < q.below)
+            at = int(np.argmin(good))
+            q.check((*path, *self._place(at)), flat[at].item())
         array.setflags(write=False)
         return array
 
@@ -176,7 +199,7 @@ class Rows:
             self.read(path, value)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
-        return {"type": "any"}
+        return {"type": "any", "metadata": {"rows": self}}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         number = {"type": "integer" if self.whole else "number", **self.quantity.limits, "x-unit": self.quantity.unit}

@@ -15,7 +15,7 @@ from zipfile import ZIP_STORED, ZipFile, ZipInfo
 import numpy as np
 from numpy.lib import format as npy
 
-from service.writing import require_finite, written
+from service.writing import chunks, require_finite
 
 MEDIA_TYPE = "application/x-npz"
 
@@ -41,7 +41,7 @@ def archive(answer: Any) -> Iterator[bytes]:
 
 def _archive(answer: Any) -> Iterator[bytes]:
     arrays: dict[str, np.ndarray[Any, Any]] = {}
-    metadata = written(_without_arrays(answer, "", arrays))
+    metadata = _without_arrays(answer, "", arrays)
     sink = _Sink()
     with ZipFile(sink, "w", ZIP_STORED) as file:
         for name, array in arrays.items():
@@ -52,7 +52,10 @@ def _archive(answer: Any) -> Iterator[bytes]:
                 for start in range(0, len(data), CHUNK):
                     member.write(data[start : start + CHUNK])
                     yield sink.drained()
-        file.writestr(ZipInfo(METADATA), metadata)
+        with file.open(ZipInfo(METADATA), "w") as member:
+            for piece in chunks(metadata):
+                member.write(piece)
+                yield sink.drained()
     yield sink.drained()
 
 

@@ -10,7 +10,10 @@ from fastapi import Body, FastAPI, Request
 from fastapi.routing import APIRoute
 from starlette.responses import JSONResponse, Response
 
+from core import bodies
+from core.quantities import members_of
 from service import VERSION, archive
+from service.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
 from service.routing import Question, Route
 from service.schemas import ProblemDocument
@@ -76,6 +79,7 @@ def openapi(app: FastAPI) -> dict[str, Any]:
             verbs["post"]["security"] = [{}, {"key": []}]
     for reference in _told_apart(document):
         _require_tag(document["components"]["schemas"][reference.rsplit("/", 1)[1]])
+    describe(document["components"]["schemas"], members_of(bodies.Body))
     return document
 
 

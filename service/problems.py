@@ -159,6 +159,11 @@ class Fault:
     detail: str
     remedy: str | None = None
 
+    @property
+    def sentence(self) -> str:
+        """The place and what must hold there."""
+        return f"{self.pointer or 'the document'} {self.detail}"
+
     def document(self) -> dict[str, str]:
         """Return the entry as it is written."""
         entry = {"pointer": self.pointer, "detail": self.detail}
@@ -242,10 +247,14 @@ def code_of(error: errors.MechanicsError) -> str:
 
 def problem_of(error: errors.MechanicsError) -> Problem:
     """Return the problem that an error raised while a question is being answered amounts to."""
-    pointer = pointer_of(error.path)
+    fault = Fault(pointer_of(error.path), error.detail, error.remedy)
+    detail = error.detail
+    if isinstance(error, errors.InvalidParameter):
+        fault = Fault(fault.pointer, f"must {error.rule}", error.remedy)
+        detail = fault.sentence
     known = ("detail", "path", "remedy", "rule")
     data = {name: value for name, value in vars(error).items() if name not in known}
-    return Problem(REGISTRY[code_of(error)], error.detail, (Fault(pointer, error.detail, error.remedy),), extra=data)
+    return Problem(REGISTRY[code_of(error)], detail, (fault,), extra=data)
 
 
 def pointer_of(path: Iterable[str | int]) -> str:

@@ -16,7 +16,7 @@ from core.errors import BudgetExceeded, InvalidParameter
 from core.integration.budget import Budget
 from core.quantities import Time
 from service import VERSION
-from service.reading import ARRAY, OBJECT
+from service.faults import ARRAY, OBJECT
 
 SIGNATURE = {"source": "polhode", "version": VERSION}
 

@@ -28,7 +28,9 @@ class Settings(BaseSettings):
         default=4000, ge=1, description="Largest number of keys in all objects of a request body (400)."
     )
     max_arrays: int = Field(
-        default=150_000, ge=1, description="Largest number of arrays and objects in a request body (400)."
+        default=50_000,
+        ge=1,
+        description="Largest number of arrays and objects in a request body (400), points and faces not counted.",
     )
     max_samples: int = Field(default=1_000_000, ge=1, description="Largest number of samples in one answer (422).")
     max_evaluations: int = Field(

@@ -1,7 +1,7 @@
 """What runs in a compute process: one question, from its bytes to its answer.
 
 Large arrays do not travel through the pipe between the processes. They are written to a file in shared memory that the
-server process maps.
+server process maps; arrays of decimal strings as JSON, so that the server process makes no string of them.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from service.answering import Answering
 from service.problems import Problem, Refusal, problem_of
 from service.reading import Limits
 from service.routing import Question
-from service.writing import array_size
+from service.writing import Text, array_size, strings_in, text_of
 
 SMALL = 8_192
 """Arrays of fewer numbers travel with the rest of the answer."""
@@ -50,6 +50,15 @@ class Stored:
     offset: int
     shape: tuple[int, ...]
     dtype: str
+
+
+@dataclass(frozen=True)
+class StoredText:
+    """An array of decimal strings that lies in the file as JSON."""
+
+    offset: int
+    length: int
+    numbers: int
 
 
 @cache
@@ -86,11 +95,21 @@ def work(terms: Terms, path: str, body: bytes, file: str) -> Any:
 
 
 def _stored(value: Any, out: BinaryIO) -> Any:
-    """Return an answer with its large arrays moved to a file, C-contiguous, so that they are copied only once."""
+    """Return an answer with its large arrays moved to a file, C-contiguous."""
     if isinstance(value, np.ndarray) and value.size > SMALL:
+        # Numbers of eight bytes are read where eight divides the address.
+        out.write(bytes(-out.tell() % 8))
         stored = Stored(out.tell(), value.shape, value.dtype.str)
-        out.write(np.ascontiguousarray(value).data)
+        # In blocks that fit caches, so that what is not contiguous needs no second array of its size.
+        rows = max(1, SMALL * len(value) // value.size)
+        for start in range(0, len(value), rows):
+            out.write(np.ascontiguousarray(value[start : start + rows]).data)
         return stored
+    strings = strings_in(value)
+    if strings > SMALL:
+        offset = out.tell()
+        out.writelines(text_of(value))
+        return StoredText(offset, out.tell() - offset, strings)
     if type(value) is dict:
         return {key: _stored(entry, out) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
@@ -114,6 +133,8 @@ def _restored(value: Any, data: np.ndarray[Any, Any]) -> Any:
         length = int(np.prod(value.shape)) * dtype.itemsize
         flat = np.asarray(data)[value.offset : value.offset + length]
         return flat.view(dtype).reshape(value.shape)
+    if isinstance(value, StoredText):
+        return Text(np.asarray(data)[value.offset : value.offset + value.length].data, value.numbers)
     if type(value) is dict:
         return {key: _restored(entry, data) for key, entry in value.items()}
     if isinstance(value, list):

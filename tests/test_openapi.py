@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,35 @@ def test_kinds_are_required_where_they_tell_members_of_a_union_apart() -> None:
         schema = schemas[reference.rsplit("/", 1)[1]]
         assert "kind" in schema["required"]
         assert "default" not in schema["properties"]["kind"]
+
+
+def asked(name: str) -> dict[str, Any]:
+    """Return the descriptions of the fields of a schema."""
+    properties = DOCUMENT["components"]["schemas"][name]["properties"]
+    return {field: entry.get("description") for field, entry in properties.items()}
+
+
+def test_every_number_that_is_asked_for_is_described() -> None:
+    schemas = DOCUMENT["components"]["schemas"]
+    bodies = schemas["MassPropertiesRequest"]["properties"]["body"]["discriminator"]["mapping"].values()
+    methods = schemas["TrajectoryRequest"]["properties"]["method"]["anyOf"][0]["discriminator"]["mapping"].values()
+    scenes = [f"{name}{form}" for name in ("RodInHole", "ChainOnWedge", "UnwindingShafts") for form in ("Request",)]
+    for name in [reference.rsplit("/", 1)[1] for reference in (*bodies, *methods)] + scenes:
+        missing = [field for field, words in asked(name).items() if not words and field != "kind"]
+        assert not missing, f"{name}: {missing}"
+
+
+def test_descriptions_are_those_of_the_docstrings_with_their_units() -> None:
+    assert asked("Ball") == {"radius": "(m).", "mass": "Not 0 (kg).", "density": "Not 0 (kg m^-3).", "kind": None}
+    assert asked("BallInNumerals")["density"] == "Not 0 (kg m^-3)."
+    assert "rad" in asked("RodInHoleRequest")["angle"]
+    assert "rad" in asked("ChainOnWedgeRequest")["slopes"]
+    assert asked("TrajectoryRequest")["angular_velocity"] == "At t = 0, in body axes (rad/s)."
+    assert not [
+        name
+        for name, schema in DOCUMENT["components"]["schemas"].items()
+        if re.search("(Attributes|Parameters).{1,3}--", str(schema))
+    ]
 
 
 def resolved(schema: dict[str, Any]) -> dict[str, Any]:

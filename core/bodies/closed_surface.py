@@ -69,7 +69,10 @@ def _directed_edges(faces: Integers) -> tuple[Integers, Integers]:
 def _refuse_wrong_indices(faces: Integers, vertices: int) -> None:
     if faces.max() >= vertices:
         i, k = (int(x) for x in np.argwhere(faces >= vertices)[0])
-        raise InvalidParameter(("faces", i, k), f"be at most {vertices - 1}, the index of the last vertex")
+        remedy = "count the vertices from 0"
+        raise InvalidParameter(
+            ("faces", i, k), f"be at most {vertices - 1}, the index of the last vertex", remedy=remedy
+        )
     a, b, c = faces.T
     repeated = (a == b) | (b == c) | (c == a)
     if repeated.any():

@@ -5,15 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import sqrt
+from sys import float_info
 from typing import Literal
 
 from core.errors import InvalidParameter
-from core.rotation.exact_figures import LARGEST
 
 Day = Literal["sidereal", "solar"]
 
 SOLAR_DAY_IN_ROTATIONS = 1.00273790935
 """Rotations of the Earth in a mean solar day (S. Aoki et al., Astronomy and Astrophysics 105 (1982) 359)."""
+
+
+LARGEST = Fraction(float_info.max)
 
 
 @dataclass(frozen=True)
@@ -115,7 +118,7 @@ def from_period(period: float, day: Day = "sidereal") -> Wobble:
     if not 0.0 < period < float("inf"):
         raise InvalidParameter("period", "be finite and greater than 0 days")
     rotations = Fraction(period) * unit
-    if rotations >= LARGEST:
+    if rotations > LARGEST:
         raise InvalidParameter("period", "be less than 1.79e308 rotations", remedy="give the period in days")
     if rotations <= 1:
         raise InvalidParameter(

@@ -63,7 +63,8 @@ async def test_large_bodies_are_read_elsewhere(client: httpx.AsyncClient) -> Non
     question = GOOD | {"times": [float(i) for i in range(50_000)]}
     assert (await client.post("/v1/toy", json=question)).json()["time"] == question["times"]
     bad = await client.post("/v1/toy", json=question | {"times": [*question["times"], None]})
-    assert bad.json()["errors"] == [{"pointer": "/times/50000", "detail": "must be a number"}]
+    [fault] = bad.json()["errors"]
+    assert (fault["pointer"], fault["detail"]) == ("/times/50000", "must be a number")
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from service.writing import CHUNK, ONE_PIECE, NotFinite, array_size, chunks, written
+from service.writing import CHUNK, ONE_PIECE, NotFinite, Text, array_size, chunks, text_of, written
 
 RNG = np.random.default_rng(20240229)
 
@@ -79,3 +79,32 @@ def test_null_is_written_where_it_is_meant() -> None:
 
 def test_size_counts_numbers_in_arrays_at_any_depth() -> None:
     assert array_size({"a": np.zeros((2, 3)), "b": [np.zeros(4), {"c": np.zeros(5)}], "d": "text", "e": 1.0}) == 15
+
+
+DECIMALS = [f"{x:.40e}" for x in RNG.normal(size=30_000).tolist()]
+STRINGS = {
+    "time": DECIMALS,
+    "rows": [DECIMALS[i : i + 3] for i in range(0, 30_000, 3)],
+    "long": ["1." + "3" * 230] * 13_000,
+    "none": [],
+    "names": ["a", "b"],
+    "signature": {"source": "polhode"},
+}
+
+
+def test_decimal_strings_are_counted_and_written_in_small_chunks() -> None:
+    assert array_size(STRINGS) == 30_000 + 30_000 + 13_000 + 2
+    pieces = list(chunks(STRINGS))
+    assert b"".join(pieces) == written(STRINGS)
+    assert json.loads(written(STRINGS)) == STRINGS
+    assert max(map(len, pieces)) < 25 * CHUNK
+
+
+def test_an_array_that_is_json_already_is_written_as_it_is() -> None:
+    text = Text(memoryview(b"".join(text_of(STRINGS["rows"]))), 30_000)
+    answer = {**STRINGS, "rows": text}
+    assert array_size(answer) == array_size(STRINGS)
+    assert written(answer) == written(STRINGS)
+    pieces = list(chunks(answer))
+    assert b"".join(pieces) == written(STRINGS)
+    assert max(map(len, pieces)) < 25 * CHUNK
