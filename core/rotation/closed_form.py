@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -25,6 +26,8 @@ from core.rotation.constants_of_motion import (
     Motion,
     constants_of_motion,
 )
+from core.rotation.inherited import Inherited
+from core.rotation.moves import Moves
 from core.rotation.principal_frame import PrincipalFrame
 from core.rotation.sampling import largest_magnitude, sample_components, turn_into_body
 
@@ -84,13 +87,14 @@ class FreeRotation:
         Principal moments and axes of the body; all moments positive.
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
-    conditioning : float
-        How many times larger the relative uncertainty of the moments is than that of the numbers that gave the body.
+    moves : callable, optional
+        By how much each of the numbers that describe the body moves its tensor: `MassProperties.moves`. Without it the
+        principal moments are those numbers.
     """
 
     inertia: PrincipalInertia
     angular_velocity: Floats
-    conditioning: float = 1.0
+    moves: Callable[[int], Floats] | None = None
 
     def __post_init__(self) -> None:
         if self.inertia.moments[0] > 0.0:
@@ -244,19 +248,27 @@ class FreeRotation:
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
-        horizon, m = self.horizon(times), self.motion
-        if m.regime == REST:
-            return 0.0
-        if not self.frame.aligned:
-            grown: float = m.inherited.at(
-                uncertainty * self.conditioning, horizon, max(1.0, self.grading[1] / self.conditioning)
-            )
-            return grown
-        if m.regime == STEADY and np.count_nonzero(self.angular_velocity) == 1:
-            # The other components are zero, and a relative uncertainty leaves them so.
-            return min(2.0, 2.0 * uncertainty)
-        inherited: float = m.inherited.at(uncertainty * self.conditioning, horizon)
-        return inherited
+        return self.sensitivity.angular_velocity(uncertainty, self.horizon(times))
+
+    @cached_property
+    def sensitivity(self) -> Inherited:
+        """What uncertain inputs come to."""
+        i, it, w, _ = self.resolved
+        exponent, rate = math.frexp(float(i[2]))[1], math.frexp(float(np.abs(w).max()))[1]
+        low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
+        largest = math.ldexp(self.largest_rate, -rate)
+        components = np.ldexp(w, -rate)
+        moves = Moves.of(
+            np.ldexp(i, -exponent),
+            (low, high),
+            components,
+            None if self.moves is None and self.frame.aligned else np.ascontiguousarray(self.inertia.axes),
+            None if self.moves is None else self.moves(exponent),
+            np.ldexp(self.angular_velocity, -rate),
+            self.motion,
+            largest,
+        )
+        return Inherited(self.motion, moves, math.ldexp(1.0, rate), largest)
 
     def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
         """Return the time after which a relative `uncertainty` of every input leaves nothing known of the phase (s).

@@ -1,0 +1,210 @@
+"""From the moves of a body's tensor and of the start to those of principal moments, components and constants."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.rotation import moved_constants as moved
+from core.rotation.constants_of_motion import STEADY, Motion
+
+Floats = NDArray[np.float64]
+
+FIRST_ORDER = 0.1
+"""Beyond this an error, and a relative move of a constant, is no longer told by its first derivative."""
+
+_MOST = 700.0
+_PLANES = ((0, 1), (1, 2), (2, 0))
+
+
+@dataclass(frozen=True, eq=False)
+class Moves:
+    """First-order moves of one motion for a relative uncertainty of one, in units in which figures are of order one.
+
+    Attributes
+    ----------
+    moments, components : ndarray, shape (3,)
+        Ascending principal moments, and the start along their axes.
+    gaps : tuple of 2 floats
+        B - A and C - B.
+    own, own_start : float
+        Sums over the inputs of the norms of their moves of tensor and of start.
+    sums : ndarray, shape (COUNT,)
+        Of `core.rotation.moved_constants`.
+    circled : int
+        The axis that the motion circles.
+    largest : float
+        Largest norm of the angular velocity.
+    crossed : bool
+        Whether an input would turn the axes of equal moments.
+    """
+
+    moments: Floats
+    components: Floats
+    gaps: tuple[float, float]
+    own: float
+    own_start: float
+    sums: Floats
+    circled: int
+    largest: float
+    crossed: bool
+
+    @classmethod
+    def of(
+        cls,
+        moments: Floats,
+        gaps: tuple[float, float],
+        components: Floats,
+        axes: Floats | None,
+        tensors: Floats | None,
+        velocity: Floats,
+        motion: Motion,
+        largest: float,
+    ) -> Moves:
+        """Project the moves of a tensor, shape (n, 3, 3), in body axes, or of the moments themselves where it is None.
+
+        Parameters
+        ----------
+        moments, gaps, components, largest
+            As the attributes; the largest norm of the angular velocity.
+        axes : ndarray, shape (3, 3), or None
+            Principal axes as columns, where they are not body axes.
+        velocity : ndarray, shape (3,)
+            The start in body axes.
+        """
+        sums, crossed = np.zeros(moved.COUNT), False
+        frame = np.eye(3) if axes is None else axes
+        starts = np.diag(components) if axes is None else velocity[:, None] * frame
+        if tensors is None:
+            dI, dw, turns, own = np.diag(moments), np.zeros((3, 3)), np.zeros(3), float(np.sum(moments))
+        else:
+            along = frame.T @ tensors @ frame
+            dI = np.ascontiguousarray(np.diagonal(along, axis1=1, axis2=2))
+            own = float(np.sqrt(np.square(along).sum(axis=(1, 2))).sum())
+            dw, turns = np.zeros_like(dI), np.zeros(len(dI))
+            for (j, k), gap in zip(_PLANES, (gaps[0], gaps[1], -gaps[0] - gaps[1]), strict=True):
+                if gap == 0.0:
+                    crossed = crossed or bool(along[:, j, k].any())
+                    _add_crossed(moments, gaps, components, motion, (j, k), along[:, j, k], sums)
+                    continue
+                turn = along[:, j, k] / gap
+                dw[:, k] += turn * components[j]
+                dw[:, j] -= turn * components[k]
+                turns += turn * turn
+            turns = np.sqrt(turns)
+        dI, dw = np.concatenate([dI, np.zeros((3, 3))]), np.concatenate([dw, starts])
+        _add(moments, gaps, components, motion, dI, dw, np.concatenate([turns, np.zeros(3)]), sums)
+        own_start = float(np.abs(velocity).sum()) if axes is not None else float(np.abs(components).sum())
+        return cls(moments, components, gaps, own, own_start, sums, motion.circled, largest, crossed)
+
+    @cached_property
+    def _ratios(self) -> tuple[float, float, float]:
+        """Euler's coefficients, in size."""
+        (A, B, C), (low, high) = self.moments.tolist(), self.gaps
+        return high / A, (low + high) / B, low / C
+
+    def early(self, uncertainty: float, time: float) -> float:
+        """Return the bound for early times: Euler's equations, of bounded steepness, from a moved start."""
+        first, second, third = self._ratios
+        s, w = self.sums, self.largest
+        step, force = s[moved.START], w * w * s[moved.FORCE] / math.sqrt(3.0)
+        in_body = self.own_start, w * w * self.own * (1.0 + max(first, second, third)) / float(self.moments[0])
+        along_axes = self._carried(step, force, time) + s[moved.TURN] * w
+        if uncertainty * s[moved.TURN] > FIRST_ORDER:
+            along_axes = math.inf
+        return uncertainty * min(along_axes, self._carried(*in_body, time))
+
+    def _carried(self, step: float, force: float, time: float) -> float:
+        """Return what a moved start and a moved torque have come to."""
+        first, second, third = self._ratios
+        if 0.0 in self.gaps:
+            # The component along the third axis drifts, and turns the other two.
+            turn = max(first, third) * self.largest * time
+            return step * (1.0 + turn) + force * time * (1.0 + 0.5 * turn)
+        # Grönwall's lemma, with the symmetric part of the Jacobian; the middle coefficient has the other sign.
+        steepest = max(abs(first - second), abs(second - third), abs(third + first))
+        power = math.sqrt(1.0 / 3.0) * steepest * self.largest * time
+        return (step + force * time) * math.exp(power) if power < _MOST else math.inf
+
+    def crosswise(self, time: float) -> float:
+        """Return by how much what is across a steady spin along a principal axis grows."""
+        if self.crossed or np.count_nonzero(self.components) > 1:
+            return math.inf
+        if not self.sums[moved.CROSSWISE]:
+            return 1.0
+        (A, B, C), (low, high) = self.moments.tolist(), self.gaps
+        rate = self.largest * time
+        axis = int(np.flatnonzero(self.components)[0])
+        one, other = ((low / C, (low + high) / B), (low / C, high / A), (high / A, (low + high) / B))[axis]
+        if axis == 1 and low and high:
+            power = math.sqrt(one * other) * rate
+            skew = math.sqrt(one / other)
+            return math.exp(power) * max(skew, 1.0 / skew) if power < _MOST else math.inf
+        # x' = -a y, y' = b x: an ellipse of axes in the ratio sqrt(b/a), or in short times a straight line.
+        skew = 1.0
+        for a, b in ((one, other), (other, one)):
+            skew = max(skew, min(math.sqrt(b / a) if a else math.inf, 1.0 + b * rate))
+        return skew
+
+    @cached_property
+    def _circling(self) -> tuple[float, float, float, float, float, float]:
+        """L, 2E, I_d, D_d, A_d and dn at the start."""
+        d, c = (2, 0) if self.circled == 2 else (0, 2)
+        (A, B, C), (low, high), w2 = self.moments.tolist(), self.gaps, np.square(self.components).tolist()
+        i = (A, B, C)
+        L = math.sqrt(sum((x * x) * y for x, y in zip(i, w2, strict=True)))
+        E2 = sum(x * y for x, y in zip(i, w2, strict=True))
+        near, far = (high, low) if d == 2 else (low, high)
+        D = i[c] * (low + high) * w2[c] + B * near * w2[1]
+        A_d = math.sqrt(w2[d] + B * far / (i[d] * (low + high)) * w2[1])
+        return L, E2, i[d], D, A_d, math.sqrt(w2[d]) / A_d
+
+    @property
+    def dn(self) -> float:
+        """The component along the circled axis at the start, as a share of its amplitude."""
+        return self._circling[5]
+
+    @cached_property
+    def pole(self) -> list[float]:
+        """Amplitudes of the angular momentum's direction in the body, along c, b, d."""
+        d, c = (2, 0) if self.circled == 2 else (0, 2)
+        L, _, I_d, D, A_d, _ = self._circling
+        (low, high), i = self.gaps, self.moments.tolist()
+        near = high if d == 2 else low
+        return [math.sqrt(i[c] * D / (low + high)) / L, math.sqrt(i[1] * D / near) / L, I_d * A_d / L]
+
+    def swing_of(self, k1: float) -> tuple[float, float]:
+        """Return range and steepest slope, against dn, of the rate of precession (2E + L w_d)/(L + I_d w_d)."""
+        L, _, I_d, D, A_d, _ = self._circling
+        top, bottom = L + I_d * A_d, L + I_d * A_d * k1
+        return D * A_d * (1.0 - k1) / (top * bottom), D * A_d / (bottom * bottom)
+
+
+def _add(
+    moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
+    dI: Floats, dw: Floats, turns: Floats, sums: Floats,
+) -> None:  # fmt: skip
+    moved.add_start(moments, w, dI, dw, turns, sums)
+    if motion.regime != STEADY:
+        moved.add_constants(
+            moments, gaps[0], gaps[1], w, motion.circled, motion.m, motion.m1, motion.lattice.K, dI, dw, sums
+        )
+
+
+def _add_crossed(
+    moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
+    plane: tuple[int, int], crossed: Floats, sums: Floats,
+) -> None:  # fmt: skip
+    """Add moves that would turn the axes of two equal moments, which may as well be chosen at 45 degrees."""
+    j, k = plane
+    if not crossed.any():
+        return
+    turned = w.copy()
+    turned[j], turned[k] = math.sqrt(0.5) * (w[j] + w[k]), math.sqrt(0.5) * (w[k] - w[j])
+    dI = np.zeros((len(crossed), 3))
+    dI[:, j], dI[:, k] = crossed, -crossed
+    _add(moments, gaps, turned, motion, dI, np.zeros_like(dI), np.zeros(len(crossed)), sums)
