@@ -189,4 +189,6 @@ class PointMasses:
         ]
         trace = products[0][0] + products[1][1] + products[2][2]
         inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
-        return replace(MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about, described_by=self)
+        return replace(
+            MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about, described_by=self
+        )

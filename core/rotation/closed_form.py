@@ -26,7 +26,7 @@ from core.rotation.constants_of_motion import (
     Motion,
     constants_of_motion,
 )
-from core.rotation.inherited import Inherited
+from core.rotation.inherited import WHOLE_MOTION, Inherited, lost_after
 from core.rotation.moves import Moves
 from core.rotation.principal_frame import PrincipalFrame
 from core.rotation.sampling import largest_magnitude, sample_components, turn_into_body
@@ -248,12 +248,22 @@ class FreeRotation:
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
-        return self.sensitivity.angular_velocity(uncertainty, self.horizon(times))
+        horizon = self.horizon(times)
+        if uncertainty == 0.0 or self.motion.regime == REST:
+            return 0.0
+        if self.sensitivity is None:
+            return WHOLE_MOTION
+        return self.sensitivity.angular_velocity(uncertainty, horizon)
 
     @cached_property
-    def sensitivity(self) -> Inherited:
-        """What uncertain inputs come to."""
+    def sensitivity(self) -> Inherited | None:
+        """What uncertain inputs come to, where the body is not at rest.
+
+        None for a line of matter askew: what turns it out of line gives it a third moment, and nothing says how small.
+        """
         i, it, w, _ = self.resolved
+        if i[0] == 0.0 and not self.frame.aligned:
+            return None
         exponent, rate = math.frexp(float(i[2]))[1], math.frexp(float(np.abs(w).max()))[1]
         low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
         largest = math.ldexp(self.largest_rate, -rate)
@@ -277,20 +287,10 @@ class FreeRotation:
         None if that does not happen at any time that `sample` answers.
         """
 
-        def lost(exponent: float) -> bool:
-            return bool(self.inherited(np.array([2.0**exponent]), uncertainty) > 1.0)
-
-        m, low, high = self.motion, -1074.0, 1023.0
+        m, longest = self.motion, 1023.0
         if m.regime == PERIODIC:
-            high = min(high, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
-        if uncertainty == 0.0 or not lost(high):
-            return None
-        if lost(low):
-            return 0.0
-        while high - low > 1e-3:
-            middle = 0.5 * (low + high)
-            low, high = (low, middle) if lost(middle) else (middle, high)
-        return float(2.0**low)
+            longest = min(longest, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
+        return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, longest)
 
     @cached_property
     def grading(self) -> tuple[float, float]:

@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
     MOMENTS, ALONG, CROSSWISE, TIP, POLE_C, POLE_B, POLE_D, PRECESSION, SINGULAR,
 ) = range(19)  # fmt: skip
 COUNT = 19
-"""What is summed: |dA_c|, |dA_b|, |dA_d|, the shift of u at the start, relative moves of p and of p/K, |dm|; |dw| at the
+"""What is summed: |dA_c|, |dA_b|, |dA_d|, the shift of u at the start, relative moves of p and of p/K, |dm|/k1; |dw| at the
 start, the largest change of Euler's coefficients, the turn of the axes; relative moves of the moments; of a steady spin
 along and across itself; of the angular momentum's direction, relative amplitudes of its path in the body, the rate of
 precession, and that part of it that grows where the body leaves the middle axis."""
@@ -60,7 +60,7 @@ def add_start(i: Floats, w: Floats, dI: Floats, dw: Floats, turns: Floats, sums:
 
 @kernel()
 def add_constants(
-    i: Floats, low: float, high: float, w: Floats, circled: int, m: float, m1: float, K: float,
+    i: Floats, low: float, high: float, w: Floats, circled: int, m: float, k1: float, K: float,
     dI: Floats, dw: Floats, sums: Floats,
 ) -> None:  # fmt: skip
     """Add what moves the constants of a motion that turns.
@@ -73,8 +73,8 @@ def add_constants(
         The gaps between the moments, B - A and C - B.
     circled : int
         Axis d.
-    m, m1, K : float
-        Parameter, its complement, quarter period; m1 = K = 0 on the separatrix.
+    m, k1, K : float
+        Parameter, complementary modulus, quarter period; k1 = K = 0 on the separatrix.
     dI, dw : ndarray, shape (n, 3)
         By what a unit of the relative uncertainty of each input moves moments and components.
     """
@@ -84,14 +84,16 @@ def add_constants(
     Ic, Ib, Id, wc, wb, wd = i[c], i[1], i[d], w[c], w[1], abs(w[d])
     sign = 1.0 if w[d] >= 0.0 else -1.0
     r_c, r_b, r_d = Ib * g_db / (Ic * g_dc), Ic * g_dc / (Ib * g_db), Ib * g_bc / (Id * g_dc)
-    A_c, A_b = math.sqrt(wc * wc + r_c * wb * wb), math.sqrt(wb * wb + r_b * wc * wc)
-    A_d = math.sqrt(wd * wd + r_d * wb * wb)
+    # Norms whose squares may leave the range of doubles.
+    A_c, A_b = math.hypot(wc, math.sqrt(r_c) * wb), math.hypot(wb, math.sqrt(r_b) * wc)
+    A_d = math.hypot(wd, math.sqrt(r_d) * wb)
     sn, cn, dn = wb / A_b, wc / A_c, wd / A_d
     L = math.sqrt((Ic * wc) ** 2 + (Ib * wb) ** 2 + (Id * wd) ** 2)
     E2 = Ic * wc * wc + Ib * wb * wb + Id * wd * wd
-    k1 = math.sqrt(m1)
+    # Next to the separatrix m1 = k1^2 may be below every double: dm is kept as a multiple of k1.
+    unit = k1 if k1 > 0.0 else 1.0
     D = Ic * g_dc * wc * wc + Ib * g_db * wb * wb
-    dK = slope_of_quarter(m, m1, K)
+    dK = slope_of_quarter(m, k1, K)
     for k in range(dI.shape[0]):
         ic, ib, jd = dI[k, c], dI[k, 1], dI[k, d]
         c1, b1, d1 = dw[k, c], dw[k, 1], sign * dw[k, d]
@@ -101,19 +103,19 @@ def add_constants(
         dr_c = r_c * (e_b - e_c - e_dc / g_dc) + Ib / (Ic * g_dc) * e_db
         dr_d = r_d * (e_b - e_d - e_dc / g_dc) + Ib / (Id * g_dc) * e_bc
         from_b = r_b * (e_c - e_b + e_dc / g_dc - e_db / g_db)
-        dA_c = (wc * c1 + r_c * wb * b1 + 0.5 * wb * wb * dr_c) / A_c
-        dA_b = (wb * b1 + r_b * wc * c1 + 0.5 * wc * wc * from_b) / A_b
-        dA_d = (wd * d1 + r_d * wb * b1 + 0.5 * wb * wb * dr_d) / A_d
+        dA_c = cn * c1 + wb / A_c * (r_c * b1 + 0.5 * wb * dr_c)
+        dA_b = sn * b1 + wc / A_b * (r_b * c1 + 0.5 * wc * from_b)
+        dA_d = dn * d1 + wb / A_d * (r_d * b1 + 0.5 * wb * dr_d)
         dp = dA_d / A_d + 0.5 * (e_db / g_db + e_dc / g_dc - e_b - e_c)
         if m < 0.5:
             ratio = Ic / (Id * g_db) * (A_c / A_d) ** 2
             moved = ratio * e_bc + m * (e_c - e_d - e_db / g_db + 2.0 * dA_c / A_c - 2.0 * dA_d / A_d)
+            moved /= unit
         else:
-            first, second = Id * g_db * wd * wd, Ic * g_bc * wc * wc
-            dD = first * e_d + Id * wd * wd * e_db + 2.0 * Id * g_db * wd * d1
-            dD -= second * e_c + Ic * wc * wc * e_bc + 2.0 * Ic * g_bc * wc * c1
-            over = Id * g_db * A_d * A_d
-            moved = -dD / over + m1 * (e_d + e_db / g_db + 2.0 * dA_d / A_d)
+            share = wc / A_d
+            dD = dn / unit * (dn * (e_d + e_db / g_db) + 2.0 * d1 / A_d)
+            dD -= Ic / (Id * g_db) * share / unit * (share * (g_bc * e_c + e_bc) + 2.0 * g_bc * c1 / A_d)
+            moved = -dD + k1 / unit * k1 * (e_d + e_db / g_db + 2.0 * dA_d / A_d)
         # tan phi = sn/cn at the start.
         phase = cn * (b1 - sn * dA_b) / A_b - sn * (c1 - cn * dA_c) / A_c
         sums[AMPLITUDE_C] += abs(dA_c)
@@ -142,19 +144,19 @@ def add_constants(
 
 
 @kernel()
-def slope_of_quarter(m: float, m1: float, K: float) -> float:
-    """Return dK/dm = (E - m1 K)/(2 m m1), to a few digits; 0 on the separatrix, where there is no quarter period."""
+def slope_of_quarter(m: float, k1: float, K: float) -> float:
+    """Return k1 dK/dm = (E - m1 K)/(2 m k1), to a few digits; 0 on the separatrix, which has no quarter period."""
     if K == 0.0:
         return 0.0
     if m < 1e-4:
-        return 0.125 * math.pi * (1.0 + 1.125 * m)
-    if m1 < 1e-12:
-        return 0.5 / m1
-    a, g, c, factor, total = 1.0, math.sqrt(m1), math.sqrt(m), 1.0, 0.5 * m
+        return 0.125 * math.pi * (1.0 + 1.125 * m) * k1
+    if k1 < 1e-6:
+        return 0.5 / k1
+    a, g, c, factor, total = 1.0, k1, math.sqrt(m), 1.0, 0.5 * m
     for _ in range(12):
         a, g, c = 0.5 * (a + g), math.sqrt(a * g), 0.5 * (a - g)
         total += factor * c * c
         factor *= 2.0
         if c < 1e-9:
             break
-    return 0.5 * (K * (1.0 - total) - m1 * K) / (m * m1)
+    return 0.5 * (K * (1.0 - total) - k1 * k1 * K) / (m * k1)

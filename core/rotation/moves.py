@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.rotation import moved_constants as moved
-from core.rotation.constants_of_motion import STEADY, Motion
+from core.rotation.constants_of_motion import SEPARATRIX, STEADY, Motion
 
 Floats = NDArray[np.float64]
 
@@ -33,14 +33,14 @@ class Moves:
         B - A and C - B.
     own, own_start : float
         Sums over the inputs of the norms of their moves of tensor and of start.
-    sums : ndarray, shape (COUNT,)
+    sums : list of COUNT floats
         Of `core.rotation.moved_constants`.
-    circled : int
-        The axis that the motion circles.
     largest : float
         Largest norm of the angular velocity.
     crossed : bool
         Whether an input would turn the axes of equal moments.
+    dn, k1 : float
+        At the start: the component along the circled axis as a share of its amplitude; the complementary modulus.
     """
 
     moments: Floats
@@ -48,10 +48,11 @@ class Moves:
     gaps: tuple[float, float]
     own: float
     own_start: float
-    sums: Floats
-    circled: int
+    sums: list[float]
     largest: float
     crossed: bool
+    dn: float
+    k1: float
 
     @classmethod
     def of(
@@ -77,6 +78,10 @@ class Moves:
             The start in body axes.
         """
         sums, crossed = np.zeros(moved.COUNT), False
+        dn, k1 = _start_of(moments, gaps, components, motion)
+        if moments[0] == 0.0:
+            # A line of matter along a body axis, which no uncertainty gives a moment about itself.
+            moments = np.maximum(moments, moments[1])
         frame = np.eye(3) if axes is None else axes
         starts = np.diag(components) if axes is None else velocity[:, None] * frame
         if tensors is None:
@@ -99,7 +104,7 @@ class Moves:
         dI, dw = np.concatenate([dI, np.zeros((3, 3))]), np.concatenate([dw, starts])
         _add(moments, gaps, components, motion, dI, dw, np.concatenate([turns, np.zeros(3)]), sums)
         own_start = float(np.abs(velocity).sum()) if axes is not None else float(np.abs(components).sum())
-        return cls(moments, components, gaps, own, own_start, sums, motion.circled, largest, crossed)
+        return cls(moments, components, gaps, own, own_start, sums.tolist(), largest, crossed, dn, k1)
 
     @cached_property
     def _ratios(self) -> tuple[float, float, float]:
@@ -150,38 +155,19 @@ class Moves:
             skew = max(skew, min(math.sqrt(b / a) if a else math.inf, 1.0 + b * rate))
         return skew
 
-    @cached_property
-    def _circling(self) -> tuple[float, float, float, float, float, float]:
-        """L, 2E, I_d, D_d, A_d and dn at the start."""
-        d, c = (2, 0) if self.circled == 2 else (0, 2)
-        (A, B, C), (low, high), w2 = self.moments.tolist(), self.gaps, np.square(self.components).tolist()
-        i = (A, B, C)
-        L = math.sqrt(sum((x * x) * y for x, y in zip(i, w2, strict=True)))
-        E2 = sum(x * y for x, y in zip(i, w2, strict=True))
-        near, far = (high, low) if d == 2 else (low, high)
-        D = i[c] * (low + high) * w2[c] + B * near * w2[1]
-        A_d = math.sqrt(w2[d] + B * far / (i[d] * (low + high)) * w2[1])
-        return L, E2, i[d], D, A_d, math.sqrt(w2[d]) / A_d
 
-    @property
-    def dn(self) -> float:
-        """The component along the circled axis at the start, as a share of its amplitude."""
-        return self._circling[5]
-
-    @cached_property
-    def pole(self) -> list[float]:
-        """Amplitudes of the angular momentum's direction in the body, along c, b, d."""
-        d, c = (2, 0) if self.circled == 2 else (0, 2)
-        L, _, I_d, D, A_d, _ = self._circling
-        (low, high), i = self.gaps, self.moments.tolist()
-        near = high if d == 2 else low
-        return [math.sqrt(i[c] * D / (low + high)) / L, math.sqrt(i[1] * D / near) / L, I_d * A_d / L]
-
-    def swing_of(self, k1: float) -> tuple[float, float]:
-        """Return range and steepest slope, against dn, of the rate of precession (2E + L w_d)/(L + I_d w_d)."""
-        L, _, I_d, D, A_d, _ = self._circling
-        top, bottom = L + I_d * A_d, L + I_d * A_d * k1
-        return D * A_d * (1.0 - k1) / (top * bottom), D * A_d / (bottom * bottom)
+def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion) -> tuple[float, float]:
+    """Return dn at the start and the complementary modulus, which is right where its square has left the doubles."""
+    if motion.regime == STEADY:
+        return 1.0, 1.0
+    d, c = (2, 0) if motion.circled == 2 else (0, 2)
+    (low, high), i, x = gaps, moments.tolist(), np.abs(w).tolist()
+    near, far = (high, low) if d == 2 else (low, high)
+    dn = x[d] / math.hypot(x[d], math.sqrt(i[1] * far / (i[d] * (low + high))) * x[1])
+    if motion.regime == SEPARATRIX or motion.m1 > 1e-290:
+        return dn, math.sqrt(motion.m1)
+    ratio = x[c] / x[d]
+    return dn, dn * math.sqrt(max(1e-15, 1.0 - i[c] * far / (i[d] * near) * ratio * ratio))
 
 
 def _add(
@@ -190,9 +176,8 @@ def _add(
 ) -> None:  # fmt: skip
     moved.add_start(moments, w, dI, dw, turns, sums)
     if motion.regime != STEADY:
-        moved.add_constants(
-            moments, gaps[0], gaps[1], w, motion.circled, motion.m, motion.m1, motion.lattice.K, dI, dw, sums
-        )
+        _, k1 = _start_of(moments, gaps, w, motion)
+        moved.add_constants(moments, gaps[0], gaps[1], w, motion.circled, motion.m, k1, motion.lattice.K, dI, dw, sums)
 
 
 def _add_crossed(

@@ -56,7 +56,9 @@ class Perturbed:
         """Return the differences of angular velocity (rad/s) and, as vectors of rotation, of attitude, shape (n, 3)."""
         rates, attitudes = self.solved([x * (1 + s * uncertainty) for x, s in zip(self.inputs, signs, strict=True)])
         before, turned = self.unmoved
-        change = np.array([[float(a - b) for a, b in zip(p, q, strict=True)] for p, q in zip(rates, before, strict=True)])
+        change = np.array(
+            [[float(a - b) for a, b in zip(p, q, strict=True)] for p, q in zip(rates, before, strict=True)]
+        )
         return change, np.array([_between(p, q) for p, q in zip(attitudes, turned, strict=True)])
 
     def worst_signs(self, at: Sequence[int]) -> list[list[int]]:

@@ -152,9 +152,7 @@ def _of_parts(x: Numbers) -> Matrix:
     a, b, c = x[1:4]
     own = [x[0] * e * e / 12 for e in (a, b, c)]
     turn = _turn(x[7:11])
-    seconds.append(
-        [[sum(turn[i][k] * own[k] * turn[j][k] for k in range(3)) for j in range(3)] for i in range(3)]
-    )
+    seconds.append([[sum(turn[i][k] * own[k] * turn[j][k] for k in range(3)) for j in range(3)] for i in range(3)])
     seconds.append(_outer(x[0], x[4:7], x[4:7]))
     firsts.append([x[0] * p for p in x[4:7]])
     m, r, h = x[11:14]
@@ -186,7 +184,11 @@ def _shape(random: np.random.Generator, kind: str) -> tuple[list[float], Any, An
         return numbers, lambda x: InertiaTensor(tuple(map(tuple, _symmetric(x)))), _symmetric
     if kind == "point masses":
         n = int(random.integers(4, 8))
-        return [*size(n), *place(3 * n)], lambda x: PointMasses(list(x[: len(x) // 4]), _rows(x[len(x) // 4 :])), _of_points
+        return (
+            [*size(n), *place(3 * n)],
+            lambda x: PointMasses(list(x[: len(x) // 4]), _rows(x[len(x) // 4 :])),
+            _of_points,
+        )
     if kind == "solid":
         n, made, tensor = SOLIDS[int(random.integers(len(SOLIDS)))]
         return size(1 + n), made, tensor
