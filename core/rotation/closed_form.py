@@ -277,6 +277,7 @@ class FreeRotation:
             np.ldexp(self.angular_velocity, -rate),
             self.motion,
             largest,
+            math.ldexp(1.0, -rate),
         )
         return Inherited(self.motion, moves, math.ldexp(1.0, rate), largest)
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from core.rotation import moved_constants as moved
 from core.rotation.constants_of_motion import SEPARATRIX, STEADY, Motion
+from core.rotation.moved_phases import largest_until
 from core.rotation.moves import FIRST_ORDER, Moves
 
 Floats = NDArray[np.float64]
@@ -93,7 +94,11 @@ class Inherited:
             return math.inf
         A = [abs(x) / self.unit for x in (m.A_c, m.A_b, m.A_d)]
         a = s[moved.AMPLITUDE_C], s[moved.AMPLITUDE_B], s[moved.AMPLITUDE_D]
-        return u * (s[moved.TURN] * self.largest + self._displaced(u, time, A, a))
+        displaced = self._displaced(u, time, A, a)
+        if self.moves.phases is not None and math.isfinite(self._phase(u, time)):
+            half = 2.0 * m.lattice.K
+            displaced = min(displaced, largest_until(self.moves.phases, self._angle(time), half, s[moved.FREQUENCY]))
+        return u * (s[moved.TURN] * self.largest + displaced)
 
     def _displaced(self, u: float, time: float, A: list[float], a: tuple[float, float, float]) -> float:
         """Return a bound of |d(A_c cn, A_b sn, A_d dn)|, of which the amplitudes move by `a`."""

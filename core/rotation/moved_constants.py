@@ -5,7 +5,7 @@ every gap g_jk = |I_j - I_k| moves by s (dI_j - dI_k), or its opposite where k l
 
     A_c^2 = w_c^2 + (I_b g_db/I_c g_dc) w_b^2      A_b^2 = w_b^2 + (I_c g_dc/I_b g_db) w_c^2
     A_d^2 = w_d^2 + (I_b g_bc/I_d g_dc) w_b^2      p^2 = A_d^2 g_db g_dc/(I_b I_c)
-    m = (I_c g_bc/I_d g_db) A_c^2/A_d^2            D = I_d g_db w_d^2 - I_c g_bc w_c^2,   m1 = g_dc D/(I_d g_db g_dc A_d^2)
+    m = (I_c g_bc/I_d g_db) A_c^2/A_d^2            m1 = (I_d g_db w_d^2 - I_c g_bc w_c^2)/(I_d g_db A_d^2)
 
 are differentiated with their signs, input by input, and only the derivatives with respect to one input are added in
 size to those of the next: a bound of the first order that inputs of the worst signs reach, constant by constant. The
@@ -61,9 +61,11 @@ def add_start(i: Floats, w: Floats, dI: Floats, dw: Floats, turns: Floats, sums:
 @kernel()
 def add_constants(
     i: Floats, low: float, high: float, w: Floats, circled: int, m: float, k1: float, K: float,
-    dI: Floats, dw: Floats, sums: Floats,
+    dI: Floats, dw: Floats, sums: Floats, table: Floats,
 ) -> None:  # fmt: skip
     """Add what moves the constants of a motion that turns.
+
+    `table`, shape (n, 6), is filled with what each input moves: A_c, A_b, A_d, u at the start, log p and m/k1.
 
     Parameters
     ----------
@@ -125,6 +127,8 @@ def add_constants(
         sums[RATE] += abs(dp)
         sums[FREQUENCY] += abs(dp - dK / K * moved) if K > 0.0 else abs(dp)
         sums[MODULUS] += abs(moved)
+        table[k, 0], table[k, 1], table[k, 2] = dA_c, dA_b, dA_d
+        table[k, 3], table[k, 4], table[k, 5] = phase / dn, dp, moved
         # The angular momentum: its size, its direction, the amplitudes of its unit vector, and the rate about it.
         xc, xb, xd = ic * wc + Ic * c1, ib * wb + Ib * b1, jd * wd + Id * d1
         dL = (xc * Ic * wc + xb * Ib * wb + xd * Id * wd) / L

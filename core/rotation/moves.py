@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.rotation import moved_constants as moved
-from core.rotation.constants_of_motion import SEPARATRIX, STEADY, Motion
+from core.rotation.constants_of_motion import PERIODIC, SEPARATRIX, STEADY, Motion
+from core.rotation.moved_phases import LARGEST_MODULUS, phase_errors
 
 Floats = NDArray[np.float64]
 
 FIRST_ORDER = 0.1
 """Beyond this an error, and a relative move of a constant, is no longer told by its first derivative."""
+
+MOST_INPUTS = 3000
+"""With more inputs the bounds that need no phases are stated."""
 
 _MOST = 700.0
 _PLANES = ((0, 1), (1, 2), (2, 0))
@@ -41,6 +45,8 @@ class Moves:
         Whether an input would turn the axes of equal moments.
     dn, k1 : float
         At the start: the component along the circled axis as a share of its amplitude; the complementary modulus.
+    phases : ndarray or None
+        Of `core.rotation.moved_phases`, where the motion is far enough from the separatrix.
     """
 
     moments: Floats
@@ -53,6 +59,7 @@ class Moves:
     crossed: bool
     dn: float
     k1: float
+    phases: Floats | None
 
     @classmethod
     def of(
@@ -65,6 +72,7 @@ class Moves:
         velocity: Floats,
         motion: Motion,
         largest: float,
+        unit: float,
     ) -> Moves:
         """Project the moves of a tensor, shape (n, 3, 3), in body axes, or of the moments themselves where it is None.
 
@@ -76,6 +84,8 @@ class Moves:
             Principal axes as columns, where they are not body axes.
         velocity : ndarray, shape (3,)
             The start in body axes.
+        unit : float
+            What brings the motion's rates to these units.
         """
         sums, crossed = np.zeros(moved.COUNT), False
         dn, k1 = _start_of(moments, gaps, components, motion)
@@ -102,9 +112,15 @@ class Moves:
                 turns += turn * turn
             turns = np.sqrt(turns)
         dI, dw = np.concatenate([dI, np.zeros((3, 3))]), np.concatenate([dw, starts])
-        _add(moments, gaps, components, motion, dI, dw, np.concatenate([turns, np.zeros(3)]), sums)
+        table = _add(moments, gaps, components, motion, dI, dw, np.concatenate([turns, np.zeros(3)]), sums)
+        phases = None
+        if motion.regime == PERIODIC and motion.m <= LARGEST_MODULUS and not crossed and len(table) <= MOST_INPUTS:
+            c = 0 if motion.circled == 2 else 2
+            A_c, A_b, A_d = (abs(x) * unit for x in (motion.A_c, motion.A_b, motion.A_d))
+            start = math.atan2(float(components[1]) / A_b, float(components[c]) / A_c)
+            phases = phase_errors(A_c, A_b, A_d, motion.m, start, k1, table)
         own_start = float(np.abs(velocity).sum()) if axes is not None else float(np.abs(components).sum())
-        return cls(moments, components, gaps, own, own_start, sums.tolist(), largest, crossed, dn, k1)
+        return cls(moments, components, gaps, own, own_start, sums.tolist(), largest, crossed, dn, k1, phases)
 
     @cached_property
     def _ratios(self) -> tuple[float, float, float]:
@@ -173,11 +189,15 @@ def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Mot
 def _add(
     moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
     dI: Floats, dw: Floats, turns: Floats, sums: Floats,
-) -> None:  # fmt: skip
+) -> Floats:  # fmt: skip
     moved.add_start(moments, w, dI, dw, turns, sums)
+    table = np.zeros((len(dI), 6))
     if motion.regime != STEADY:
         _, k1 = _start_of(moments, gaps, w, motion)
-        moved.add_constants(moments, gaps[0], gaps[1], w, motion.circled, motion.m, k1, motion.lattice.K, dI, dw, sums)
+        moved.add_constants(
+            moments, gaps[0], gaps[1], w, motion.circled, motion.m, k1, motion.lattice.K, dI, dw, sums, table
+        )
+    return table
 
 
 def _add_crossed(

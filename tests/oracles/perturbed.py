@@ -61,6 +61,22 @@ class Perturbed:
         )
         return change, np.array([_between(p, q) for p, q in zip(attitudes, turned, strict=True)])
 
+    def error(self, samples: Floats, size: float) -> float:
+        """Return the largest error of angular velocities, shape (n, 3), relative to a rate."""
+        wrong = [
+            [float(Fraction(float(x)) - y) / size for x, y in zip(*rows, strict=True)]
+            for rows in zip(samples, self.unmoved[0], strict=True)
+        ]
+        return float(np.linalg.norm(wrong, axis=1).max())
+
+    def attitude_error(self, samples: Floats) -> float:
+        """Return the largest change of a unit vector that wrong attitudes, shape (n, 4), turn: at most the angle."""
+        wrong = []
+        for p, q in zip(samples, self.unmoved[1], strict=True):
+            got = [Fraction(float(x)) for x in p]
+            wrong.append(float(np.linalg.norm([float(x - y) for x, y in zip(got, q, strict=True)])))
+        return 2.0 * max(wrong)
+
     def worst_signs(self, at: Sequence[int]) -> list[list[int]]:
         """Return signs of the inputs whose changes add up most, to first order.
 
