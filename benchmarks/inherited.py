@@ -97,12 +97,12 @@ def compared(which: tuple[int, str, str]) -> list[Row]:
 
 
 def lost_at(case: Uncertain, horizon: float, period: float, signs: list[int], size: float) -> float:
-    """Return the first of the times horizon 2^(k/2) by which a moved motion is off by half its largest rate."""
+    """Return the first of many times, around the horizon and beyond, at which a moved motion is off by half of it."""
     doubled = [horizon * 2.0 ** (0.5 * k) for k in range(-2, 14)]
-    times = [time + period * k / 8 for time in doubled for k in range(4)]
+    times = sorted(time + period * k / 8 for time in doubled for k in range(4))
     change, _ = Perturbed(case, times).moved(Fraction(KNOWN), signs)
-    off = np.linalg.norm(change / size, axis=1).reshape(len(doubled), 4).max(axis=1) > 0.5
-    return doubled[int(off.argmax())] if off.any() else 2.0 * doubled[-1]
+    off = np.linalg.norm(change / size, axis=1) > 0.5
+    return times[int(off.argmax())] if off.any() else times[-1]
 
 
 def summary(rows: list[Row]) -> list[Row]:

@@ -28,10 +28,10 @@ Floats = NDArray[np.float64]
     MOMENTS, ALONG, CROSSWISE, TIP, POLE_C, POLE_B, POLE_D, PRECESSION, SINGULAR,
 ) = range(19)  # fmt: skip
 COUNT = 19
-"""What is summed: |dA_c|, |dA_b|, |dA_d|, the shift of u at the start, relative moves of p and of p/K, |dm|/k1; |dw| at the
-start, the largest change of Euler's coefficients, the turn of the axes; relative moves of the moments; of a steady spin
-along and across itself; of the angular momentum's direction, relative amplitudes of its path in the body, the rate of
-precession, and that part of it that grows where the body leaves the middle axis."""
+"""What is summed, in this order: |dA_c|, |dA_b|, |dA_d|, the shift of u at the start, relative moves of p and of p/K,
+|dm|/k1; |dw| at the start, the largest change of Euler's coefficients, the turn of the axes; relative moves of the
+moments; of a steady spin along and across itself; of the angular momentum's direction, the amplitudes of its path in
+the body, the rate of precession, and that part of it that grows where the body leaves the middle axis."""
 
 
 @kernel()
@@ -101,7 +101,7 @@ def add_constants(
         c1, b1, d1 = dw[k, c], dw[k, 1], sign * dw[k, d]
         e_dc, e_db, e_bc = s * (jd - ic), s * (jd - ib), s * (ib - ic)
         e_c, e_b, e_d = ic / Ic, ib / Ib, jd / Id
-        # Each ratio r of gaps carries its own relative move; the gap in its numerator may vanish, and is not divided by.
+        # Each ratio r of gaps carries its own relative move; a gap in a numerator may vanish, and is not divided by.
         dr_c = r_c * (e_b - e_c - e_dc / g_dc) + Ib / (Ic * g_dc) * e_db
         dr_d = r_d * (e_b - e_d - e_dc / g_dc) + Ib / (Id * g_dc) * e_bc
         from_b = r_b * (e_c - e_b + e_dc / g_dc - e_db / g_db)
