@@ -69,7 +69,7 @@ def _central(mass: Fraction, first: Numbers, second: Matrix) -> Matrix:
     return _tensor_of(_sum([second, _outer(-1 / mass, first, first)]))
 
 
-def _moments(x: Numbers) -> Matrix:
+def of_moments(x: Numbers) -> Matrix:
     return [[x[i] if i == j else Fraction(0) for j in range(3)] for i in range(3)]
 
 
@@ -81,7 +81,7 @@ def _rows(x: Numbers) -> list[Numbers]:
     return [x[k : k + 3] for k in range(0, len(x), 3)]
 
 
-def _of_points(x: Numbers) -> Matrix:
+def of_points(x: Numbers) -> Matrix:
     n = len(x) // 4
     places = list(zip(x[:n], _rows(x[n:]), strict=True))
     first = [sum((m * r[k] for m, r in places), Fraction(0)) for k in range(3)]
@@ -175,7 +175,7 @@ def _shape(random: np.random.Generator, kind: str) -> tuple[list[float], Any, An
 
     if kind == "principal moments":
         a, b, c = size(3)
-        return [b + c, c + a, a + b], lambda x: PrincipalMoments(tuple(x)), _moments
+        return [b + c, c + a, a + b], lambda x: PrincipalMoments(tuple(x)), of_moments
     if kind == "tensor":
         frame = np.linalg.qr(random.normal(size=(3, 3)))[0]
         a, b, c = size(3)
@@ -187,7 +187,7 @@ def _shape(random: np.random.Generator, kind: str) -> tuple[list[float], Any, An
         return (
             [*size(n), *place(3 * n)],
             lambda x: PointMasses(list(x[: len(x) // 4]), _rows(x[len(x) // 4 :])),
-            _of_points,
+            of_points,
         )
     if kind == "solid":
         n, made, tensor = SOLIDS[int(random.integers(len(SOLIDS)))]
