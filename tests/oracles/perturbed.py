@@ -77,14 +77,14 @@ class Perturbed:
             wrong.append(float(np.linalg.norm([float(x - y) for x, y in zip(got, q, strict=True)])))
         return 2.0 * max(wrong)
 
-    def worst_signs(self, at: Sequence[int]) -> list[list[int]]:
-        """Return signs of the inputs whose changes add up most, to first order.
+    def worst_signs(self) -> list[list[int]]:
+        """Return signs of the inputs whose changes add up most at the last time, to first order.
 
-        First for the angular velocity at every time in `at` (its number), then for the attitude.
+        First for the angular velocity, then for the attitude.
         """
-        step, count = Fraction(1, 10**30), len(self.inputs)
-        moves = [self.moved(step, [int(n == k) for n in range(count)]) for k in range(count)]
-        return [_aligned(np.array([move[which][n] for move in moves])) for which in (0, 1) for n in at]
+        step, count, last = Fraction(1, 10**30), len(self.inputs), Perturbed(self.case, self.times[-1:])
+        moves = [last.moved(step, [int(n == k) for n in range(count)]) for k in range(count)]
+        return [_aligned(np.array([move[which][0] for move in moves])) for which in (0, 1)]
 
 
 def _aligned(moves: Floats) -> list[int]:

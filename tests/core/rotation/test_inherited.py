@@ -27,7 +27,7 @@ def compared(case: Uncertain, times: list[float], seed: int = 0) -> list[tuple[f
     exact = TorqueFree(case.body(case.numbers).mass_properties(), np.array(case.start)).closed_form()
     free = FreeAttitude(exact, np.array([float(x) for x in ATTITUDE]))
     horizon, oracle = np.array([max(times)]), Perturbed(case, times)
-    tries = oracle.worst_signs([len(times) - 1])
+    tries = oracle.worst_signs()
     tries.append(np.random.default_rng(seed).choice([-1, 1], len(oracle.inputs)).tolist())
     found = []
     for uncertainty in UNCERTAINTIES:
