@@ -183,7 +183,10 @@ class MassProperties:
         if self.about == "center-of-mass":
             about = np.ldexp(self.center_of_mass, -length)
         second = moves_of_moments(self.described_by, about, Units(exponent - 2 * length, length))
-        moved: Floats = np.trace(second, axis1=1, axis2=2)[:, None, None] * np.eye(3) - second
+        # The tensor is the trace times the unit tensor less the moments.
+        moved, trace = -second, second[:, 0, 0] + second[:, 1, 1] + second[:, 2, 2]
+        for k in range(3):
+            moved[:, k, k] += trace
         return moved
 
     def _moves_of_components(self, exponent: int) -> Floats:

@@ -70,10 +70,15 @@ def _of_points(body: PointMasses, about: Floats, units: Units) -> Floats:
     r = np.ldexp(body.positions, -units.length)
     d = r - about
     m = np.ldexp(np.broadcast_to(np.asarray(body.masses, dtype=np.float64), len(r)), -units.mass)
-    by_mass = 0.5 * m[:, None, None] * _pair(d, d)
+    by_mass = np.einsum("n,ni,nj->nij", m, d, d)
     if np.ndim(body.masses) == 0:
         by_mass = by_mass.sum(axis=0, keepdims=True)
-    by_place = (m[:, None] * r)[:, :, None, None] * _pair(np.eye(3), d[:, None, :])
+    by_place = np.zeros((len(r), 3, 3, 3))
+    for j in range(3):
+        weighted = m * r[:, j]
+        for k in range(3):
+            by_place[:, j, j, k] += weighted * d[:, k]
+            by_place[:, j, k, j] += weighted * d[:, k]
     return np.concatenate([by_mass, by_place.reshape(-1, 3, 3)])
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from core.rotation import moved_constants as moved
 from core.rotation.constants_of_motion import PERIODIC, SEPARATRIX, STEADY, Motion
 from core.rotation.moved_phases import LARGEST_MODULUS, phase_errors
+from core.rotation.projected_moves import moves_along_axes, moves_of_given_moments
 
 Floats = NDArray[np.float64]
 
@@ -92,34 +93,23 @@ class Moves:
         if moments[0] == 0.0:
             # A line of matter along a body axis, which no uncertainty gives a moment about itself.
             moments = np.maximum(moments, moments[1])
-        frame = np.eye(3) if axes is None else axes
-        starts = np.diag(components) if axes is None else velocity[:, None] * frame
-        if tensors is None:
-            dI, dw, turns, own = np.diag(moments), np.zeros((3, 3)), np.zeros(3), float(np.sum(moments))
+        if axes is None or tensors is None:
+            dI, dw, turns = moves_of_given_moments(moments, components)
+            own, own_start = sum(moments.tolist()), sum(map(abs, components.tolist()))
         else:
-            along = frame.T @ tensors @ frame
-            dI = np.ascontiguousarray(np.diagonal(along, axis1=1, axis2=2))
-            own = float(np.sqrt(np.square(along).sum(axis=(1, 2))).sum())
-            dw, turns = np.zeros_like(dI), np.zeros(len(dI))
-            for (j, k), gap in zip(_PLANES, (gaps[0], gaps[1], -gaps[0] - gaps[1]), strict=True):
-                if gap == 0.0:
-                    crossed = crossed or bool(along[:, j, k].any())
-                    _add_crossed(moments, gaps, components, motion, (j, k), along[:, j, k], sums)
-                    continue
-                turn = along[:, j, k] / gap
-                dw[:, k] += turn * components[j]
-                dw[:, j] -= turn * components[k]
-                turns += turn * turn
-            turns = np.sqrt(turns)
-        dI, dw = np.concatenate([dI, np.zeros((3, 3))]), np.concatenate([dw, starts])
-        table = _add(moments, gaps, components, motion, dI, dw, np.concatenate([turns, np.zeros(3)]), sums)
+            dI, dw, turns, crosses, own = moves_along_axes(*gaps, components, axes, velocity, tensors)
+            own_start = sum(map(abs, velocity.tolist()))
+            for plane, across in zip(_PLANES, crosses, strict=True):
+                if across.any():
+                    crossed = True
+                    _add_crossed(moments, gaps, components, motion, plane, across, sums)
+        table = _add(moments, gaps, components, motion, dI, dw, turns, k1, sums)
         phases = None
         if motion.regime == PERIODIC and motion.m <= LARGEST_MODULUS and not crossed and len(table) <= MOST_INPUTS:
             c = 0 if motion.circled == 2 else 2
             A_c, A_b, A_d = (abs(x) * unit for x in (motion.A_c, motion.A_b, motion.A_d))
             start = math.atan2(float(components[1]) / A_b, float(components[c]) / A_c)
             phases = phase_errors(A_c, A_b, A_d, motion.m, start, k1, table)
-        own_start = float(np.abs(velocity).sum()) if axes is not None else float(np.abs(components).sum())
         return cls(moments, components, gaps, own, own_start, sums.tolist(), largest, crossed, dn, k1, phases)
 
     @cached_property
@@ -188,28 +178,24 @@ def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Mot
 
 def _add(
     moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
-    dI: Floats, dw: Floats, turns: Floats, sums: Floats,
+    dI: Floats, dw: Floats, turns: Floats, k1: float, sums: Floats,
 ) -> Floats:  # fmt: skip
     moved.add_start(moments, w, dI, dw, turns, sums)
     table = np.zeros((len(dI), 6))
     if motion.regime != STEADY:
-        _, k1 = _start_of(moments, gaps, w, motion)
-        moved.add_constants(
-            moments, gaps[0], gaps[1], w, motion.circled, motion.m, k1, motion.lattice.K, dI, dw, sums, table
-        )
+        moved.add_constants(moments, *gaps, w, motion.circled, motion.m, k1, motion.lattice.K, dI, dw, sums, table)
     return table
 
 
 def _add_crossed(
     moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
-    plane: tuple[int, int], crossed: Floats, sums: Floats,
+    plane: tuple[int, int], across: Floats, sums: Floats,
 ) -> None:  # fmt: skip
     """Add moves that would turn the axes of two equal moments, which may as well be chosen at 45 degrees."""
     j, k = plane
-    if not crossed.any():
-        return
     turned = w.copy()
     turned[j], turned[k] = math.sqrt(0.5) * (w[j] + w[k]), math.sqrt(0.5) * (w[k] - w[j])
-    dI = np.zeros((len(crossed), 3))
-    dI[:, j], dI[:, k] = crossed, -crossed
-    _add(moments, gaps, turned, motion, dI, np.zeros_like(dI), np.zeros(len(crossed)), sums)
+    dI = np.zeros((len(across), 3))
+    dI[:, j], dI[:, k] = across, -across
+    _, k1 = _start_of(moments, gaps, turned, motion)
+    _add(moments, gaps, turned, motion, dI, np.zeros_like(dI), np.zeros(len(across)), k1, sums)
