@@ -162,7 +162,7 @@ class Composite:
                 f"{float(found.principal.moments[0]):.6g} kg m^2: a hole is larger than what it is cut from",
                 remedy="let each hole lie inside of what it is cut from",
             )
-        return replace(found, about=self.about).judged("parts")
+        return replace(found, about=self.about, described_by=self).judged("parts")
 
 
 _Moments = tuple[MassMoments, tuple[Notice, ...], tuple[Condition, ...]]
@@ -189,6 +189,11 @@ def _moments_of_parts(composite: Composite) -> _Moments:
             remedy="add what the holes are cut from; a composite that is a hole as a whole is a part with hole: true",
         )
     return total, tuple(warnings), tuple(conditions)
+
+
+def moments_of(body: Any) -> MassMoments:
+    """Return the moments of mass of a body about its own origin; those of a hole are negative."""
+    return _moments(body)[0]
 
 
 def _moments(body: Any) -> _Moments:

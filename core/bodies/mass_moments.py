@@ -12,7 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+import numpy as np
+from numpy.typing import NDArray
+
 from core.bodies.exact import Matrix, Vector
+
+Floats = NDArray[np.float64]
 
 BITS = 4096
 UNRESOLVED = 1 << (BITS - 2000)
@@ -121,6 +126,19 @@ class MassMoments:
             Fraction(m, 1 << BITS),
             center,
             [[_or_zero(x) if abs(x) < least else x for x in row] for row in inertia],
+        )
+
+    def within(self, mass: int, length: int) -> tuple[float, Floats, Floats]:
+        """Return all three in units of 2^mass kg and 2^length m, rounded to doubles, of shapes (), (3,) and (3, 3)."""
+
+        def rounded(number: int, exponent: int) -> float:
+            return float(Fraction(number, 1 << BITS) / Fraction(2) ** exponent)
+
+        xx, xy, xz, yy, yz, zz = (rounded(x, mass + 2 * length) for x in self.second)
+        return (
+            rounded(self.mass, mass),
+            np.array([rounded(x, mass + length) for x in self.first]),
+            np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]),
         )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,6 @@ __all__ = ["Condition", "MassProperties", "PrincipalInertia", "Symmetry", "Valid
 
 Floats = NDArray[np.float64]
 About = Literal["center-of-mass", "origin"]
-Origin = Literal["moments", "tensor", "places"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +54,8 @@ class MassProperties:
         What was noticed while the body was read; paths lead from the body.
     conditions : tuple of Condition
         What the validity report says beyond the moments.
-    given_by : {"moments", "tensor", "places"}
-        What the body was described by: its moments themselves, a tensor, or where its matter is.
+    described_by : Body, optional
+        The body whose numbers these follow from; without one, the components of the tensor are themselves the numbers.
     """
 
     inertia: Floats
@@ -68,7 +67,7 @@ class MassProperties:
     about: About = "center-of-mass"
     warnings: tuple[Notice, ...] = ()
     conditions: tuple[Condition, ...] = ()
-    given_by: Origin = "moments"
+    described_by: Any = None
 
     def __post_init__(self) -> None:
         self.inertia.setflags(write=False)
@@ -97,7 +96,7 @@ class MassProperties:
         m, m_tail = size_pair(mass)
         c, c_tail = vector_pairs(center_of_mass)
         i, i_tail = tensor_pairs(inertia)
-        return cls(i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions, given_by="places")
+        return cls(i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions)
 
     @property
     def exact_mass(self) -> Fraction:
@@ -161,24 +160,46 @@ class MassProperties:
             return self.principal_about_origin
         return self.principal
 
-    @cached_property
-    def conditioning(self) -> float:
-        """How many times larger the relative uncertainty of the moments may be than that of the numbers given.
+    def moves(self, exponent: int) -> Floats:
+        """Return by how much each number of the description moves the tensor about the point of rotation.
 
-        A tensor's components move the smallest moment by as much as the largest; a place r, at d from the centre of
-        mass, moves a moment by 2 m |r| |d| (Cauchy and Schwarz bound the sum by the traces about origin and centre).
+        To first order, for a relative uncertainty of one of that number alone.
+
+        Parameters
+        ----------
+        exponent : int
+            The result is in units of 2^exponent kg m^2.
+
+        Returns
+        -------
+        ndarray, shape (n, 3, 3)
+            For n numbers, in body axes.
         """
-        smallest = float(self.principal_of_motion.moments[0])
-        if self.given_by == "moments" or not smallest > 0.0:
-            return 1.0
-        if self.given_by == "tensor":
-            diagonal = not (self.inertia[0, 1] or self.inertia[0, 2] or self.inertia[1, 2])
-            return 1.0 if diagonal else 3.0 * float(self.principal.moments[2]) / smallest
-        # Divided before they are added: the trace may leave the range of doubles where its terms do not.
-        own = math.sqrt(sum(x / smallest for x in np.diag(self.inertia).tolist()))
-        far = self.inertia_about_origin
-        about_origin = own if far is None else math.sqrt(sum(x / smallest for x in np.diag(far).tolist()))
-        return 4.0 + 2.0 * own * max(own, about_origin)
+        if self.described_by is None or self.mass is None or self.center_of_mass is None:
+            return self._moves_of_components(exponent)
+        # Imported here, as it knows every kind of body.
+        from core.bodies.moves import Units, moves_of_moments
+
+        length = (exponent - math.frexp(self.mass)[1]) // 2
+        about = np.zeros(3)
+        if self.about == "center-of-mass":
+            about = np.ldexp(self.center_of_mass, -length)
+        second = moves_of_moments(self.described_by, about, Units(exponent - 2 * length, length))
+        # The tensor is the trace times the unit tensor less the moments.
+        moved, trace = -second, second[:, 0, 0] + second[:, 1, 1] + second[:, 2, 2]
+        for k in range(3):
+            moved[:, k, k] += trace
+        return moved
+
+    def _moves_of_components(self, exponent: int) -> Floats:
+        scaled = np.ldexp(self.inertia, -exponent)
+        rows = []
+        for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+            if scaled[i, j]:
+                row = np.zeros((3, 3))
+                row[i, j] = row[j, i] = scaled[i, j]
+                rows.append(row)
+        return np.array(rows).reshape(-1, 3, 3)
 
     @property
     def symmetry(self) -> Symmetry:

@@ -99,7 +99,7 @@ class InertiaTensor:
         given = [[Fraction(x) for x in row] for row in self.tensor]
         inertia, tail = tensor_pairs([[(given[i][j] + given[j][i]) / 2 for j in range(3)] for i in range(3)])
         center = None if self.center_of_mass is None else np.array(self.center_of_mass)
-        properties = MassProperties(inertia, tail, self.mass, center, given_by="tensor")
+        properties = MassProperties(inertia, tail, self.mass, center)
         try:
             lowest, _, highest = (float(x) for x in properties.principal.moments)
         except InvalidParameter as fault:
@@ -189,4 +189,6 @@ class PointMasses:
         ]
         trace = products[0][0] + products[1][1] + products[2][2]
         inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
-        return replace(MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about)
+        return replace(
+            MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about, described_by=self
+        )

@@ -119,7 +119,7 @@ class Uniform:
         shape = self.shape()
         mass = self.weigh(shape)
         inertia = [[mass * x for x in row] for row in shape.inertia]
-        return MassProperties.from_exact(mass, shape.center_of_mass, inertia)
+        return replace(MassProperties.from_exact(mass, shape.center_of_mass, inertia), described_by=self)
 
 
 def principal(volume: Fraction, pi_power: int, center: Vector, moments: Vector) -> Shape:

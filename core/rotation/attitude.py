@@ -17,6 +17,7 @@ from core.integration.system import Floats
 from core.rotation.attitude_sampling import phase_at_start, sample_attitude, sample_steady
 from core.rotation.circulation import PERIODIC, REST, SEPARATRIX, STEADY
 from core.rotation.closed_form import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
+from core.rotation.inherited import WHOLE_TURN, lost_after
 from core.rotation.precession_constants import Precession, precession_constants
 from core.rotation.quaternions import Extended, left, quaternion_of, right, unit
 
@@ -115,6 +116,34 @@ class FreeAttitude:
         moments, rates = self.rotation.grading
         phase = motion.inherited.at(DERIVED_ROUNDING * moments, horizon, max(1.0, rates / moments))
         return ATTITUDE_ERROR + 8.0 * DERIVED_ROUNDING * max(moments, rates) * turned + 4.0 * phase
+
+    def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
+        """Return by what angle (rad) a relative `uncertainty` of every input may turn the samples, at most pi.
+
+        The inputs are the numbers of the body, of the angular velocity and of the attitude at t = 0.
+        """
+        horizon = self.rotation.horizon(times)
+        if uncertainty == 0.0:
+            return 0.0
+        if self.rotation.motion.regime == REST:
+            return min(WHOLE_TURN, 2.0 * uncertainty)
+        if self.rotation.sensitivity is None:
+            return WHOLE_TURN
+        return self.rotation.sensitivity.attitude(uncertainty, horizon)
+
+    def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
+        """Return the time after which a relative `uncertainty` of every input leaves nothing known of the attitude (s).
+
+        None if that does not happen at any time that `sample` answers.
+        """
+        longest = 1023.0
+        if self.rotation.motion.regime == REST:
+            return None
+        if self.rotation.motion.regime == PERIODIC:
+            m = self.rotation.motion
+            longest = min(longest, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
+        longest = min(longest, math.log2(LARGEST_QUARTER) - math.log2(self._turns(1.0)) - 1e-9)
+        return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, longest)
 
     def _turns(self, horizon: float) -> float:
         """Return the quarter turns of the half angle up to a horizon."""

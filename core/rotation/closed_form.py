@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -17,6 +18,8 @@ from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
 from core.rotation.circulation import PERIODIC, REST, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
 from core.rotation.constants_of_motion import Motion, constants_of_motion
+from core.rotation.inherited import WHOLE_MOTION, Inherited, lost_after
+from core.rotation.moves import Moves
 from core.rotation.principal_frame import PrincipalFrame, resolve
 from core.rotation.sampling import largest_magnitude, sample_components, turn_into_body
 
@@ -85,13 +88,14 @@ class FreeRotation:
         Principal moments and axes of the body; all moments positive.
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
-    conditioning : float
-        How many times larger the relative uncertainty of the moments is than that of the numbers that gave the body.
+    moves : callable, optional
+        By how much each of the numbers that describe the body moves its tensor: `MassProperties.moves`. Without it the
+        principal moments are those numbers.
     """
 
     inertia: PrincipalInertia
     angular_velocity: Floats
-    conditioning: float = 1.0
+    moves: Callable[[int], Floats] | None = None
 
     def __post_init__(self) -> None:
         if self.inertia.moments[0] > 0.0:
@@ -234,19 +238,38 @@ class FreeRotation:
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
-        horizon, m = self.horizon(times), self.motion
-        if m.regime == REST:
+        horizon = self.horizon(times)
+        if uncertainty == 0.0 or self.motion.regime == REST:
             return 0.0
-        if not self.frame.aligned:
-            grown: float = m.inherited.at(
-                uncertainty * self.conditioning, horizon, max(1.0, self.grading[1] / self.conditioning)
-            )
-            return grown
-        if m.regime == STEADY and np.count_nonzero(self.angular_velocity) == 1:
-            # The other components are zero, and a relative uncertainty leaves them so.
-            return min(2.0, 2.0 * uncertainty)
-        inherited: float = m.inherited.at(uncertainty * self.conditioning, horizon)
-        return inherited
+        if self.sensitivity is None:
+            return WHOLE_MOTION
+        return self.sensitivity.angular_velocity(uncertainty, horizon)
+
+    @cached_property
+    def sensitivity(self) -> Inherited | None:
+        """What uncertain inputs come to, where the body is not at rest.
+
+        None for a line of matter askew: what turns it out of line gives it a third moment, and nothing says how small.
+        """
+        i, it, w, _ = self.resolved
+        if i[0] == 0.0 and not self.frame.aligned:
+            return None
+        exponent, rate = math.frexp(float(i[2]))[1], math.frexp(float(np.abs(w).max()))[1]
+        low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
+        largest = math.ldexp(self.largest_rate, -rate)
+        components = np.ldexp(w, -rate)
+        moves = Moves.of(
+            np.ldexp(i, -exponent),
+            (low, high),
+            components,
+            None if self.moves is None and self.frame.aligned else np.ascontiguousarray(self.inertia.axes),
+            None if self.moves is None else self.moves(exponent),
+            np.ldexp(self.angular_velocity, -rate),
+            self.motion,
+            largest,
+            math.ldexp(1.0, -rate),
+        )
+        return Inherited(self.motion, moves, math.ldexp(1.0, rate), largest)
 
     def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
         """Return the time after which a relative `uncertainty` of every input leaves nothing known of the phase (s).
@@ -255,20 +278,10 @@ class FreeRotation:
         None if that does not happen at any time that `sample` answers.
         """
 
-        def lost(exponent: float) -> bool:
-            return bool(self.inherited(np.array([2.0**exponent]), uncertainty) > 1.0)
-
-        m, low, high = self.motion, -1074.0, 1023.0
+        m, longest = self.motion, 1023.0
         if m.regime == PERIODIC:
-            high = min(high, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
-        if uncertainty == 0.0 or not lost(high):
-            return None
-        if lost(low):
-            return 0.0
-        while high - low > 1e-3:
-            middle = 0.5 * (low + high)
-            low, high = (low, middle) if lost(middle) else (middle, high)
-        return float(2.0**low)
+            longest = min(longest, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
+        return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, longest)
 
     @cached_property
     def grading(self) -> tuple[float, float]:

@@ -230,7 +230,9 @@ class TorqueFree:
 
     @cached_property
     def _exact(self) -> FreeRotation:
-        return FreeRotation(self.body.principal_of_motion, self.angular_velocity, self.body.conditioning)
+        # Principal moments that were given as such are their own numbers; that spares the tensors of their moves.
+        moves = self.body.moves if self.body.mass is not None or not self._diagonal else None
+        return FreeRotation(self.body.principal_of_motion, self.angular_velocity, moves)
 
     def ranges(self, states: Floats) -> Mapping[str, Range]:
         """Return the ranges of energy and |L|, both times a power of two that brings them near one."""

@@ -80,6 +80,12 @@ class AccuracyView(View):
     )
     drifts: dict[str, float] = Field(description="Largest relative change of conserved quantities: not an error.")
     attitude_error: float | None = Field(default=None, description="Largest error of the attitude, as a turn (rad).")
+    attitude_inherited: float | None = Field(
+        default=None, description="By what angle the same uncertainty may turn the attitude (rad), at most pi."
+    )
+    attitude_horizon: float | None = Field(
+        default=None, description="Time after which input_uncertainty leaves nothing known of the attitude (s)."
+    )
 
 
 class WorkView(View):
@@ -151,12 +157,17 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     if "angular_velocity" in wanted:
         fields["angular_velocity"] = states
     if "attitude" in wanted:
-        attitude, error = _attitude(question, system, times)
+        free, error = _attitude(question, system, times)
+        attitude = free.sample(times)
+        turned = free.inherited(times, question.input_uncertainty)
         if question.round is not None:
             # Quaternions of two attitudes are half as far apart as the attitudes.
-            attitude, added = rounded(attitude, question.round, 0.5 * (error + unknown), 1.0)
+            attitude, added = rounded(attitude, question.round, 0.5 * (error + turned), 1.0)
             error += 2.0 * added
         fields["attitude"], accuracy["attitude_error"] = attitude, error
+        accuracy["attitude_inherited"] = turned
+        if "input_uncertainty" in question.model_fields_set:
+            accuracy["attitude_horizon"] = free.horizon_of(question.input_uncertainty)
     return fields
 
 
@@ -166,7 +177,7 @@ def _outputs(question: TrajectoryRequest) -> tuple[Output, ...]:
     return ("time", "angular_velocity") if question.attitude is None else ("time", "angular_velocity", "attitude")
 
 
-def _attitude(question: TrajectoryRequest, system: TorqueFree, times: Floats) -> tuple[Floats, float]:
+def _attitude(question: TrajectoryRequest, system: TorqueFree, times: Floats) -> tuple[FreeAttitude, float]:
     _require_closed_form(question)
     free = FreeAttitude(system.closed_form(), np.array(question.attitude or (1.0, 0.0, 0.0, 0.0)))
     error = free.error(times)
@@ -177,7 +188,7 @@ def _attitude(question: TrajectoryRequest, system: TorqueFree, times: Floats) ->
             "the bound of the attitude's closed form is larger",
             remedy="ask for earlier times or for less accuracy",
         )
-    return free.sample(times), error
+    return free, error
 
 
 def _require_closed_form(question: TrajectoryRequest) -> None:
