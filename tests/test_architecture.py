@@ -50,6 +50,9 @@ SERVICE_LAYERS = (
         "archive",
         "keys",
         "cors",
+        "representation",
+        "kept",
+        "records",
     },
     {"guards"},
     {"reading"},
@@ -58,9 +61,10 @@ SERVICE_LAYERS = (
     {"routes", "answering", "documentation"},
     {"worker", "prepared"},
     {"compute"},
+    {"exchange"},
     {"dispatch"},
     {"app"},
-    {"server", "__main__"},
+    {"server", "protocol", "__main__"},
 )
 """The service's files from the ground upwards; each imports from its own storey or from below."""
 
