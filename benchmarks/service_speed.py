@@ -6,9 +6,9 @@ a drifting machine drifts for all; the result is the median of the ratios and th
 request is the server process's own, as its scheduler counts it, and suffers less from what else the machine does.
 
 "bare" is uvicorn with uvloop and httptools, reading the body and answering as many bytes. "transport" answers the
-question from a constant: all that is left is parsing, limits, metrics, writing. "plain" serves the same through uvicorn's
-own protocol. The load comes from wrk where it is installed, otherwise from threads of http.client, which flatter the
-slow servers.
+question from a constant: all that is left is parsing, limits, metrics, writing. "plain" serves the same through
+uvicorn's own protocol. The load comes from wrk where it is installed, otherwise from threads of http.client, which
+flatter the slow servers.
 """
 
 from __future__ import annotations

@@ -15,8 +15,8 @@ from service import VERSION, archive
 from service.answering import Answering
 from service.compute import Compute
 from service.cors import Cors
-from service.exchange import VARY, Exchange, Receive, Scope, Send
-from service.guards import ClientGone, negotiated, read_body, require_acceptable, require_json
+from service.exchange import VARY, Exchange, Scope, Send
+from service.guards import ClientGone, Receive, negotiated, read_body, require_acceptable, require_json
 from service.kept import KeptAnswers
 from service.keys import Keys
 from service.logs import LOG
@@ -106,7 +106,9 @@ class Dispatcher:
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":
             media = negotiated(accept, (*route.representations, archive.MEDIA_TYPE))
-        body = await read_body(exchange.receive, headers, settings.max_body_bytes)
+        body = exchange.body_at_once(settings.max_body_bytes)
+        if body is None:
+            body = await read_body(exchange.receive, headers, settings.max_body_bytes)
         if media == archive.MEDIA_TYPE:
             answer = await self._answer(route, body, exchange)
             self._metrics.samples.inc(array_size(answer))
@@ -116,20 +118,20 @@ class Dispatcher:
             document = route.representations[media](await self._answer(route, body, exchange))
             await exchange.represented(document, media.encode())
             return
-        kept = self._kept.get(route.path, body)
-        if kept is not None:
+        whole = self._kept.get(route.path, body)
+        if whole is not None:
             self._metrics.cache_hits.inc()
-            await exchange.answer(kept)
-            return
-        answer = await self._answer(route, body, exchange)
-        size = array_size(answer)
-        if size > ONE_PIECE:
-            self._metrics.samples.inc(size)
-            await exchange.stream(chunks(answer), _etag_of_answer(route, body))
-            return
-        whole = Representation(written(answer))
-        self._kept.put(route.path, body, whole)
-        await exchange.answer(whole)
+        else:
+            answer = await self._answer(route, body, exchange)
+            size = array_size(answer)
+            if size > ONE_PIECE:
+                self._metrics.samples.inc(size)
+                await exchange.stream(chunks(answer), _etag_of_answer(route, body))
+                return
+            whole = Representation(written(answer))
+            self._kept.put(route.path, body, whole)
+        if not exchange.answer_at_once(whole):
+            await exchange.answer(whole)
 
     async def _answer(self, route: Question, body: bytes, exchange: Exchange) -> Any:
         longest = self._settings.deadline_seconds

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping, Sequence
 from time import perf_counter
-from typing import Any
+from typing import Any, Protocol
 
 from service.cors import Cors
+from service.guards import Receive
 from service.keys import Key
 from service.problems import MEDIA_TYPE, Problem
 from service.records import Records
@@ -15,12 +16,21 @@ from service.representation import JSON, NOSNIFF, Header, Representation, etag_o
 
 Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
-Receive = Callable[[], Awaitable[Message]]
 Send = Callable[[Message], Awaitable[None]]
 
-IN_ONE_WRITE = "polhode.in_one_write"
-"""Extension of a server that sends an answer by one call: from headers, as they stand in a response, and body to
-whether it did. One that did not has done nothing, and has to be asked in the ordinary way."""
+DIRECT = "polhode.direct"
+"""Name of the extension of a server whose value is a `Direct`."""
+
+
+class Direct(Protocol):
+    """A server's short cuts for small requests and responses; each may decline, having done nothing."""
+
+    def read(self, limit: int) -> bytes | None:
+        """Return the request's body if it is here and no longer than the limit."""
+
+    def write(self, headers: bytes, body: bytes) -> bool:
+        """Send a response with status 200, of headers as they stand in it, each with its line end, and a body."""
+
 
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
 VARY: Header = (b"vary", b"accept")
@@ -52,6 +62,7 @@ class Exchange:
 
     __slots__ = (
         "_also",
+        "_direct",
         "_records",
         "_send",
         "_since",
@@ -74,6 +85,8 @@ class Exchange:
         self.started = False
         self.key: Key | None = None
         self._also = cors.headers(self.headers) if cors else ()
+        extensions = scope.get("extensions")
+        self._direct: Direct | None = extensions.get(DIRECT) if extensions else None
         self.identity = records.id_of(self.headers.get(b"x-request-id"))
 
     @property
@@ -86,26 +99,28 @@ class Exchange:
         while (await self.receive())["type"] != "http.disconnect":
             pass
 
+    def body_at_once(self, limit: int) -> bytes | None:
+        """Return the request's body if the server has it whole already and it keeps the limit."""
+        return None if self._direct is None else self._direct.read(limit)
+
+    def answer_at_once(self, answer: Representation) -> bool:
+        """Send an answer in one piece without waiting for anything, or return False and do nothing."""
+        if self._direct is None or self._also or b"if-none-match" in self.headers:
+            return False
+        milliseconds = 1e3 * (perf_counter() - self._since)
+        own = b"x-request-id: %b\r\nserver-timing: total;dur=%.3f\r\n" % (self.identity, milliseconds)
+        if not self._direct.write(answer.section + own, answer.text):
+            return False
+        self.started = True
+        self.close(200)
+        return True
+
     async def answer(self, answer: Representation) -> None:
         """Send an answer in one piece, or that the client has it already."""
-        if b"if-none-match" in self.headers and self._has(answer.etag):
+        if self._has(answer.etag):
             await self._respond(304, b"", [(b"etag", answer.etag)])
-            return
-        # This is where most requests end: the same as `_respond`, in line.
-        self.started = True
-        seconds = perf_counter() - self._since
-        extensions = self.scope.get("extensions")
-        write = extensions.get(IN_ONE_WRITE) if extensions else None
-        own = b"x-request-id: %b\r\nserver-timing: total;dur=%.3f\r\n" % (self.identity, 1e3 * seconds)
-        if write is None or self._also or not write(answer.section + own, answer.text):
-            headers = answer.headers
-            headers.append((b"x-request-id", self.identity))
-            headers.append((b"server-timing", b"total;dur=%.3f" % (1e3 * seconds)))
-            headers += self._also
-            send = self._send
-            await send({"type": "http.response.start", "status": 200, "headers": headers})
-            await send({"type": "http.response.body", "body": answer.text})
-        self.close(200)
+        else:
+            await self._respond(200, answer.text, answer.headers)
 
     async def page(self, body: bytes, media_type: bytes, status: int) -> None:
         """Send a document in one piece, or that the client has it already."""

@@ -97,7 +97,8 @@ def counts(question: Any, budget: Budget) -> dict[str, float]:
 def _size(body: Any) -> int:
     """Return how many points or faces a body has; each part of a composite counts as a thousand."""
     size = 0
-    for name in _extents(type(body)):
+    kind: Any = type(body)
+    for name in _extents(kind):
         if name == "parts":
             size += sum(1000 + _size(part.body) for part in body.parts)
         else:
@@ -106,7 +107,7 @@ def _size(body: Any) -> int:
 
 
 @cache
-def _extents(kind: type) -> tuple[str, ...]:
+def _extents(kind: Any) -> tuple[str, ...]:
     """Return the fields of a kind of body by which it can be large."""
     return tuple(entry.name for entry in fields(kind) if entry.name in ("positions", "faces", "parts"))
 
