@@ -1,4 +1,5 @@
 import json
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,3 +80,27 @@ def test_null_is_written_where_it_is_meant() -> None:
 
 def test_size_counts_numbers_in_arrays_at_any_depth() -> None:
     assert array_size({"a": np.zeros((2, 3)), "b": [np.zeros(4), {"c": np.zeros(5)}], "d": "text", "e": 1.0}) == 15
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        {"a": None, "b": {"c": math.nan}},
+        {"a": None, "b": math.inf},
+        {"null": 1.0, "a": [math.nan]},
+        {"a": [None, math.nan]},
+    ],
+)
+def test_nulls_of_its_own_hide_no_other(hidden: dict[str, object]) -> None:
+    with pytest.raises(NotFinite):
+        written(hidden)
+
+
+def test_nulls_of_its_own_are_written() -> None:
+    for own in (
+        {"a": None, "b": "null", "c": None},
+        {"a": {"b": None}},
+        {"null": None},
+        {"a": None, "b": np.arange(3.0)},
+    ):
+        assert json.loads(written(own)) == {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in own.items()}
