@@ -1,9 +1,14 @@
 """Requests per second of a small question, relative to a bare ASGI application under the same server.
 
 Run: python -m benchmarks.service_speed [rounds] [seconds]. Everything stays on 127.0.0.1. In each round every server is
-driven for the same time, one after the other, and ratios are taken within a round, so that a drifting machine drifts
-for all. "transport" answers the question from a constant: all that is left is parsing, limits, metrics, writing. The
-load comes from wrk where it is installed, otherwise from threads of http.client, which flatter the slow servers.
+driven for the same time, one after the other, each round in another order, and ratios are taken within a round, so that
+a drifting machine drifts for all; the result is the median of the ratios and their quartiles. Processor time per
+request is the server process's own, as its scheduler counts it, and suffers less from what else the machine does.
+
+"bare" is uvicorn with uvloop and httptools, reading the body and answering as many bytes. "transport" answers the
+question from a constant: all that is left is parsing, limits, metrics, writing. "plain" serves the same through
+uvicorn's own protocol. The load comes from wrk where it is installed, otherwise from threads of http.client, which
+flatter the slow servers.
 """
 
 from __future__ import annotations
@@ -12,6 +17,7 @@ import asyncio
 import contextlib
 import http.client
 import json
+import math
 import os
 import shutil
 import statistics
@@ -21,7 +27,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -42,6 +48,7 @@ CONNECTIONS = 16
 Moment = Annotated[float, Field(gt=0)]
 TRANSPORT = "benchmarks.service_speed:transport"
 REAL = "benchmarks.service_speed:real"
+OURS = "service.protocol:Protocol"
 
 
 def real() -> tuple[Question, ...]:
@@ -140,25 +147,29 @@ def idiomatic(table: str) -> Any:
     return app
 
 
-SERVERS: dict[str, Callable[[], Any]] = {
-    "bare": bare,
-    "transport": lambda: ours(TRANSPORT, 0),
-    "transport, cache": lambda: ours(TRANSPORT, 1024),
-    "transport, FastAPI": lambda: idiomatic(TRANSPORT),
-    "real": lambda: ours(REAL, 0),
-    "real, cache": lambda: ours(REAL, 1024),
-    "real, FastAPI": lambda: idiomatic(REAL),
+SERVERS: dict[str, tuple[Callable[[], Any], str]] = {
+    "bare": (bare, "httptools"),
+    "transport": (lambda: ours(TRANSPORT, 0), OURS),
+    "transport, cache": (lambda: ours(TRANSPORT, 1024), OURS),
+    "transport, plain": (lambda: ours(TRANSPORT, 0), "httptools"),
+    "transport, cache, plain": (lambda: ours(TRANSPORT, 1024), "httptools"),
+    "transport, FastAPI": (lambda: idiomatic(TRANSPORT), "httptools"),
+    "real": (lambda: ours(REAL, 0), OURS),
+    "real, cache": (lambda: ours(REAL, 1024), OURS),
+    "real, FastAPI": (lambda: idiomatic(REAL), "httptools"),
 }
+"""Applications, and the protocol they are served by."""
 
 
 def serve(name: str) -> None:
     """Serve one of the applications and print its port."""
+    application, protocol = SERVERS[name]
     config = uvicorn.Config(
-        SERVERS[name](),
+        application(),
         host="127.0.0.1",
         port=0,
         loop="uvloop",
-        http="httptools",
+        http=protocol,
         log_config=None,
         access_log=False,
         server_header=False,
@@ -176,20 +187,42 @@ def serve(name: str) -> None:
     uvloop.run(run())
 
 
+@dataclass(frozen=True)
+class Target:
+    """A server that runs."""
+
+    port: int
+    process: int
+
+    def processor_seconds(self) -> float:
+        """Return the time for which its threads have had a processor, NaN where the system does not tell."""
+        threads = Path(f"/proc/{self.process}/task").glob("*/schedstat")
+        return sum(int(thread.read_text().split()[0]) for thread in threads) / 1e9 or math.nan
+
+
 @contextlib.contextmanager
-def running(name: str) -> Iterator[int]:
-    """Run a server in a process of its own; gives its port."""
+def running(name: str) -> Iterator[Target]:
+    """Run a server in a process of its own, once it is ready."""
     process = subprocess.Popen(
         [sys.executable, "-m", "benchmarks.service_speed", "--serve", name], stdout=subprocess.PIPE, text=True
     )
     try:
         assert process.stdout is not None
         port = int(process.stdout.readline())
+        while _status(port, "/readyz") == 503:
+            time.sleep(0.1)
         _ask(port)
-        yield port
+        yield Target(port, process.pid)
     finally:
         process.terminate()
         process.wait(30)
+
+
+def _status(port: int, path: str) -> int:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    with contextlib.closing(connection):
+        connection.request("GET", path)
+        return connection.getresponse().status
 
 
 def _ask(port: int) -> bytes:
@@ -202,17 +235,22 @@ def _ask(port: int) -> bytes:
     return content
 
 
-def with_wrk(port: int, seconds: float, script: Path) -> float:
-    """Return requests per second as wrk counts them."""
+Load = tuple[int, float]
+"""Requests that were answered, and how many in a second."""
+
+
+def with_wrk(port: int, seconds: float, script: Path) -> Load:
+    """Return what wrk counts."""
     url = f"http://127.0.0.1:{port}{QUESTION.path}"
     command = ["wrk", "-t1", f"-c{CONNECTIONS}", f"-d{seconds:g}s", "-s", str(script), url]
     out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert "Non-2xx" not in out, out
-    return float(next(line for line in out.splitlines() if "Requests/sec" in line).split(":")[1])
+    done = next(line for line in out.splitlines() if "requests in" in line).split()[0]
+    return int(done), float(next(line for line in out.splitlines() if "Requests/sec" in line).split(":")[1])
 
 
-def with_threads(port: int, seconds: float, script: Path) -> float:
-    """Return requests per second of a few threads."""
+def with_threads(port: int, seconds: float, script: Path) -> Load:
+    """Return what a few threads count."""
     counts: list[int] = []
     until = time.monotonic() + seconds
 
@@ -230,12 +268,13 @@ def with_threads(port: int, seconds: float, script: Path) -> float:
         thread.start()
     for thread in threads:
         thread.join()
-    return sum(counts) / seconds
+    return sum(counts), sum(counts) / seconds
 
 
 def main(rounds: int = 9, seconds: float = 1.0) -> None:
     """Measure and write the result."""
     rates: dict[str, list[float]] = {name: [] for name in SERVERS}
+    costs: dict[str, list[float]] = {name: [] for name in SERVERS}
     before = os.getloadavg()
     drive = with_wrk if shutil.which("wrk") else with_threads
     with contextlib.ExitStack() as stack:
@@ -243,17 +282,19 @@ def main(rounds: int = 9, seconds: float = 1.0) -> None:
         script = folder / "post.lua"
         quoted = BODY.decode().replace("\\", "\\\\").replace("'", "\\'")
         script.write_text(f"wrk.method='POST'\nwrk.body='{quoted}'\nwrk.headers['Content-Type']='application/json'\n")
-        ports = {name: stack.enter_context(running(name)) for name in SERVERS}
-        for port in ports.values():
-            drive(port, 1.0, script)
+        targets = {name: stack.enter_context(running(name)) for name in SERVERS}
+        for target in targets.values():
+            drive(target.port, 1.0, script)
+        order = list(targets)
         for _ in range(rounds):
-            for name, port in ports.items():
-                rates[name].append(drive(port, seconds, script))
-        bytes_out = len(_ask(ports["real"]))
-    ratios = {
-        name: statistics.median(own / base for own, base in zip(found, rates["bare"], strict=True))
-        for name, found in rates.items()
-    }
+            for name in order:
+                since = targets[name].processor_seconds()
+                done, rate = drive(targets[name].port, seconds, script)
+                rates[name].append(rate)
+                costs[name].append((targets[name].processor_seconds() - since) / done)
+            order = order[1:] + order[:1]
+        bytes_out = {name: len(_ask(targets[name].port)) for name in SERVERS}
+    ratios = {name: [own / base for own, base in zip(rates[name], rates["bare"], strict=True)] for name in SERVERS}
     result = {
         "machine": described("uvicorn", "fastapi", "starlette", "uvloop", "httptools", "pydantic", "orjson"),
         "load_average": {"before": before, "after": os.getloadavg()},
@@ -264,7 +305,17 @@ def main(rounds: int = 9, seconds: float = 1.0) -> None:
         "bytes_in": len(BODY),
         "bytes_out": bytes_out,
         "requests_per_second": {name: round(statistics.median(found)) for name, found in rates.items()},
-        "relative_to_bare": {name: round(ratio, 3) for name, ratio in ratios.items()},
+        "processor_microseconds_per_request": {
+            name: round(1e6 * statistics.median(found), 1) for name, found in costs.items()
+        },
+        "relative_to_bare": {name: round(statistics.median(found), 3) for name, found in ratios.items()},
+        "relative_to_bare_quartiles": {
+            name: [round(edge, 3) for edge in statistics.quantiles(found, n=4)[::2]] for name, found in ratios.items()
+        },
+        "processor_time_of_bare_relative": {
+            name: round(statistics.median(b / own for own, b in zip(found, costs["bare"], strict=True)), 3)
+            for name, found in costs.items()
+        },
     }
     (RESULTS / "service_speed.json").write_text(json.dumps(result, indent=2) + "\n")
     print(json.dumps(result, indent=2))

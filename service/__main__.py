@@ -61,6 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             host=settings.host,
             port=settings.port,
             workers=settings.workers,
+            http="service.protocol:Protocol",
             log_config=None,
             access_log=False,
             server_header=False,

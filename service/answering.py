@@ -44,9 +44,9 @@ class Answering:
 
     def answer(self, route: Question, question: Any) -> Answer:
         """Return the whole answer: signature, warnings, fields."""
-        fields = dict(route.handle(question, self._budget))
-        warnings = [_warning(notice) for notice in fields.pop("warnings", ())]
-        return {"signature": SIGNATURE, "warnings": warnings, **fields}
+        answer = {"signature": SIGNATURE, "warnings": (), **route.handle(question, self._budget)}
+        answer["warnings"] = [_warning(notice) for notice in answer["warnings"]]
+        return answer
 
     def warm(self) -> None:
         """Answer every example once, so that no client waits for a function to be compiled or loaded."""

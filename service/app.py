@@ -14,8 +14,10 @@ from fastapi import FastAPI
 
 from service.answering import Answering
 from service.compute import Compute
-from service.dispatch import Dispatcher, Receive, Scope, Send
+from service.dispatch import Dispatcher
 from service.documentation import documented, openapi
+from service.exchange import Scope, Send
+from service.guards import Receive
 from service.logs import LOG
 from service.metrics import Metrics
 from service.routes.catalogues import catalogues

@@ -7,49 +7,29 @@ cost several times what a small question costs.
 from __future__ import annotations
 
 import asyncio
-import hashlib
-import re
-import secrets
-from collections import OrderedDict
-from collections.abc import Awaitable, Callable, Iterable, MutableMapping, Sequence
-from itertools import count
-from time import perf_counter
+from collections.abc import Coroutine, Sequence
 from typing import Any
 
 from core.errors import MechanicsError
-from service import archive
+from service import VERSION, archive
 from service.answering import Answering
 from service.compute import Compute
 from service.cors import Cors
-from service.guards import ClientGone, negotiated, read_body, require_acceptable, require_json
-from service.keys import Key, Keys
+from service.exchange import VARY, Exchange, Scope, Send
+from service.guards import ClientGone, Receive, negotiated, read_body, require_acceptable, require_json
+from service.kept import KeptAnswers
+from service.keys import Keys
 from service.logs import LOG
 from service.metrics import Metrics
-from service.problems import MEDIA_TYPE, REGISTRY, Problem, Refusal, problem_of
+from service.problems import REGISTRY, Problem, Refusal, problem_of
+from service.records import Records
+from service.representation import Header, Representation, etag_of
 from service.routing import Page, Question, Route
 from service.settings import Settings
 from service.writing import ONE_PIECE, array_size, chunks, written
 
-Scope = MutableMapping[str, Any]
-Message = MutableMapping[str, Any]
-Receive = Callable[[], Awaitable[Message]]
-Send = Callable[[Message], Awaitable[None]]
-Header = tuple[bytes, bytes]
-
-_REQUEST_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
-_NOSNIFF: Header = (b"x-content-type-options", b"nosniff")
-_JSON: Header = (b"content-type", b"application/json")
-_PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
-_NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), (b"vary", b"accept"))
-_REVALIDATE: Header = (b"cache-control", b"no-cache")
-_PAGE_HEADERS: tuple[Header, ...] = (
-    (
-        b"content-security-policy",
-        b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
-        b"connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-    ),
-    (b"referrer-policy", b"no-referrer"),
-)
+_NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), VARY)
+_VERSION = VERSION.encode()
 
 
 class Dispatcher:
@@ -77,23 +57,21 @@ class Dispatcher:
         self._routes: dict[tuple[str, str], Route] = {(route.method, route.path): route for route in routes}
         self._answering, self._compute, self._metrics, self._settings = answering, compute, metrics, settings
         self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)
-        self.cors = Cors(settings.cors_origins)
-        self._kept: OrderedDict[tuple[str, bytes], tuple[bytes, bytes]] = OrderedDict()
-        self._ids = map("{}-{:x}".format, _forever(secrets.token_hex(6)), count(1))
-        self._log_from = {"none": 1000, "failures": 500, "all": 0}[settings.log_requests]
+        self._cors = Cors(settings.cors_origins) or None
+        self._kept = KeptAnswers(settings.cached_answers, settings.cached_bytes)
+        self._records = Records(metrics, settings.log_requests)
 
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve one HTTP request."""
+    def __call__(self, scope: Scope, receive: Receive, send: Send) -> Coroutine[Any, Any, None]:
+        """Serve one HTTP request, when awaited."""
         method = scope["method"]
         route = self._routes.get(("GET" if method == "HEAD" else method, scope["path"]))
         if route is None:
-            await self._unrouted(scope, receive, send)
-        else:
-            await self.serve(route, scope, receive, send)
+            return self._unrouted(scope, receive, send)
+        return self.serve(route, scope, receive, send)
 
     async def serve(self, route: Route, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one HTTP request that has been routed."""
-        exchange = Exchange(self, route.operation_id, scope, receive, send)
+        exchange = Exchange(self._records, self._cors, route.operation_id, scope, receive, send)
         try:
             if isinstance(route, Question):
                 await self._question(route, exchange)
@@ -128,38 +106,32 @@ class Dispatcher:
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":
             media = negotiated(accept, (*route.representations, archive.MEDIA_TYPE))
-        body = await read_body(exchange.receive, headers, settings.max_body_bytes)
+        body = exchange.body_at_once(settings.max_body_bytes)
+        if body is None:
+            body = await read_body(exchange.receive, headers, settings.max_body_bytes)
         if media == archive.MEDIA_TYPE:
             answer = await self._answer(route, body, exchange)
             self._metrics.samples.inc(array_size(answer))
-            etag = etag_of(route.path.encode(), media.encode(), body)
-            await exchange.stream(archive.archive(answer), etag, _NPZ)
+            await exchange.stream(archive.archive(answer), _etag_of_answer(route, body, media), _NPZ)
             return
         if media is not None:
             document = route.representations[media](await self._answer(route, body, exchange))
             await exchange.represented(document, media.encode())
             return
-        key = (route.path, body)
-        kept = self._kept.get(key)
-        if kept is not None:
-            self._kept.move_to_end(key)
+        whole = self._kept.get(route.path, body)
+        if whole is not None:
             self._metrics.cache_hits.inc()
-            await exchange.answer(*kept)
-            return
-        answer = await self._answer(route, body, exchange)
-        size = array_size(answer)
-        if size > ONE_PIECE:
-            self._metrics.samples.inc(size)
-            # The question and the version determine the answer to the bit, so their hash names it.
-            await exchange.stream(chunks(answer), etag_of(route.path.encode(), body))
-            return
-        text = written(answer)
-        etag = etag_of(text)
-        if settings.cached_answers and len(text) + len(body) <= 8192:
-            self._kept[key] = text, etag
-            if len(self._kept) > settings.cached_answers:
-                self._kept.popitem(last=False)
-        await exchange.answer(text, etag)
+        else:
+            answer = await self._answer(route, body, exchange)
+            size = array_size(answer)
+            if size > ONE_PIECE:
+                self._metrics.samples.inc(size)
+                await exchange.stream(chunks(answer), _etag_of_answer(route, body))
+                return
+            whole = Representation(written(answer))
+            self._kept.put(route.path, body, whole)
+        if not exchange.answer_at_once(whole):
+            await exchange.answer(whole)
 
     async def _answer(self, route: Question, body: bytes, exchange: Exchange) -> Any:
         longest = self._settings.deadline_seconds
@@ -185,9 +157,9 @@ class Dispatcher:
         await exchange.page(reply.body, reply.media_type, reply.status)
 
     async def _unrouted(self, scope: Scope, receive: Receive, send: Send) -> None:
-        exchange = Exchange(self, "none", scope, receive, send)
+        exchange = Exchange(self._records, self._cors, "none", scope, receive, send)
         methods = [method for method, path in self._routes if path == scope["path"]]
-        preflight = self.cors.preflight(scope["method"], exchange.headers) if self.cors and methods else None
+        preflight = self._cors.preflight(scope["method"], exchange.headers) if self._cors and methods else None
         if preflight is not None:
             await exchange.empty(preflight)
             return
@@ -199,176 +171,7 @@ class Dispatcher:
             problem = Problem(REGISTRY["not-found"], "there is nothing at this path")
         await exchange.problem(problem)
 
-    def next_id(self) -> bytes:
-        """Return a request id that no other request has."""
-        return next(self._ids).encode()
 
-    def finished(self, exchange: Exchange, status: int, seconds: float) -> None:
-        """Count and log a request."""
-        self._metrics.observe((exchange.operation, status), seconds)
-        if status >= self._log_from:
-            LOG.info(
-                "request",
-                extra={
-                    "request_id": exchange.id,
-                    "operation": exchange.operation,
-                    "method": exchange.scope["method"],
-                    "status": status,
-                    "milliseconds": round(1e3 * seconds, 3),
-                },
-            )
-
-    def counted(self, code: str) -> None:
-        """Count a problem."""
-        self._metrics.problem(code)
-
-
-class Exchange:
-    """One request and its response."""
-
-    __slots__ = (
-        "_also",
-        "_dispatcher",
-        "_identity",
-        "_receive",
-        "_send",
-        "_since",
-        "headers",
-        "key",
-        "operation",
-        "scope",
-        "started",
-    )
-
-    def __init__(self, dispatcher: Dispatcher, operation: str, scope: Scope, receive: Receive, send: Send) -> None:
-        self._since = perf_counter()
-        self._dispatcher, self.operation, self.scope = dispatcher, operation, scope
-        self._receive, self._send = receive, send
-        self.headers: dict[bytes, bytes] = dict(scope["headers"])
-        self.started = False
-        self.key: Key | None = None
-        self._also = dispatcher.cors.headers(self.headers) if dispatcher.cors else ()
-        given = self.headers.get(b"x-request-id")
-        self._identity = given if given and _REQUEST_ID.fullmatch(given) else dispatcher.next_id()
-
-    @property
-    def id(self) -> str:
-        """The request's id: the client's own where it is short and plain, otherwise a new one."""
-        return self._identity.decode()
-
-    @property
-    def receive(self) -> Receive:
-        """Where the body comes from."""
-        return self._receive
-
-    async def gone(self) -> None:
-        """Return when the client has closed the connection; the body must have been read."""
-        while (await self._receive())["type"] != "http.disconnect":
-            pass
-
-    async def answer(self, body: bytes, etag: bytes) -> None:
-        """Send an answer in one piece, or that the client has it already."""
-        if b"if-none-match" in self.headers and self._has(etag):
-            await self._respond(304, b"", [(b"etag", etag)])
-            return
-        # The same as `_respond`, in line: this is where most requests end.
-        since, self.started = self._since, True
-        send = self._send
-        headers = [
-            _JSON,
-            (b"content-length", b"%d" % len(body)),
-            (b"etag", etag),
-            _NOSNIFF,
-            (b"x-request-id", self._identity),
-            (b"server-timing", b"total;dur=%.3f" % (1e3 * (perf_counter() - since))),
-        ]
-        if self._also:
-            headers += self._also
-        await send({"type": "http.response.start", "status": 200, "headers": headers})
-        await send({"type": "http.response.body", "body": body})
-        self._dispatcher.finished(self, 200, perf_counter() - since)
-
-    async def page(self, body: bytes, media_type: bytes, status: int) -> None:
-        """Send a document in one piece, or that the client has it already."""
-        headers: list[Header] = [_REVALIDATE]
-        if media_type.startswith(b"text/html"):
-            headers += _PAGE_HEADERS
-        if status == 200:
-            etag = etag_of(body)
-            headers.append((b"etag", etag))
-            if self._has(etag):
-                await self._respond(304, b"", headers)
-                return
-        headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
-        await self._respond(status, b"" if self.scope["method"] == "HEAD" else body, headers)
-
-    async def represented(self, body: bytes, media_type: bytes) -> None:
-        """Send an answer that is not JSON, or that the client has it already."""
-        etag = etag_of(body)
-        headers: list[Header] = [(b"etag", etag), (b"vary", b"accept")]
-        if self._has(etag):
-            await self._respond(304, b"", headers)
-            return
-        headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
-        await self._respond(200, body, headers)
-
-    async def empty(self, headers: Sequence[Header]) -> None:
-        """Send nothing but headers."""
-        await self._respond(204, b"", list(headers))
-
-    async def problem(self, problem: Problem) -> None:
-        """Send a problem document."""
-        self._dispatcher.counted(problem.type.code)
-        body = problem.body()
-        headers = [_PROBLEM, (b"content-length", b"%d" % len(body))]
-        headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
-        await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)
-
-    async def stream(self, pieces: Iterable[bytes], etag: bytes, headers: Sequence[Header] = (_JSON,)) -> None:
-        """Send an answer piece by piece, letting other requests run in between."""
-        if self._has(etag):
-            await self._respond(304, b"", [(b"etag", etag)])
-            return
-        await self._start(200, [*headers, (b"etag", etag)])
-        for piece in pieces:
-            await self._send({"type": "http.response.body", "body": piece, "more_body": True})
-            await asyncio.sleep(0)
-        await self._send({"type": "http.response.body", "body": b"", "more_body": False})
-        self.close(200)
-
-    def close(self, status: int) -> None:
-        """Count the request as finished."""
-        self._dispatcher.finished(self, status, perf_counter() - self._since)
-
-    def _has(self, etag: bytes) -> bool:
-        known = self.headers.get(b"if-none-match")
-        return known is not None and (known == b"*" or etag in [tag.strip() for tag in known.split(b",")])
-
-    async def _respond(self, status: int, body: bytes, headers: list[Header]) -> None:
-        await self._start(status, headers)
-        await self._send({"type": "http.response.body", "body": body})
-        self.close(status)
-
-    async def _start(self, status: int, headers: list[Header]) -> None:
-        milliseconds = 1e3 * (perf_counter() - self._since)
-        headers += (
-            _NOSNIFF,
-            (b"x-request-id", self._identity),
-            (b"server-timing", b"total;dur=%.3f" % milliseconds),
-        )
-        headers += self._also
-        self.started = True
-        await self._send({"type": "http.response.start", "status": status, "headers": headers})
-
-
-def etag_of(*parts: bytes) -> bytes:
-    """Return a strong validator for content that is, or is determined by, these bytes."""
-    digest = hashlib.blake2b(parts[0], digest_size=12)
-    for part in parts[1:]:
-        digest.update(part)
-    return b'"' + digest.hexdigest().encode() + b'"'
-
-
-def _forever(value: str) -> Iterable[str]:
-    while True:
-        yield value
+def _etag_of_answer(route: Question, body: bytes, media: str = "application/json") -> bytes:
+    """Return the validator of an answer that is not written yet: question and version determine it to the bit."""
+    return etag_of(_VERSION, route.path.encode(), media.encode(), body)

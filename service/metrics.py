@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from itertools import accumulate
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
-from prometheus_client.core import HistogramMetricFamily
+from prometheus_client.core import CounterMetricFamily, HistogramMetricFamily
 from prometheus_client.multiprocess import MultiProcessCollector
 from prometheus_client.registry import Collector
 
@@ -29,26 +29,40 @@ class Timings(Collector):
 
     def __init__(self, name: str, documentation: str) -> None:
         self._name, self._documentation = name, documentation
-        self._counts: dict[tuple[str, int], list[int]] = {}
-        self._sums: dict[tuple[str, int], float] = {}
+        # The last entry of each row is the sum of seconds.
+        self._rows: dict[tuple[str, int], list[float]] = {}
 
     def observe(self, key: tuple[str, int], seconds: float) -> None:
         """Count a request."""
-        counts = self._counts.get(key)
-        if counts is None:
-            counts = self._counts[key] = [0] * (len(_SECONDS) + 1)
-            self._sums[key] = 0.0
-        counts[bisect_left(_SECONDS, seconds)] += 1
-        self._sums[key] += seconds
+        row = self._rows.get(key)
+        if row is None:
+            row = self._rows[key] = [0.0] * (len(_SECONDS) + 2)
+        row[bisect_left(_SECONDS, seconds)] += 1.0
+        row[-1] += seconds
 
     def collect(self) -> Iterator[HistogramMetricFamily]:
         """Yield what was counted, as the library asks for it."""
         family = HistogramMetricFamily(self._name, self._documentation, labels=("operation", "status"))
         ends = [*map(str, _SECONDS), "+Inf"]
-        for (operation, status), counts in list(self._counts.items()):
-            buckets = list(zip(ends, map(float, accumulate(counts)), strict=True))
-            family.add_metric((operation, str(status)), buckets, self._sums[operation, status])
+        for (operation, status), row in list(self._rows.items()):
+            buckets = list(zip(ends, accumulate(row[:-1]), strict=True))
+            family.add_metric((operation, str(status)), buckets, row[-1])
         yield family
+
+
+class Tally(Collector):
+    """A count kept by one process without a lock, likewise."""
+
+    def __init__(self, name: str, documentation: str) -> None:
+        self._name, self._documentation, self._count = name, documentation, 0
+
+    def inc(self) -> None:
+        """Count one more."""
+        self._count += 1
+
+    def collect(self) -> Iterator[CounterMetricFamily]:
+        """Yield the count, as the library asks for it."""
+        yield CounterMetricFamily(self._name, self._documentation, self._count)
 
 
 class Metrics:
@@ -61,19 +75,23 @@ class Metrics:
     def __init__(self) -> None:
         self.registry = registry = CollectorRegistry()
         self.observe: Callable[[tuple[str, int], float], None]
+        self.cache_hits: Counter | Tally
         name, documentation = (
             "polhode_request_seconds",
             "Time from the request's headers to the last byte of the answer.",
         )
+        hits = "polhode_cache_hits", "Answers given from the cache."
         if _SHARED:
             shared = Histogram(name, documentation, ("operation", "status"), buckets=_SECONDS, registry=registry)
             self._observers: dict[tuple[str, int], Histogram] = {}
             self._labels = shared.labels
             self.observe = self._observe_shared
+            self.cache_hits = Counter(*hits, registry=registry)
         else:
-            timings = Timings(name, documentation)
+            timings, tally = Timings(name, documentation), Tally(*hits)
             registry.register(timings)
-            self.observe = timings.observe
+            registry.register(tally)
+            self.observe, self.cache_hits = timings.observe, tally
         self._problems = Counter("polhode_problems", "Answers that are problems.", ("code",), registry=registry)
         self.samples = Counter("polhode_samples", "Numbers in arrays of large answers.", registry=registry)
         self.job_seconds = Histogram(
@@ -84,7 +102,6 @@ class Metrics:
             multiprocess_mode="livesum",
         )  # fmt: skip
         self.workers_lost = Counter("polhode_workers_lost", "Compute processes that died.", registry=registry)
-        self.cache_hits = Counter("polhode_cache_hits", "Answers given from the cache.", registry=registry)
 
     def _observe_shared(self, key: tuple[str, int], seconds: float) -> None:
         observer = self._observers.get(key)

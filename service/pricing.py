@@ -87,7 +87,10 @@ class Priced:
 
 
 def _sum(costs: Counts, counts: Counts) -> float:
-    return sum(costs.get(name, 0.0) * count for name, count in counts.items())
+    total = 0.0
+    for name, count in counts.items():
+        total += costs.get(name, 0.0) * count
+    return total
 
 
 def setting(method: Any) -> tuple[str, float]:

@@ -63,6 +63,9 @@ class Settings(BaseSettings):
     cached_answers: int = Field(
         default=1024, ge=0, description="Number of small answers that are kept for questions asked again; 0 keeps none."
     )
+    cached_bytes: int = Field(
+        default=8_000_000, ge=0, description="Memory that kept answers may take; those unused for longest go first."
+    )
 
     keys_file: Path | None = Field(
         default=None,

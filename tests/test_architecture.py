@@ -52,6 +52,9 @@ SERVICE_LAYERS = (
         "keys",
         "cors",
         "descriptions",
+        "representation",
+        "kept",
+        "records",
     },
     {"guards", "large_arrays"},
     {"faults"},
@@ -61,9 +64,10 @@ SERVICE_LAYERS = (
     {"routes", "answering", "documentation"},
     {"worker", "prepared"},
     {"compute"},
+    {"exchange"},
     {"dispatch"},
     {"app"},
-    {"server", "__main__"},
+    {"server", "protocol", "__main__"},
 )
 """The service's files from the ground upwards; each imports from its own storey or from below."""
 

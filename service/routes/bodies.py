@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from functools import cache
 from typing import Any, Literal
 
 from pydantic import Field
@@ -94,8 +96,20 @@ def counts(question: Any, budget: Budget) -> dict[str, float]:
 
 def _size(body: Any) -> int:
     """Return how many points or faces a body has; each part of a composite counts as a thousand."""
-    own = max(len(getattr(body, name, ())) for name in ("positions", "faces"))
-    return own + sum(1000 + _size(part.body) for part in getattr(body, "parts", ()))
+    size = 0
+    kind: Any = type(body)
+    for name in _extents(kind):
+        if name == "parts":
+            size += sum(1000 + _size(part.body) for part in body.parts)
+        else:
+            size += len(getattr(body, name))
+    return size
+
+
+@cache
+def _extents(kind: Any) -> tuple[str, ...]:
+    """Return the fields of a kind of body by which it can be large."""
+    return tuple(entry.name for entry in fields(kind) if entry.name in ("positions", "faces", "parts"))
 
 
 BODIES = (

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from service import dispatch
 from service.app import Service
 from service.dispatch import Dispatcher
 from service.settings import Settings
@@ -90,6 +91,22 @@ async def test_what_the_client_has_is_not_sent_again(client: httpx.AsyncClient, 
     assert (await client.post("/v1/toy", json=question, headers={"if-none-match": '"other"'})).status_code == 200
 
 
+@pytest.mark.parametrize("accept", ["application/json", "application/x-npz"])
+async def test_the_validator_of_a_stream_names_the_version(
+    client: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch, accept: str
+) -> None:
+    question = GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 30_000}}
+    before = (await client.post("/v1/toy", json=question, headers={"accept": accept})).headers["etag"]
+    monkeypatch.setattr(dispatch, "_VERSION", b"0.1.1")
+    known = {"accept": accept, "if-none-match": before}
+    after = await client.post("/v1/toy", json=question, headers=known)
+    assert after.status_code == 200
+    assert after.headers["etag"] != before
+    known["if-none-match"] = after.headers["etag"]
+    again = await client.post("/v1/toy", json=question, headers=known)
+    assert (again.status_code, again.headers.get("vary")) == (304, after.headers.get("vary"))
+
+
 async def test_large_answers_are_streamed_and_complete(service: Service) -> None:
     messages = []
     question = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 100_001}}).encode()
@@ -114,6 +131,25 @@ async def test_kept_answers_are_the_same(service: Service) -> None:
         # A question that was refused is refused again.
         for _ in range(2):
             assert (await client.post("/v1/toy", json={})).status_code == 422
+
+
+async def test_what_is_kept_is_given_to_those_who_accept_it() -> None:
+    keeping = Service(Settings(**INLINE, cached_answers=2), TOYS)
+    found = []
+    async with client_of(keeping) as client:
+        for accept in (
+            "*/*",
+            "application/x-npz",
+            "application/json",
+            "application/x-npz;q=0.5, */*;q=0.1",
+            "text/csv",
+        ):
+            response = await client.post("/v1/toy", json=GOOD, headers={"accept": accept})
+            found.append((response.status_code, response.headers["content-type"], response.headers.get("etag")))
+        assert "polhode_cache_hits_total 1.0" in (await client.get("/metrics")).text
+    assert [kind for _, kind, _ in found[:4]] == ["application/json", "application/x-npz"] * 2
+    assert (found[0], found[1], found[4][0]) == (found[2], found[3], 406)
+    assert found[0][2] != found[1][2]
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
 import json
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,3 +109,27 @@ def test_an_array_that_is_json_already_is_written_as_it_is() -> None:
     pieces = list(chunks(answer))
     assert b"".join(pieces) == written(STRINGS)
     assert max(map(len, pieces)) < 25 * CHUNK
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        {"a": None, "b": {"c": math.nan}},
+        {"a": None, "b": math.inf},
+        {"null": 1.0, "a": [math.nan]},
+        {"a": [None, math.nan]},
+    ],
+)
+def test_nulls_of_its_own_hide_no_other(hidden: dict[str, object]) -> None:
+    with pytest.raises(NotFinite):
+        written(hidden)
+
+
+def test_nulls_of_its_own_are_written() -> None:
+    for own in (
+        {"a": None, "b": "null", "c": None},
+        {"a": {"b": None}},
+        {"null": None},
+        {"a": None, "b": np.arange(3.0)},
+    ):
+        assert json.loads(written(own)) == {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in own.items()}

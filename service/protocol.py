@@ -1,0 +1,92 @@
+"""The server's HTTP protocol, with short cuts for small requests and small answers.
+
+uvicorn hands over a body through three coroutines, checks and joins the headers of a response one by one, and writes
+headers and body apart; for a small answer this costs as much as finding it. Here a body that has arrived is taken, and
+a response whose headers are of known form is written, by one call each. Everything else is uvicorn's own: parsing,
+keeping alive, pipelining, back-pressure, disconnection, continuation, shutdown. Where any of them has a say, the short
+cut declines, having done nothing, and the application goes the ordinary way of ASGI. See docs/decisions/0009.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from uvicorn._types import ASGI3Application
+from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol, RequestResponseCycle
+
+from service.exchange import DIRECT
+
+LONGEST = 65_536
+"""Bytes up to which copying a body behind its headers costs less than writing it by itself."""
+
+_OK = STATUS_LINE[200]
+
+
+class Protocol(HttpToolsProtocol):
+    """One connection."""
+
+    def _start_asgi_task(self, cycle: RequestResponseCycle, app: ASGI3Application) -> None:
+        extensions: dict[str, Any] = {DIRECT: ShortCuts(cycle)}
+        cycle.scope["extensions"] = extensions
+        super()._start_asgi_task(cycle, app)
+
+
+class ShortCuts:
+    """The short cuts of one request, as `service.exchange.Direct` describes them.
+
+    Parameters
+    ----------
+    cycle : RequestResponseCycle
+        The request and its response, as uvicorn keeps them.
+    """
+
+    __slots__ = ("_cycle",)
+
+    def __init__(self, cycle: RequestResponseCycle) -> None:
+        self._cycle = cycle
+
+    def read(self, limit: int) -> bytes | None:
+        """Return the body and leave everything as its last message would have left it."""
+        cycle = self._cycle
+        if (
+            cycle.more_body
+            or cycle.waiting_for_100_continue
+            or cycle.disconnected
+            or cycle.response_complete
+            or len(cycle.body) > limit
+        ):
+            return None
+        body = bytes(cycle.body)
+        cycle.body = bytearray()
+        cycle.flow.resume_reading()
+        cycle.message_event.clear()
+        return body
+
+    def write(self, headers: bytes, body: bytes) -> bool:
+        """Send the response and leave everything as its last message would have left it."""
+        cycle = self._cycle
+        if (
+            cycle.response_started
+            or cycle.disconnected
+            # The connection is to be closed after this response, which has to be said in it.
+            or not cycle.keep_alive
+            or cycle.waiting_for_100_continue
+            or cycle.more_body
+            # The client reads more slowly than it asks.
+            or cycle.flow.write_paused
+            or cycle.access_log
+            or cycle.scope["method"] == "HEAD"
+            or len(body) > LONGEST
+        ):
+            return False
+        parts = [_OK]
+        for name, value in cycle.default_headers:
+            parts += (name, b": ", value, b"\r\n")
+        parts += (headers, b"\r\n", body)
+        # The one reference that would keep the cycle until the collector of garbage finds it.
+        del cycle.scope["extensions"]
+        cycle.response_started = cycle.response_complete = True
+        cycle.transport.write(b"".join(parts))
+        cycle.message_event.set()
+        cycle.on_response()
+        return True
