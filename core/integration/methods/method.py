@@ -14,7 +14,7 @@ from core.integration.system import Floats, System
 from core.integration.trajectory import Work
 
 Family = Literal["closed form", "explicit", "implicit", "structure-preserving"]
-Invariance = Literal["quadratic invariants", "invariants of every part", "time symmetry"]
+Invariance = Literal["every first integral", "quadratic invariants", "invariants of every part", "time symmetry"]
 
 COUNTABLE = 10**18
 """Counts above this are reported as this: what matters is that they are out of reach."""
