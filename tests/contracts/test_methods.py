@@ -164,9 +164,9 @@ def test_more_work_than_the_budget_is_refused_with_what_would_mend_it(kind: str)
 
 
 @every_integrator
-@pytest.mark.parametrize("exponent", [-330, -100, 100, 330])
+@pytest.mark.parametrize("exponent", [-1000, -330, -100, 100, 330, 1000])
 def test_units_do_not_matter(kind: str, exponent: int) -> None:
-    # Rates of 1e-100 to 1e100: with time in the inverse unit, powers of two leave every digit as it is.
+    # Rates of 1e-301 to 1e301: with time in the inverse unit, powers of two leave every digit as it is.
     unit = 2.0**exponent
     times = np.linspace(0, 5, 11)
     inertia, rates = (1.0, 2.0, 3.0), np.array([1.0, 0.1, 1.0])
