@@ -23,6 +23,7 @@ from core.integration.budget import Budget
 from core.integration.error_statements import drifts, estimated, measured
 from core.integration.methods import (
     ClosedFormEvaluation,
+    DiscreteMoserVeselov,
     DormandPrince853,
     ExplicitEuler,
     ImplicitMidpoint,
@@ -197,6 +198,8 @@ def default_methods(system: System, times: Floats) -> tuple[Method, ...]:
         found += [ExplicitEuler(step), RungeKutta4(step), ImplicitMidpoint(step)]
         if system.structure.splitting is not None:
             found.append(SymmetricSplitting(step))
+        if system.structure.discrete is not None:
+            found.append(DiscreteMoserVeselov(step))
     found += [DormandPrince853(tolerance) for tolerance in TOLERANCES]
     for tolerance in SCIPY_TOLERANCES:
         found += [Lsoda(tolerance), Radau(tolerance)]

@@ -19,6 +19,12 @@ VECTOR_FIELD = types.void(types.float64, types.float64[::1], types.float64[::1],
 PART_FLOW = types.void(types.int64, types.float64, types.float64[::1], types.float64[::1])
 """Signature of the exact flows of the parts of an equation: (part, duration, state to be moved, parameters)."""
 
+DISCRETE_STEP = types.boolean(types.float64, types.float64[::1], types.float64[::1], types.float64[::1])
+"""Signature of a step of discrete mechanics: (duration, state, parameters, increment of the state to be filled in).
+
+It tells whether the discrete equation was solved; its solution is the one that tends to rest as the duration does.
+"""
+
 
 @dataclass(frozen=True, eq=False)
 class Splitting:
@@ -42,11 +48,22 @@ class Splitting:
 class Structure:
     """What a system offers to structure-preserving methods beyond its equation of motion.
 
-    One field per capability, each None where the system lacks it, so that a further one (the discrete mechanics of a
-    variational integrator, say) is a further field and no change for the systems without it.
+    One field per capability, each None where the system lacks it, so that a further one is a further field and no
+    change for the systems without it.
+
+    Attributes
+    ----------
+    splitting : Splitting or None
+    discrete : compiled function of signature `DISCRETE_STEP`, or None
+        The step of a discretised principle of least action.
+    degree : int or None
+        The equation does not depend on time and is homogeneous of this degree in the state: a state s times as large
+        moves on the same curve, s times as large, s^(degree - 1) times as fast.
     """
 
     splitting: Splitting | None = None
+    discrete: Any = None
+    degree: int | None = None
 
 
 @dataclass(frozen=True)

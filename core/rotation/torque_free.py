@@ -16,6 +16,7 @@ from core.compiled import kernel
 from core.integration.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 from core.notices import Notice
 from core.rotation.closed_form import FreeRotation
+from core.rotation.discrete_mechanics import moser_veselov
 
 PARTS = 3
 
@@ -216,8 +217,8 @@ class TorqueFree:
 
     @property
     def structure(self) -> Structure:
-        """The energy as a sum of three, one for each principal axis."""
-        return Structure(Splitting(PARTS, _turn_momentum))
+        """The energy as a sum of three, one for each principal axis; discrete mechanics; a quadratic equation."""
+        return Structure(Splitting(PARTS, _turn_momentum), moser_veselov, degree=2)
 
     @property
     def model(self) -> Model:

@@ -35,7 +35,7 @@ def test_every_method_has_a_curve_with_its_declared_order(whole) -> None:
     curves = {curve.kind: curve for curve in whole.curves}
     assert set(curves) == {
         *("closed-form", "explicit-euler", "runge-kutta-4", "implicit-midpoint", "symmetric-splitting"),
-        *("dormand-prince-853", "lsoda", "radau"),
+        *("discrete-moser-veselov", "dormand-prince-853", "lsoda", "radau"),
     }
     for kind in ("explicit-euler", "runge-kutta-4", "implicit-midpoint", "symmetric-splitting"):
         assert curves[kind].fitted_order == pytest.approx(curves[kind].declared_order, abs=0.25)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from core.integration.methods.closed_form import ClosedFormEvaluation
+from core.integration.methods.discrete_moser_veselov import DiscreteMoserVeselov
 from core.integration.methods.dormand_prince_853 import DormandPrince853
 from core.integration.methods.explicit_euler import ExplicitEuler
 from core.integration.methods.implicit_midpoint import ImplicitMidpoint
@@ -16,6 +17,7 @@ from core.quantities import TaggedBy
 
 __all__ = [
     "ClosedFormEvaluation",
+    "DiscreteMoserVeselov",
     "DormandPrince853",
     "ExplicitEuler",
     "ImplicitMidpoint",
@@ -32,6 +34,7 @@ Method = Annotated[
     | RungeKutta4
     | ImplicitMidpoint
     | SymmetricSplitting
+    | DiscreteMoserVeselov
     | DormandPrince853
     | Lsoda
     | Radau,

@@ -32,7 +32,7 @@ from core.integration.methods.dormand_prince_tableau import ERROR_3 as E3
 from core.integration.methods.dormand_prince_tableau import ERROR_5 as E5
 from core.integration.methods.dormand_prince_tableau import INTERPOLANT, STAGES, A, B, C
 from core.integration.methods.fixed_step import FIELD
-from core.integration.methods.method import Family, Leg, Marching
+from core.integration.methods.method import Family, Leg, Marching, Units
 from core.integration.system import Floats, Integers, System
 from core.quantities import Quantity, check
 
@@ -267,7 +267,7 @@ class DormandPrince853(Marching):
         """Return the same method with sixteen times the tolerance, None where that says nothing any more."""
         return replace(self, tolerance=self.tolerance * 16) if self.tolerance < 1 / 16 else None
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int) -> Leg:
+    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         samples = np.empty((targets.size, start.size))
         tally, reached = np.zeros(3, np.int64), np.zeros(1)
         outcome = _march(
@@ -276,7 +276,8 @@ class DormandPrince853(Marching):
         if outcome == OUT_OF_BUDGET:
             raise self._out_of_budget(int(tally[0]), limit, float(reached[0]) / float(targets[-1]))
         if outcome == STEP_VANISHED:
-            rule = f"be within reach: at t = {reached[0]:.6g} s no step is short enough to meet it"
+            time = units.given_time(float(reached[0]))
+            rule = f"be within reach: at t = {time:.6g} s no step is short enough to meet it"
             raise InvalidParameter(
                 "tolerance", rule, remedy="ask for earlier times: the solution may cease to exist there"
             )

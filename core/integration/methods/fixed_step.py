@@ -18,7 +18,7 @@ from numba import types
 from core.compiled import kernel
 from core.double_double import dd_add, two_prod
 from core.errors import InvalidParameter
-from core.integration.methods.method import Leg, Marching
+from core.integration.methods.method import Leg, Marching, Units
 from core.integration.system import VECTOR_FIELD, Floats, Integers, System
 from core.quantities import Duration
 
@@ -104,14 +104,16 @@ class FixedStep(Marching):
     def _vector_field(self, system: System) -> Any:
         return system.equation
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int) -> Leg:
-        return self._march_divided(system, start, targets, limit, 1)
+    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+        return self._march_divided(system, start, targets, limit, units, 1)
 
-    def _march_divided(self, system: System, start: Floats, targets: Floats, limit: int, parts: int) -> Leg:
+    def _march_divided(
+        self, system: System, start: Floats, targets: Floats, limit: int, units: Units, parts: int
+    ) -> Leg:
         """March as `_march` does, with every planned step divided into `parts`."""
         begin, length = np.empty_like(targets), np.empty_like(targets)
         count = np.empty(targets.size, np.int64)
-        steps = parts * plan(targets, self.step, begin, length, count)
+        steps = parts * plan(targets, units.duration(self.step), begin, length, count)
         each = self._evaluations_per_step(system)
         if steps * each > limit:
             raise self._over_budget(steps * each, limit)
@@ -125,7 +127,8 @@ class FixedStep(Marching):
             self._vector_field(system), begin, length, count, start.copy(), system.parameters, samples, tally
         )
         if tally[1]:
-            raise self._failure(int(tally[1]), float(targets[reached]), int(count[:reached].sum()) / steps, limit)
+            time = units.given_time(float(targets[reached]))
+            raise self._failure(int(tally[1]), time, int(count[:reached].sum()) / steps, limit)
         return Leg(samples, limit - int(tally[0]), int(steps), 0)
 
     def _failure(self, why: int, time: float, fraction: float, limit: int) -> Exception:
@@ -149,5 +152,5 @@ class Halved(Marching):
         """Return None: it is there to compare with, not to go on from."""
         return None
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int) -> Leg:
-        return self.method._march_divided(system, start, targets, limit, 2)
+    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+        return self.method._march_divided(system, start, targets, limit, units, 2)

@@ -16,7 +16,7 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 
 from core.errors import InvalidParameter
-from core.integration.methods.method import Leg, Marching
+from core.integration.methods.method import Leg, Marching, Units
 from core.integration.system import Floats, System
 from core.quantities import Quantity
 
@@ -72,7 +72,7 @@ class FromSciPy(Marching):
     def _solver(self) -> Any:
         """Import and return SciPy's class, a subclass of `scipy.integrate.OdeSolver`."""
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int) -> Leg:
+    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         horizon = _power_of_two(abs(float(targets[-1])))
         size = _power_of_two(float(np.abs(start).max()))
         equation = _Scaled(system, size, horizon, limit)
@@ -92,9 +92,9 @@ class FromSciPy(Marching):
                         solver.step()
                     except (ValueError, ArithmeticError, np.linalg.LinAlgError):
                         # SciPy's linear algebra refuses what has overflowed.
-                        raise self._failed(now) from None
+                        raise self._failed(units.given_time(now)) from None
                     if solver.status == "failed":
-                        raise self._failed(now)
+                        raise self._failed(units.given_time(now))
                     steps += 1
                     now = float(solver.t) * horizon
                     if solver.status == "finished":
@@ -106,7 +106,9 @@ class FromSciPy(Marching):
                         if end == targets.size:
                             samples[-1] = solver.y * size
                         if not np.isfinite(samples[sample:end]).all():
-                            raise self._overflow(now, "ask for earlier times, or use dormand-prince-853")
+                            raise self._overflow(
+                                units.given_time(now), "ask for earlier times, or use dormand-prince-853"
+                            )
                         sample = end
         except _LimitMet:
             raise self._out_of_budget(equation.evaluations, limit, now / float(targets[-1])) from None

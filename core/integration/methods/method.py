@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, Literal, NamedTuple
@@ -14,7 +15,12 @@ from core.integration.system import Floats, System
 from core.integration.trajectory import Work
 
 Family = Literal["closed form", "explicit", "implicit", "structure-preserving"]
-Invariance = Literal["quadratic invariants", "invariants of every part", "time symmetry"]
+Invariance = Literal["every first integral", "quadratic invariants", "invariants of every part", "time symmetry"]
+
+EXTREME = 300
+"""Exponents of two beyond which states are brought near one: cubes of what lies within stay doubles."""
+
+LONGEST, SHORTEST = float(np.finfo(np.float64).max), float(np.finfo(np.float64).smallest_subnormal)
 
 COUNTABLE = 10**18
 """Counts above this are reported as this: what matters is that they are out of reach."""
@@ -102,6 +108,51 @@ class Leg(NamedTuple):
     rejected: int
 
 
+class Units(NamedTuple):
+    """Powers of two by which states and times are divided, so that products of extreme states stay doubles.
+
+    Attributes
+    ----------
+    state, time : int
+        Exponents; zero unless the start is extreme and the system says how its motion scales.
+    """
+
+    state: int = 0
+    time: int = 0
+
+    @classmethod
+    def of(cls, system: System, start: Floats) -> Units:
+        """Return the units for a start: those in which its largest component is about one, where it is extreme."""
+        exponent = math.frexp(float(np.abs(start).max()))[1]
+        degree = system.structure.degree
+        if degree is None or abs(exponent) <= EXTREME:
+            return cls()
+        return cls(exponent, -exponent * (degree - 1))
+
+    def states(self, given: Floats) -> Floats:
+        """Return states in these units."""
+        return np.ldexp(given, -self.state) if self.state else given
+
+    def given_states(self, states: Floats) -> Floats:
+        """Return states in the units of the question."""
+        return np.ldexp(states, self.state) if self.state else states
+
+    def times(self, given: Floats) -> Floats:
+        """Return times in these units; beyond the range of doubles they are infinite or zero."""
+        if not self.time:
+            return given
+        with np.errstate(over="ignore", under="ignore"):
+            return np.ldexp(given, -self.time)
+
+    def duration(self, given: float) -> float:
+        """Return a positive duration in these units, a double that is neither zero nor infinite."""
+        return max(min(float(self.times(np.array([given]))[0]), LONGEST), SHORTEST) if self.time else given
+
+    def given_time(self, time: float) -> float:
+        """Return a time in the units of the question."""
+        return math.ldexp(time, self.time)
+
+
 class Marching(AbstractMethod):
     """Base of the methods that march from the initial state, out to either side of it.
 
@@ -115,9 +166,14 @@ class Marching(AbstractMethod):
         """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""
         budget = budget or Budget()
         start = np.ascontiguousarray(system.initial_state, dtype=np.float64)
-        self._require_finite_start(system, start)
+        units = Units.of(system, start)
+        begin, times = units.states(start), units.times(times)
+        self._require_finite_start(system, begin)
+        if not np.isfinite(times).all():
+            # So many turns that not even their number is a double.
+            raise self._over_budget(math.inf, budget.evaluations)
         states = np.empty((times.size, start.size))
-        states[times == 0.0] = start
+        states[times == 0.0] = begin
         evaluations = steps = rejected = 0
         for side in (np.flatnonzero(times > 0.0), np.flatnonzero(times < 0.0)):
             if not side.size:
@@ -126,16 +182,16 @@ class Marching(AbstractMethod):
             run = side[-1] - side[0] + 1 == side.size
             place = slice(side[0], side[-1] + 1) if run else side
             targets, rows = _outwards(times[place])
-            leg = self._march(system, start, targets, budget.evaluations - evaluations)
+            leg = self._march(system, begin, targets, budget.evaluations - evaluations, units)
             states[place] = leg.states if rows is None else leg.states[rows]
             evaluations += leg.evaluations
             steps += leg.steps
             rejected += leg.rejected
-        return Integration(states, Work(times.size, evaluations, steps, rejected))
+        return Integration(units.given_states(states), Work(times.size, evaluations, steps, rejected))
 
     @abstractmethod
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int) -> Leg:
-        """Return the states at `targets`, which have one sign, differ, and grow in magnitude."""
+    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+        """Return the states at `targets`, which have one sign, differ, and grow in magnitude; all are in `units`."""
 
     def _require_finite_start(self, system: System, start: Floats) -> None:
         slope = np.empty_like(start)

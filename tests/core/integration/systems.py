@@ -10,7 +10,17 @@ import numpy as np
 from scipy.special import ellipj
 
 from core.compiled import kernel
-from core.integration.system import PART_FLOW, VECTOR_FIELD, ClosedForm, Floats, Model, Range, Splitting, Structure
+from core.integration.system import (
+    DISCRETE_STEP,
+    PART_FLOW,
+    VECTOR_FIELD,
+    ClosedForm,
+    Floats,
+    Model,
+    Range,
+    Splitting,
+    Structure,
+)
 
 MODEL = Model("test system", "regular", "the test asks for it", 1)
 
@@ -74,6 +84,16 @@ def _oscillator_parts(part, duration, state, parameters):
         state[1] -= duration * parameters[0] * parameters[0] * state[0]
 
 
+@kernel(DISCRETE_STEP)
+def _oscillator_step(duration, state, parameters, increment):
+    """Stormer's and Verlet's: the discrete Lagrangian of the trapezoidal rule."""
+    force = parameters[0] * parameters[0]
+    middle = state[1] - duration / 2 * force * state[0]
+    increment[0] = duration * middle
+    increment[1] = -duration / 2 * force * (2 * state[0] + increment[0])
+    return True
+
+
 def oscillator(rate: float = 1.0, position: float = 1.0, velocity: float = 0.0, exact: bool = True) -> Given:
     """x'' = -rate^2 x."""
 
@@ -87,7 +107,7 @@ def oscillator(rate: float = 1.0, position: float = 1.0, velocity: float = 0.0, 
         np.array([rate]),
         Exact(solution, period=2 * np.pi / rate) if exact else None,
         lambda y: {"energy": y[:, 1] ** 2 / 2 + rate**2 * y[:, 0] ** 2 / 2},
-        Structure(splitting=Splitting(2, _oscillator_parts)),
+        Structure(splitting=Splitting(2, _oscillator_parts), discrete=_oscillator_step),
     )
 
 
@@ -109,6 +129,24 @@ def _axis_rotations(part, duration, w, inertia):
     w[k] = (c * momentum_k - s * momentum_j) / inertia[k]
 
 
+@kernel(DISCRETE_STEP)
+def _moser_veselov(duration, w, inertia, increment):
+    """By simple iteration of I e = (h M/2 - e x I e)/r, where the house uses Newton's method."""
+    e, turned = 0.5 * duration * w, np.empty(3)
+    half = inertia * e
+    for _ in range(200):
+        momentum = inertia * e
+        turned[0] = e[1] * momentum[2] - e[2] * momentum[1]
+        turned[1] = e[2] * momentum[0] - e[0] * momentum[2]
+        turned[2] = e[0] * momentum[1] - e[1] * momentum[0]
+        square = 1.0 - (e * e).sum()
+        if not square > 0.0:
+            return False
+        e = (half - turned) / inertia / np.sqrt(square)
+    increment[:] = -4.0 / duration * turned / inertia
+    return True
+
+
 def rigid_body(moments: tuple[float, float, float], rates: tuple[float, float, float]) -> Given:
     """Euler's equations, without a closed form."""
     inertia = np.array(moments, dtype=float)
@@ -118,7 +156,7 @@ def rigid_body(moments: tuple[float, float, float], rates: tuple[float, float, f
         inertia,
         None,
         lambda w: {"energy": (w**2 @ inertia) / 2, "momentum": np.sqrt((w * inertia) ** 2 @ np.ones(3))},
-        Structure(splitting=Splitting(3, _axis_rotations)),
+        Structure(splitting=Splitting(3, _axis_rotations), discrete=_moser_veselov, degree=2),
     )
 
 
@@ -150,6 +188,19 @@ def _elliptic_parts(part, duration, y, parameters):
         y[2] -= parameters[0] * y[0] * y[1] * duration
 
 
+_MOMENTS = np.array([2 / 3, 1.0, 0.4])
+_MOMENTA = np.sqrt(np.array([0.51 / (1.0 * 0.5), 0.51 / (1.5 * 0.5), 1 / (1.5 * 1.0)]))
+"""The same problem as a rigid body: with these moments, angular momenta are these times y."""
+
+
+@kernel(DISCRETE_STEP)
+def _elliptic_step(duration, y, parameters, increment):
+    scale = _MOMENTA / _MOMENTS
+    solved = _moser_veselov(duration, scale * y, _MOMENTS.copy(), increment)
+    increment[:] = increment / scale
+    return solved
+
+
 def elliptic_functions(exact: bool = True) -> Given:
     """Problem B5 of DETEST: (sn, cn, dn) of parameter 0.51 is its solution.
 
@@ -166,7 +217,7 @@ def elliptic_functions(exact: bool = True) -> Given:
         np.array([0.51]),
         Exact(solution, bound=4e-15) if exact else None,
         lambda y: {"circle": y[:, 0] ** 2 + y[:, 1] ** 2, "ellipse": 0.51 * y[:, 0] ** 2 + y[:, 2] ** 2},
-        Structure(splitting=Splitting(2, _elliptic_parts)),
+        Structure(splitting=Splitting(2, _elliptic_parts), discrete=_elliptic_step, degree=2),
     )
 
 
@@ -221,11 +272,18 @@ def _counting_parts(part, duration, y, parameters):
         y[1] -= duration * y[0]
 
 
+@kernel(DISCRETE_STEP)
+def _counting_step(duration, y, parameters, increment):
+    parameters[0] += 1
+    increment[0] = duration * y[1]
+    increment[1] = -duration * y[0]
+    return True
+
+
 def counting() -> Given:
     """An oscillator that counts its own evaluations in ``parameters[0]``."""
-    return Given(
-        _counting, np.array([1.0, 0.0]), np.zeros(1), structure=Structure(splitting=Splitting(2, _counting_parts))
-    )
+    structure = Structure(splitting=Splitting(2, _counting_parts), discrete=_counting_step)
+    return Given(_counting, np.array([1.0, 0.0]), np.zeros(1), structure=structure)
 
 
 @kernel(VECTOR_FIELD)
