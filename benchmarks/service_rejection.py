@@ -1,8 +1,8 @@
 """How soon the worst bodies of 1.5 MB are refused, and in how many bytes, by every kind of endpoint.
 
 Run: python -m benchmarks.service_rejection [repeats]. Reading happens in this process, as it does in a compute process:
-the time is that from the bytes of the request to those of the problem. Over HTTP the slowest of each endpoint are asked
-again, of a server with its own processes.
+the time is the processor's, from the bytes of the request to those of the problem. Over HTTP the slowest of each
+endpoint are asked again, of a server with its own processes, and that is time on the wall.
 """
 
 from __future__ import annotations
@@ -122,8 +122,8 @@ def kinds() -> Iterator[tuple[Question, str, dict[str, Any]]]:
 
 
 def refused(route: Question, body: bytes) -> tuple[float, bytes]:
-    """Return the time of a refusal (s) and its document, empty if the question is answered."""
-    since = time.perf_counter()
+    """Return the processor's time for a refusal (s) and its document, empty if the question is answered."""
+    since = time.process_time()
     document = b""
     try:
         ANSWERING.price(route, ANSWERING.read(route, body))
@@ -131,7 +131,7 @@ def refused(route: Question, body: bytes) -> tuple[float, bytes]:
         document = refusal.problem.body()
     except MechanicsError as error:
         document = problem_of(error).body()
-    return time.perf_counter() - since, document
+    return time.process_time() - since, document
 
 
 @contextlib.contextmanager

@@ -205,8 +205,8 @@ REFUSED: list[tuple[str, dict[str, Any], str, str]] = [
     (TRAJECTORY, {"body": BODY | {"moments": ["1", "-2", "3"]}}, "invalid-parameter", "/body/moments/1"),
     (TRAJECTORY, {"body": BODY | {"moments": [1, 2]}}, "invalid-parameter", "/body/moments"),
     (TRAJECTORY, {"body": BODY | {"mass": "1"}}, "invalid-parameter", "/body/mass"),
-    (TRAJECTORY, {"body": {"kind": "composite", "parts": []}}, "invalid-parameter", "/body"),
-    (TRAJECTORY, {"body": {"kind": "mesh"}}, "invalid-parameter", "/body"),
+    (TRAJECTORY, {"body": {"kind": "composite", "parts": []}}, "invalid-parameter", "/body/kind"),
+    (TRAJECTORY, {"body": {"kind": "mesh"}}, "invalid-parameter", "/body/kind"),
     (TRAJECTORY, {"body": {"kind": "ball", "radius": "1", "density": "1"}}, "not-applicable", "/body/density"),
     (TRAJECTORY, {"body": {"kind": "cuboid", "edges": [1, 2, "3"], "mass": -1}}, "invalid-parameter", "/body/mass"),
     (TRAJECTORY, {"body": {"kind": "cuboid", "edges": [1, 2, "3"]}}, "invalid-parameter", "/body/mass"),
@@ -268,7 +268,9 @@ async def test_a_document_that_is_no_object_is_refused_as_one(body: bytes) -> No
     async with client_of(SERVICE) as client:
         response = await client.post(TRAJECTORY, content=body, headers={"content-type": "application/json"})
     assert response.status_code == 422
-    assert response.json()["errors"] == [{"pointer": "", "detail": "must be an object"}]
+    [fault] = response.json()["errors"]
+    assert (fault["pointer"], fault["detail"]) == ("", "must be an object")
+    assert fault["remedy"].startswith("its keys: body, angular_velocity, ")
 
 
 async def test_the_key_may_be_written_with_escapes() -> None:
