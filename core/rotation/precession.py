@@ -113,7 +113,7 @@ FIGURES = (
     "precession_per_period",
     "mean_precession_rate",
 )
-_OF_SYMMETRIC_BODIES = (
+OF_SYMMETRIC_BODIES = (
     "body_rate",
     "space_rate",
     "axis_to_angular_momentum",
@@ -121,6 +121,16 @@ _OF_SYMMETRIC_BODIES = (
     "angular_momentum_to_angular_velocity",
     "order_of_directions",
 )
+NOTHING_TURNS = "nothing turns"
+SPHERE = "the three moments are equal, so that every axis is one of symmetry"
+TRIAXIAL = "the three moments differ, so that no axis is one of symmetry"
+STEADY_ANYHOW = "the angular velocity is constant"
+STEADY_BY_AXIS = "the spin lies along a principal axis and is constant"
+STEADY_IN_BODY = "the angular velocity is constant in the body"
+ON_THE_SEPARATRIX = "on the separatrix the body tends to the middle axis and never returns"
+NO_MIDDLE_AXIS = "two moments are equal, so that there is no middle axis"
+SAME_DIRECTION = "two of the directions coincide"
+"""Why a figure does not exist."""
 _OF_A_CHANGE = ("period", "flip_interval", "precession_per_period", "mean_precession_rate")
 
 
@@ -153,8 +163,7 @@ def _of(rotation: FreeRotation) -> Precession:
     inertia = rotation.inertia
     symmetry = inertia.symmetry
     if not np.any(rotation.angular_velocity):
-        reason = "nothing turns"
-        absent = dict.fromkeys(("axis", *_OF_SYMMETRIC_BODIES, *_OF_A_CHANGE), reason)
+        absent = dict.fromkeys(("axis", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE), NOTHING_TURNS)
         return Precession(symmetry, "rest", absent=MappingProxyType(absent))
     if symmetry == "spherical":
         return _sphere(rotation)
@@ -205,22 +214,22 @@ def _sphere(rotation: FreeRotation) -> Precession:
     i, tails = rotation.inertia.moments, rotation.inertia.moments_tail
     if not (i[0] == i[2] and tails[0] == tails[2]):
         figures.notices.append(_equal_within_rounding("the three moments"))
-    figures.lack("the three moments are equal, so that every axis is one of symmetry", "axis", *_OF_SYMMETRIC_BODIES)
-    figures.lack("the angular velocity is constant", *_OF_A_CHANGE)
+    figures.lack(SPHERE, "axis", *OF_SYMMETRIC_BODIES)
+    figures.lack(STEADY_ANYHOW, *_OF_A_CHANGE)
     return figures.answer("spherical", "steady", None)
 
 
 def _triaxial(rotation: FreeRotation) -> Precession:
     figures = _Figures()
-    figures.lack("the three moments differ, so that no axis is one of symmetry", *_OF_SYMMETRIC_BODIES)
+    figures.lack(TRIAXIAL, *OF_SYMMETRIC_BODIES)
     regime = _REGIMES[rotation.motion.regime]
     if regime == "steady":
-        figures.lack("the spin lies along a principal axis and is constant", *_OF_A_CHANGE)
+        figures.lack(STEADY_BY_AXIS, *_OF_A_CHANGE)
         spun = int(np.argmax(np.abs(rotation.start[0])))
         return figures.answer("triaxial", regime, _oriented(rotation.inertia, spun))
     if regime == "separatrix":
-        figures.put("mean_precession_rate", _momentum(rotation) / _moments(rotation.inertia)[1])
-        figures.lack("on the separatrix the body tends to the middle axis and never returns", *_OF_A_CHANGE)
+        figures.put("mean_precession_rate", momentum_of(rotation) / _moments(rotation.inertia)[1])
+        figures.lack(ON_THE_SEPARATRIX, *_OF_A_CHANGE)
         return figures.answer("triaxial", regime, _oriented(rotation.inertia, 1))
     _put_periodic(figures, rotation)
     return figures.answer("triaxial", regime, _oriented(rotation.inertia, rotation.motion.circled))
@@ -236,7 +245,7 @@ def _put_periodic(figures: _Figures, rotation: FreeRotation) -> None:
         per_second = Fraction(turned) * Fraction(motion.rate) * Fraction(motion.time_scale) / 4
         figures.put("mean_precession_rate", per_second)
     if rotation.flip_interval is None:
-        figures.lack("two moments are equal, so that there is no middle axis", "flip_interval")
+        figures.lack(NO_MIDDLE_AXIS, "flip_interval")
     else:
         figures.put("flip_interval", rotation.flip_interval)
 
@@ -271,10 +280,10 @@ def _symmetric(rotation: FreeRotation) -> Precession:
     else:
         regime = "steady" if across == 0 or w[k] == 0 else "periodic"
     _put_regular(figures, split, regime == "periodic")
-    figures.lack("two moments are equal, so that there is no middle axis", "flip_interval")
-    order = _order_of_directions(symmetry, split)
+    figures.lack(NO_MIDDLE_AXIS, "flip_interval")
+    order = order_of_directions(symmetry) if split.along != 0 and split.across_squared != 0 else None
     if order is None:
-        figures.lack("two of the directions coincide", "order_of_directions")
+        figures.lack(SAME_DIRECTION, "order_of_directions")
     return figures.answer(symmetry, regime, axis, order)
 
 
@@ -291,7 +300,7 @@ def _put_regular(figures: _Figures, s: _Split, periodic: bool) -> None:
         figures.put("precession_per_period", space_rate * period)
         figures.put("mean_precession_rate", space_rate)
     else:
-        figures.lack("the angular velocity is constant in the body", "body_rate", *_OF_A_CHANGE)
+        figures.lack(STEADY_IN_BODY, "body_rate", *_OF_A_CHANGE)
     direction = -1 if s.along < 0 else 1
     along, across = s.along**2, s.across_squared
     figures.put("axis_to_angular_momentum", angle(s.equal**2 * across, s.single**2 * along, direction))
@@ -300,9 +309,8 @@ def _put_regular(figures: _Figures, s: _Split, periodic: bool) -> None:
     figures.put("angular_momentum_to_angular_velocity", between)
 
 
-def _order_of_directions(symmetry: Symmetry, s: _Split) -> str | None:
-    if s.along == 0 or s.across_squared == 0:
-        return None
+def order_of_directions(symmetry: Symmetry) -> str:
+    """Return which of axis, angular momentum and angular velocity lies between the others, no two in one direction."""
     if symmetry == "oblate":
         return "oblate: the angular momentum lies between the axis and the angular velocity"
     return "prolate: the angular velocity lies between the axis and the angular momentum"
@@ -314,10 +322,10 @@ def _beyond_symmetry(figures: _Figures, rotation: FreeRotation) -> Precession:
     reason = (
         "the spin lies so near the plane of two nearly equal moments that the body does not move as a symmetric one"
     )
-    figures.lack(reason, *_OF_SYMMETRIC_BODIES)
+    figures.lack(reason, *OF_SYMMETRIC_BODIES)
     if motion.regime == SEPARATRIX:
-        figures.put("mean_precession_rate", _momentum(rotation) / _moments(rotation.inertia)[1])
-        figures.lack("on the separatrix the body tends to the middle axis and never returns", *_OF_A_CHANGE)
+        figures.put("mean_precession_rate", momentum_of(rotation) / _moments(rotation.inertia)[1])
+        figures.lack(ON_THE_SEPARATRIX, *_OF_A_CHANGE)
         return figures.answer(symmetry, "separatrix", _oriented(rotation.inertia, 1))
     _put_periodic(figures, rotation)
     return figures.answer(symmetry, "periodic", _oriented(rotation.inertia, motion.circled))
@@ -332,8 +340,8 @@ def _moments(inertia: PrincipalInertia) -> list[Fraction]:
     return exact_vector(inertia.moments, inertia.moments_tail)
 
 
-def _momentum(rotation: FreeRotation) -> Fraction:
-    """Magnitude of the angular momentum."""
+def momentum_of(rotation: FreeRotation) -> Fraction:
+    """Return the magnitude of the angular momentum to 120 bits (kg m^2/s)."""
     i, w = _moments(rotation.inertia), exact_vector(*rotation.start)
     return square_root(sum(((m * x) ** 2 for m, x in zip(i, w, strict=True)), Fraction(0)))
 

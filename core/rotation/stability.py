@@ -17,6 +17,7 @@ earth satellites", Nature 182 (1958) 760 (the major-axis rule).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal, NamedTuple
@@ -167,37 +168,67 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
     return Stability(inertia.symmetry, float(rate), equilibria, flip, (*inherited, *warnings, *outside))
 
 
+class Verdict(NamedTuple):
+    """What is proved about an equilibrium by how the moments are ordered; see `Equilibrium`."""
+
+    kind: Kind
+    stable: bool
+    linearly_stable: bool
+    attitude: Attitude
+    survives_dissipation: bool
+    reason: str
+
+
+def verdict(ranks: Sequence[int], axis: int, turns: bool) -> Verdict:
+    """Return what is proved about the rotation about a principal axis.
+
+    Parameters
+    ----------
+    ranks : sequence of 3 int
+        Of the moments in ascending order; equal moments have equal ranks: (0, 1, 2), (0, 0, 1), (0, 1, 1), (0, 0, 0).
+    axis : int
+        Which of the three, 0 for the least moment.
+    turns : bool
+        Whether the rate is not zero.
+    """
+    own, others = ranks[axis], [ranks[n] for n in range(3) if n != axis]
+    survives = own == ranks[2]
+    if not turns:
+        return Verdict("degenerate", True, True, "unstable", survives, _REST)
+    if ranks[0] == ranks[2]:
+        return Verdict("degenerate", True, True, "orbital", True, _SPHERE)
+    after = _DISSIPATION[survives]
+    if own in others:
+        return Verdict("degenerate", False, False, "unstable", survives, f"{_PLANE} {after}")
+    if others[0] < own < others[1]:
+        return Verdict("saddle", False, False, "unstable", False, f"{_SADDLE} {after}")
+    size = "largest" if survives else "smallest"
+    extremum = "least" if survives else "greatest"
+    reason = _CENTER.format(size=size, extremum=extremum)
+    return Verdict("center", True, True, "orbital", survives, f"{reason} {after}")
+
+
 class _Found(NamedTuple):
     """An equilibrium in exact figures."""
 
-    kind: Kind
+    verdict: Verdict
     square: Fraction
     drift: Fraction
-    stable: bool
-    linearly_stable: bool
-    dissipates: bool
-    reason: str
 
 
 def _about(moments: list[Fraction], axis: int, rate: Fraction) -> _Found:
     own, (low, high) = moments[axis], (moments[n] for n in range(3) if n != axis)
     square = rate**2 * (own - low) * (high - own) / (low * high)
-    survives = own == moments[2]
-    after = _DISSIPATION[survives]
-    if rate == 0:
-        return _Found("degenerate", square, Fraction(0), True, True, survives, _REST)
-    if low == own == high:
-        return _Found("degenerate", square, Fraction(0), True, True, True, _SPHERE)
-    if own in (low, high):
-        other = high if own == low else low
-        drift = abs(rate * (other - own)) / own
-        return _Found("degenerate", square, drift, False, False, survives, f"{_PLANE} {after}")
-    if square > 0:
-        return _Found("saddle", square, Fraction(0), False, False, False, f"{_SADDLE} {after}")
-    size = "largest" if survives else "smallest"
-    extremum = "least" if survives else "greatest"
-    reason = _CENTER.format(size=size, extremum=extremum)
-    return _Found("center", square, Fraction(0), True, True, survives, f"{reason} {after}")
+    distinct = sorted(set(moments))
+    found = verdict([distinct.index(moment) for moment in moments], axis, rate != 0)
+    return _Found(found, square, drift(own, low, high, rate))
+
+
+def drift(own: Fraction, low: Fraction, high: Fraction, rate: Fraction) -> Fraction:
+    """Return the rate at which a spin about one of two equal moments drifts, per unit of disturbance (1/s)."""
+    if (own == low) == (own == high):
+        return Fraction(0)
+    return abs(rate * ((high if own == low else low) - own)) / own
 
 
 _CENTER = (
@@ -229,13 +260,17 @@ _DISSIPATION = {
 }
 
 
+REST = Verdict("degenerate", True, True, "unstable", False, _REST)
+"""About the state of rest, which no axis has."""
+
+
 def _stated(found: _Found, inertia: PrincipalInertia, k: int) -> Equilibrium:
+    told = found.verdict
     size = double(square_root(abs(found.square)))
-    drift = double(found.drift)
     pair: tuple[Eigenvalue, Eigenvalue] | None
     if size is None:
-        pair, growth = None, None if found.kind == "saddle" else 0.0
-    elif found.kind == "saddle":
+        pair, growth = None, None if told.kind == "saddle" else 0.0
+    elif told.kind == "saddle":
         pair, growth = ((size, 0.0), (-size, 0.0)), size
     else:
         pair, growth = ((0.0, size), (0.0, -size if size else 0.0)), 0.0
@@ -247,22 +282,33 @@ def _stated(found: _Found, inertia: PrincipalInertia, k: int) -> Equilibrium:
         axis,
         float(inertia.moments[k]),
         None if pair is None else (*pair, (0.0, 0.0)),
-        found.kind,
-        found.stable,
+        told.kind,
+        told.stable,
         growth,
-        drift,
-        found.linearly_stable,
-        "orbital" if found.stable and found.reason != _REST else "unstable",
-        found.dissipates,
-        found.reason,
+        double(found.drift),
+        told.linearly_stable,
+        told.attitude,
+        told.survives_dissipation,
+        told.reason,
     )
 
 
 def _rest() -> Equilibrium:
     zero = (0.0, 0.0)
+    told = REST
     return Equilibrium(
-        None, None, (zero, zero, zero), "degenerate", True, 0.0, 0.0, True, "unstable", False, _REST
-    )  # fmt: skip
+        None,
+        None,
+        (zero, zero, zero),
+        told.kind,
+        told.stable,
+        0.0,
+        0.0,
+        told.linearly_stable,
+        told.attitude,
+        told.survives_dissipation,
+        told.reason,
+    )
 
 
 def _moments(inertia: PrincipalInertia) -> tuple[list[Fraction], list[Notice]]:
@@ -298,16 +344,24 @@ def _flip(inertia: PrincipalInertia, moments: list[Fraction], rate: float, distu
     for n, x in enumerate(disturbance):
         _finite_rate.check(("disturbance", n), x)
     if len(set(moments)) < 3:
-        raise NotApplicable(
-            "two moments are equal, so that there is no middle axis to be disturbed",
-            path=("disturbance",),
-            remedy="leave out the disturbance",
-        )
+        raise no_middle_axis()
     given = (float(disturbance[0]), float(disturbance[1]))
     # A body along its principal axes moves as this one does; in them the disturbance is exact.
     along = replace(inertia, axes=np.eye(3), axes_tail=np.zeros((3, 3)))
     rotation = FreeRotation(along, np.array([given[0], rate, given[1]]))
     interval = rotation.flip_interval
-    if interval is not None:
-        return Flip(given, interval, f"it turns over every half period; {rotation.model.why}")
-    return Flip(given, None, f"it never turns over; {rotation.model.why}")
+    return Flip(given, interval, flip_reason(interval is not None, rotation.model.why))
+
+
+def no_middle_axis() -> NotApplicable:
+    """Return the refusal of a disturbance where two moments are equal."""
+    return NotApplicable(
+        "two moments are equal, so that there is no middle axis to be disturbed",
+        path=("disturbance",),
+        remedy="leave out the disturbance",
+    )
+
+
+def flip_reason(flips: bool, why: str) -> str:
+    """Return what becomes of a disturbed rotation about the middle axis, with the reason for its model."""
+    return f"{'it turns over every half period' if flips else 'it never turns over'}; {why}"
