@@ -6,9 +6,9 @@ name members of unions as if they were steps; left out, they are JSON pointers i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache, partial
 from typing import Any, Generic, TypeVar, get_args
 
 from pydantic import TypeAdapter, ValidationError
@@ -78,9 +78,15 @@ class ByPresence:
     ----------
     key : str
         Name of a plain ASCII key of the document itself.
+    beside : mapping of str to str
+        Fields of the first question that the second has not, and why they cannot go with the key.
+    remedies : mapping of str to str
+        What would mend a fault: by the rule broken in a document without the key; under the key itself, what to give.
     """
 
     key: str
+    beside: Mapping[str, str] = field(default_factory=dict, hash=False)
+    remedies: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __get_pydantic_core_schema__(self, union: Any, handler: Any) -> dict[str, Any]:
         without, having = (handler.generate_schema(member) for member in get_args(union))
@@ -88,6 +94,20 @@ class ByPresence:
 
     def _label(self, document: Any) -> str:
         return WITH if isinstance(document, dict) and self.key in document else WITHOUT
+
+    def advised(self, fault: Fault, having: bool) -> Fault:
+        """Return a fault of a document that has the key, or has not, with what would mend it."""
+        name = fault.pointer.removeprefix("/")
+        if having and name in self.beside and fault.detail == _RULES["extra_forbidden"]:
+            return Fault(
+                fault.pointer,
+                f"cannot go with {self.key}: {self.beside[name]}",
+                f"leave out {name} or {self.key}",
+            )
+        remedy = self.remedies.get(self.key) if having and name == self.key else None
+        if not having:
+            remedy = self.remedies.get(fault.detail)
+        return fault if remedy is None or fault.remedy else Fault(fault.pointer, fault.detail, remedy)
 
     def in_document(self, body: bytes) -> bool:
         """Return whether the document has the key, building nothing but its value."""
@@ -118,9 +138,13 @@ class Reader(Generic[Q]):
         A pydantic model, which may hold dataclasses of core; or a union of two that a `ByPresence` tells apart.
     limits : Limits
         On the document.
+    advised : callable
+        Returns a fault with what would mend it.
     """
 
-    def __init__(self, question: type[Q], limits: Limits) -> None:
+    def __init__(
+        self, question: type[Q], limits: Limits, advised: Callable[[Fault], Fault] = lambda fault: fault
+    ) -> None:
         schema = _failing_fast(TypeAdapter(question).core_schema)
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
@@ -128,8 +152,16 @@ class Reader(Generic[Q]):
         marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, ByPresence)]
         # The discriminator of the union would have the whole document built to look for a key.
         self._told_apart = [
-            (mark, [Reader(member, limits) for member in get_args(get_args(question)[0])]) for mark in marks
+            (
+                mark,
+                [
+                    Reader(member, limits, partial(mark.advised, having=having))
+                    for having, member in zip((False, True), get_args(get_args(question)[0]), strict=True)
+                ],
+            )
+            for mark in marks
         ]
+        self._advised = advised
         self._deepest, self._most_keys, self._most_arrays = limits.nesting, limits.keys, limits.arrays
 
     def read(self, body: bytes) -> Q:
@@ -161,10 +193,11 @@ class Reader(Generic[Q]):
             steps = self._steps(entry["loc"])
             cause = entry.get("ctx", {}).get("error")
             if isinstance(cause, InvalidParameter):
-                faults.append(Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy))
+                fault = Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy)
+                faults.append(self._advised(fault))
                 codes.add(code_of(cause))
             else:
-                faults.append(_fault(entry, steps))
+                faults.append(self._advised(_fault(entry, steps)))
                 codes.add("invalid-parameter")
             if len(faults) == MOST_FAULTS:
                 break

@@ -14,10 +14,6 @@ from core.certified.free_rotation import Rows
 from core.certified.raising import bits_for, check_digits, determined, each_determined
 from core.rotation.energy_surface import CORNERS, Faces, check_resolution, geodesic, topology
 
-_WHOLE: dict[object, int] = {-1: -1, 1: 1}
-_MULTIPLE: dict[object, int] = {"-g": -1, "g": 1}
-"""Parts of a corner's components: whole numbers and multiples of the golden section."""
-
 
 @dataclass(frozen=True)
 class CertifiedMeshQuality:
@@ -51,6 +47,7 @@ def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: in
     check_digits(digits, 3 * (10 * resolution**2 + 2))
     sphere = geodesic(resolution)
     corners, weights, faces = (array.tolist() for array in sphere)
+    solid = CORNERS.tolist()
     bits = bits_for(digits)
 
     def directions() -> Callable[[int], Balls]:
@@ -58,10 +55,9 @@ def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: in
 
         def component(n: int, k: int) -> arb:
             # A whole number and a multiple of g apart, so that what vanishes is exactly zero.
-            whole = multiple = 0
-            for w, c in zip(weights[n], corners[n], strict=True):
-                entry = CORNERS[c][k]
-                whole, multiple = whole + w * _WHOLE.get(entry, 0), multiple + w * _MULTIPLE.get(entry, 0)
+            whole, multiple = (
+                sum(w * solid[c][part][k] for w, c in zip(weights[n], corners[n], strict=True)) for part in range(2)
+            )
             return whole + multiple * g if multiple else arb(whole)
 
         def at(n: int) -> Balls:

@@ -138,7 +138,11 @@ class ExactMass:
             If the whole does not weigh anything.
         """
         # Sums in fmpq: the denominators of many attitudes multiply, and Python's own divisors take the square.
-        known = [(fmpq_of(p.mass), [fmpq_of(x) for x in p.center_of_mass], p.inertia) for p in parts]  # type: ignore[union-attr]
+        known = []
+        for part in parts:
+            assert part.mass is not None
+            assert part.center_of_mass is not None
+            known.append((fmpq_of(part.mass), [fmpq_of(x) for x in part.center_of_mass], part.inertia))
         total = sum((m for m, _, _ in known), fmpq(0))
         if not total > 0:
             raise InvalidParameter(

@@ -86,8 +86,12 @@ class CertifiedRotation:
         if self.regime == "rest":
             return Model(name, "rest", "the angular velocity is zero", 0)
         if self.regime == "steady":
-            why = "angular momentum and spin are parallel: nothing accelerates"
-            return Model(name, "steady rotation", why, 0)
+            why = {
+                1: "the spin lies along a principal axis",
+                2: "the spin lies along a principal axis or in the plane of two equal moments",
+                3: "the three moments are equal, so every axis is principal",
+            }[equal]
+            return Model(name, "steady rotation", f"{why}: nothing accelerates", 0)
         if self.regime == "separatrix":
             why = "L^2 = 2 E I_middle exactly: the motion tends to the middle axis, by hyperbolic functions"
             return Model(name, "separatrix", why, 1)

@@ -203,11 +203,15 @@ class Geodesic(NamedTuple):
     faces: Faces
 
 
-CORNERS = (
-    (-1, "g", 0), (1, "g", 0), (-1, "-g", 0), (1, "-g", 0), (0, -1, "g"), (0, 1, "g"), (0, -1, "-g"), (0, 1, "-g"),
-    ("g", 0, -1), ("g", 0, 1), ("-g", 0, -1), ("-g", 0, 1),
+CORNERS = np.array(
+    [
+        ((-1, 0, 0), (0, 1, 0)), ((1, 0, 0), (0, 1, 0)), ((-1, 0, 0), (0, -1, 0)), ((1, 0, 0), (0, -1, 0)),
+        ((0, -1, 0), (0, 0, 1)), ((0, 1, 0), (0, 0, 1)), ((0, -1, 0), (0, 0, -1)), ((0, 1, 0), (0, 0, -1)),
+        ((0, 0, -1), (1, 0, 0)), ((0, 0, 1), (1, 0, 0)), ((0, 0, -1), (-1, 0, 0)), ((0, 0, 1), (-1, 0, 0)),
+    ]
 )  # fmt: skip
-"""Of an icosahedron, g the golden section (1 + sqrt 5)/2."""
+"""Of an icosahedron, shape (12, 2, 3): the first vector plus the second times the golden section (1 + sqrt 5)/2."""
+CORNERS.setflags(write=False)
 
 
 def geodesic(parts: int) -> Geodesic:
@@ -232,10 +236,10 @@ def geodesic(parts: int) -> Geodesic:
     every = np.arange(count)
     corners = [np.stack([every, every, every], axis=1)]
     weights = [np.tile([parts, 0, 0], (count, 1))]
-    for p, q in edges:
-        corners.append(np.tile([p, q, p], (parts - 1, 1)))
+    for first, last in edges:
+        corners.append(np.tile([first, last, first], (parts - 1, 1)))
         weights.append(np.stack([parts - along, along, 0 * along], axis=1))
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(parts + 1), np.arange(parts + 1), indexing="ij"))
+    i, j = (grid.ravel() for grid in np.meshgrid(np.arange(parts + 1), np.arange(parts + 1), indexing="ij"))
     i, j = i[i + j <= parts], j[i + j <= parts]
     inner = (i > 0) & (j > 0) & (i + j < parts)
     local = np.full((parts + 1, parts + 1), -1, dtype=np.int64)
@@ -266,9 +270,10 @@ def geodesic(parts: int) -> Geodesic:
 def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
     """Return unit vectors and faces."""
     found = geodesic(parts)
-    section = {"g": 0.5 * (1.0 + math.sqrt(5.0)), "-g": -0.5 * (1.0 + math.sqrt(5.0))}
-    corners = np.array([[section.get(x, x) for x in corner] for corner in CORNERS], dtype=np.float64)  # type: ignore[call-overload]
-    vertices = sum(found.weights[:, k, None] * corners[found.corners[:, k]] for k in range(3))
+    corners = CORNERS[:, 0] + 0.5 * (1.0 + math.sqrt(5.0)) * CORNERS[:, 1]
+    vertices = np.zeros((len(found.weights), 3))
+    for k in range(3):
+        vertices += found.weights[:, k, None] * corners[found.corners[:, k]]
     return vertices / np.sqrt((vertices * vertices).sum(axis=1))[:, None], found.faces
 
 

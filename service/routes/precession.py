@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
 from math import hypot
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -22,7 +20,7 @@ from service.pricing import Priced, effort
 from service.routes.bodies import counts, properties_of
 from service.routes.rotation import T_HANDLE
 from service.routing import Answer, Example, Question
-from service.schemas import Envelope, Request, Span, Vector, View
+from service.schemas import Envelope, Request, Span, Vector, View, fields_of
 
 
 class PrecessionRequest(Request):
@@ -92,21 +90,12 @@ class StabilityAnswer(Envelope):
     flip: Flip | None
 
 
-def _fields(found: Any) -> Answer:
-    """Return what core found, field by field, mappings as JSON objects."""
-    return {
-        entry.name: dict(value) if isinstance(value, Mapping) else value
-        for entry in fields(found)
-        for value in (getattr(found, entry.name),)
-    }
-
-
 def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
     """Answer with the figures and, if asked for, the measurement."""
     body = properties_of(question.body)
     start = np.array(question.angular_velocity)
     found: Precession = precession(body, start)
-    answer = _fields(found)
+    answer = fields_of(found)
     if question.measure is not None:
         answer["measured"] = measure_period(TorqueFree(body, start), question.measure, budget)
     return answer
@@ -115,7 +104,7 @@ def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
 def answer_stability(question: StabilityRequest, budget: Budget) -> Answer:
     """Answer with every equilibrium."""
     found = stability(properties_of(question.body), question.rate, question.disturbance)
-    return _fields(found) | {"equilibria": [_fields(equilibrium) for equilibrium in found.equilibria]}
+    return fields_of(found) | {"equilibria": [fields_of(equilibrium) for equilibrium in found.equilibria]}
 
 
 def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, float]:
