@@ -93,12 +93,18 @@ class Cost:
         Time of a sample.
     before : float
         Time before the first (s).
+    beside : int
+        Numbers beside those of the samples.
+    text : float
+        Bytes that are no numbers.
     """
 
     samples: int
     numbers: int
     each: PerSample
     before: float = 0.0
+    beside: int = 10
+    text: float = 600.0
 
 
 @dataclass(frozen=True)
@@ -115,8 +121,8 @@ class PricedInDigits:
     def size(self, question: Any, budget: Budget) -> float:
         """Return the predicted length of an answer as JSON (bytes)."""
         cost, digits = self.cost(question, budget), int(question.digits)
-        # A numeral has a sign, a point, two quotes and a comma, and there are about ten beside the samples.
-        return 600.0 + (10 + cost.samples * cost.numbers) * (digits + 5.0)
+        # A numeral has a sign, a point, two quotes and a comma.
+        return cost.text + (cost.beside + cost.samples * cost.numbers) * (digits + 5.0)
 
 
 @dataclass(frozen=True)

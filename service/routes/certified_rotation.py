@@ -42,6 +42,8 @@ from service.schemas import Envelope, Request, View, fields_of
 
 RATES = PerSample(2e-5, 6e-8, 1.7e-10)
 RATES_AND_ATTITUDES = PerSample(5e-5, 1.2e-7, 8.5e-10)
+PRECESSION = PerSample(4e-4, 1e-6, 4e-9)
+STABILITY = PerSample(1.5e-4, 3e-7, 5e-10)
 
 
 class TrajectoryInDigits(Request):
@@ -231,9 +233,14 @@ def trajectory_outline(question: TrajectoryInDigits) -> TrajectoryInDigits:
     return question.model_copy(update={"times": [max(ends(question.times), key=abs)]})
 
 
-def figures_cost(question: PrecessionInDigits | StabilityInDigits, budget: Budget) -> Cost:
+def precession_cost(question: PrecessionInDigits, budget: Budget) -> Cost:
     """Return what is counted of a question without times: a handful of figures that cost a few samples each."""
-    return Cost(10, 4, RATES_AND_ATTITUDES, summing(question.body))
+    return Cost(1, 0, PRECESSION, summing(question.body), beside=9, text=900.0)
+
+
+def stability_cost(question: StabilityInDigits, budget: Budget) -> Cost:
+    """Return the same of the equilibria, of which each is explained in some 600 characters."""
+    return Cost(1, 0, STABILITY, summing(question.body), beside=18, text=3000.0)
 
 
 EXACT_T_HANDLE = {"kind": "principal-moments", "moments": ["837.2", "714", "437.7"]}
@@ -271,7 +278,7 @@ PRECESSION_IN_DIGITS = InDigits(
     PrecessionInDigits,
     PrecessionAnswerInDigits,
     answer_precession,
-    PricedInDigits(figures_cost),
+    PricedInDigits(precession_cost),
     examples={
         "digits": Example(
             "a spinning coin, 100 digits of its precession",
@@ -288,6 +295,6 @@ STABILITY_IN_DIGITS = InDigits(
     StabilityInDigits,
     StabilityAnswerInDigits,
     answer_stability,
-    PricedInDigits(figures_cost),
+    PricedInDigits(stability_cost),
     examples={"digits": Example("a T-handle, 40 digits", {"body": EXACT_T_HANDLE, "rate": "10", "digits": 40})},
 )

@@ -162,10 +162,10 @@ def _numbers(question: EllipsoidInDigits) -> int:
     return 3 * (_vertices(question) + _curves(question) * question.points)
 
 
-POINT = PerSample(1.3e-5, 1.0e-8, 4e-11)
-CURVE = PerSample(3e-4, 1e-6, 2e-9)
-VERTEX = PerSample(1.5e-5, 1.0e-8, 4e-11)
-FACE = PerSample(8e-5, 1e-7, 6e-10)
+POINT = PerSample(7e-6, 2e-8, 6e-11)
+CURVE = PerSample(3e-4, 5e-7, 8e-10)
+VERTEX = PerSample(5e-6, 1e-8, 6e-11)
+FACE = PerSample(2e-5, 2.5e-8, 1.5e-10)
 
 
 class EllipsoidPrice:

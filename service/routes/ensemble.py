@@ -79,13 +79,12 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         body, _starts(question, body), times, accuracy=question.accuracy, method=question.method, budget=budget
     )
     samples, added = many.angular_velocity, [0.0] * len(many.members)
-    told = [notice for member in many.members for notice in member.warnings]
+    by_rounding = []
     if question.round is not None:
         for k, member in enumerate(many.members):
             stated = member.accuracy
             samples[k], added[k] = rounded(samples[k], question.round, stated.error + (stated.inherited or 0.0))
-            told += notices_of(stated, added[k])
-    warnings = {(notice.code, notice.detail): notice for notice in told}
+            by_rounding += [(k, notice) for notice in notices_of(stated, added[k])]
     return {
         "error": max(member.accuracy.error + more for member, more in zip(many.members, added, strict=True)),
         "seed": None if question.sample is None else question.sample.seed,
@@ -104,7 +103,8 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         "angular_velocity": samples,
         "warnings": (
             *(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
-            *warnings.values(),
+            *many.warnings,
+            *((many.merged(by_rounding),) if by_rounding else ()),
         ),
     }
 

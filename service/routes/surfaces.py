@@ -16,6 +16,8 @@ from core.rotation.energy_surface import EnergyEllipsoid
 from core.rotation.initial_states import initial_states
 from core.rotation.polhodes import Polhode, polhode, separatrix
 from core.rotation.torque_free import pinned_notices
+from service.ellipsoid_figure import ellipsoid_figure
+from service.figures import SVG
 from service.pricing import Priced
 from service.routes.bodies import counts, properties_of
 from service.routing import Answer, Example, Question
@@ -216,6 +218,8 @@ SURFACES = (
         energy_ellipsoid,
         Priced("energy_ellipsoid", ellipsoid_counts),
         ellipsoid_outline,
+        description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
+        representations={SVG: ellipsoid_figure},
         examples={
             "triangles": Example(
                 "a coarse mesh with five polhodes and the separatrix",
