@@ -51,7 +51,7 @@ SERVICE_LAYERS = (
         "keys",
         "cors",
     },
-    {"guards"},
+    {"guards", "ellipsoid_figure"},
     {"reading"},
     {"schemas"},
     {"numerals"},

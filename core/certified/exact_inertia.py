@@ -54,9 +54,9 @@ class ExactInertia:
         return self.determinant_at(Fraction(0)) == 0
 
     def require_extent(self) -> None:
-        """Raise `InvalidParameter` if a moment is zero."""
+        """Raise `InvalidParameter` at the question's body if a moment is zero."""
         if self.is_line:
-            raise _without_extent()
+            raise _without_extent().inside("body")
 
     @property
     def diagonal(self) -> bool:

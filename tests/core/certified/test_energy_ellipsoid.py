@@ -127,7 +127,7 @@ def test_equal_moments_leave_no_separatrix():
         (
             lambda i: CertifiedEllipsoid.of(ExactInertia.of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, 0]]), 1),
             InvalidParameter,
-            (),
+            ("body",),
         ),
     ],
 )
