@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, Union
 from pydantic import BaseModel, Field
 
 from core.certified.decimals import decimal_of_fraction
+from core.certified.exact_bodies import MOST_PARTS
 from core.certified.exact_inputs import exact
 from core.certified.exact_mass import ExactMass
 from core.certified.raising import check_digits
@@ -218,8 +219,8 @@ def summing(body: BaseModel) -> float:
     """Return the predicted time to sum a body in rational arithmetic (s)."""
     positions: Any = getattr(body, "positions", ())
     length = max((longest(row) for row in positions), default=0)
-    # Every part turns and moves by denominators of its own, which multiply.
-    parts = _parts(body)
+    # Every part turns and moves by denominators of its own, which multiply; more parts are refused, at no cost.
+    parts = min(_parts(body), MOST_PARTS)
     return len(positions) * (1.2e-4 + 8.5e-9 * length * length) + parts * (4e-3 + 5e-5 * parts)
 
 

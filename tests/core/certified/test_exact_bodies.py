@@ -57,7 +57,7 @@ def test_every_uniform_solid_is_known():
         ({"kind": "cuboid", "edges": [1, 2, 3], "mass": "1e400"}, ("mass",)),
         ({"kind": "cuboid", "edges": [1, 2, 3], "mass": -1}, ("mass",)),
         ({"kind": "cuboid", "radius": 1, "mass": 1}, ()),
-        ({"kind": "rod", "length": 1, "mass": 1}, ()),
+        ({"kind": "point-masses", "masses": 1, "positions": [[1, 2, 3]]}, ()),
     ],
 )
 def test_what_is_no_body_is_refused(body, path):
