@@ -18,19 +18,8 @@ from core.certified.exact_start import Balls, Regime
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.raising import bits_for, check_digits, determined
 from core.certified.turning_motion import TurningMotion
-from core.rotation.precession import (
-    NO_MIDDLE_AXIS,
-    NOTHING_TURNS,
-    OF_SYMMETRIC_BODIES,
-    ON_THE_SEPARATRIX,
-    SAME_DIRECTION,
-    SPHERE,
-    STEADY_ANYHOW,
-    STEADY_BY_AXIS,
-    STEADY_IN_BODY,
-    TRIAXIAL,
-    order_of_directions,
-)
+from core.rotation import absence
+from core.rotation.precession import OF_SYMMETRIC_BODIES, order_of_directions
 
 
 @dataclass(frozen=True)
@@ -163,16 +152,16 @@ def _axis_of_symmetry(rotation: CertifiedRotation) -> tuple[Vector, Fraction, Fr
 def _why_absent(rotation: CertifiedRotation, name: str) -> str:
     equal = rotation.inertia.equal_moments
     if rotation.regime == "rest":
-        return NOTHING_TURNS
+        return absence.NOTHING_TURNS
     if name == "axis":
-        return SPHERE
+        return absence.SPHERE
     if name in OF_SYMMETRIC_BODIES and equal != 2:
-        return SPHERE if equal == 3 else TRIAXIAL
+        return absence.SPHERE if equal == 3 else absence.TRIAXIAL
     if name == "order_of_directions":
-        return SAME_DIRECTION
+        return absence.SAME_DIRECTION
     if rotation.regime == "steady":
-        return {1: STEADY_BY_AXIS, 2: STEADY_IN_BODY, 3: STEADY_ANYHOW}[equal]
-    return ON_THE_SEPARATRIX if rotation.regime == "separatrix" else NO_MIDDLE_AXIS
+        return {1: absence.STEADY_BY_AXIS, 2: absence.STEADY_IN_BODY, 3: absence.STEADY_ANYHOW}[equal]
+    return absence.ON_THE_SEPARATRIX if rotation.regime == "separatrix" else absence.NO_MIDDLE_AXIS
 
 
 @dataclass(frozen=True)

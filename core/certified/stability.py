@@ -1,7 +1,7 @@
 """Every equilibrium of a free body to any number of digits.
 
 About axis i at the rate W, lambda^2 = W^2 (I_i - I_j)(I_k - I_i)/(I_j I_k), and lambda = 0. Which moments are equal is
-decided exactly; what follows from that is what `core.rotation.stability` proves.
+decided exactly; what follows from that stands in `core.rotation.verdict`.
 """
 
 from __future__ import annotations
@@ -21,9 +21,8 @@ from core.certified.exact_start import Balls, PrincipalState, principal_axes
 from core.certified.free_rotation import CertifiedRotation, triaxial_model
 from core.certified.raising import bits_for, check_digits, determined
 from core.certified.turning_motion import constants_of
-from core.rotation.stability import REST, Attitude, Kind, Verdict, drift, flip_reason, no_middle_axis, verdict
-
-ZERO = Fraction(0)
+from core.rotation.stability import flip_reason, no_middle_axis
+from core.rotation.verdict import REST, Attitude, Kind, Verdict, drift, verdict
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,7 @@ from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmet
 from core.errors import InvalidParameter
 from core.integration.system import Floats
 from core.notices import Notice
+from core.rotation import absence
 from core.rotation.attitude import FreeAttitude
 from core.rotation.closed_form import FreeRotation
 from core.rotation.constants_of_motion import PERIODIC, REST, SEPARATRIX, STEADY
@@ -121,16 +122,6 @@ OF_SYMMETRIC_BODIES = (
     "angular_momentum_to_angular_velocity",
     "order_of_directions",
 )
-NOTHING_TURNS = "nothing turns"
-SPHERE = "the three moments are equal, so that every axis is one of symmetry"
-TRIAXIAL = "the three moments differ, so that no axis is one of symmetry"
-STEADY_ANYHOW = "the angular velocity is constant"
-STEADY_BY_AXIS = "the spin lies along a principal axis and is constant"
-STEADY_IN_BODY = "the angular velocity is constant in the body"
-ON_THE_SEPARATRIX = "on the separatrix the body tends to the middle axis and never returns"
-NO_MIDDLE_AXIS = "two moments are equal, so that there is no middle axis"
-SAME_DIRECTION = "two of the directions coincide"
-"""Why a figure does not exist."""
 _OF_A_CHANGE = ("period", "flip_interval", "precession_per_period", "mean_precession_rate")
 
 
@@ -163,7 +154,7 @@ def _of(rotation: FreeRotation) -> Precession:
     inertia = rotation.inertia
     symmetry = inertia.symmetry
     if not np.any(rotation.angular_velocity):
-        absent = dict.fromkeys(("axis", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE), NOTHING_TURNS)
+        absent = dict.fromkeys(("axis", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE), absence.NOTHING_TURNS)
         return Precession(symmetry, "rest", absent=MappingProxyType(absent))
     if symmetry == "spherical":
         return _sphere(rotation)
@@ -214,22 +205,22 @@ def _sphere(rotation: FreeRotation) -> Precession:
     i, tails = rotation.inertia.moments, rotation.inertia.moments_tail
     if not (i[0] == i[2] and tails[0] == tails[2]):
         figures.notices.append(_equal_within_rounding("the three moments"))
-    figures.lack(SPHERE, "axis", *OF_SYMMETRIC_BODIES)
-    figures.lack(STEADY_ANYHOW, *_OF_A_CHANGE)
+    figures.lack(absence.SPHERE, "axis", *OF_SYMMETRIC_BODIES)
+    figures.lack(absence.STEADY_ANYHOW, *_OF_A_CHANGE)
     return figures.answer("spherical", "steady", None)
 
 
 def _triaxial(rotation: FreeRotation) -> Precession:
     figures = _Figures()
-    figures.lack(TRIAXIAL, *OF_SYMMETRIC_BODIES)
+    figures.lack(absence.TRIAXIAL, *OF_SYMMETRIC_BODIES)
     regime = _REGIMES[rotation.motion.regime]
     if regime == "steady":
-        figures.lack(STEADY_BY_AXIS, *_OF_A_CHANGE)
+        figures.lack(absence.STEADY_BY_AXIS, *_OF_A_CHANGE)
         spun = int(np.argmax(np.abs(rotation.start[0])))
         return figures.answer("triaxial", regime, _oriented(rotation.inertia, spun))
     if regime == "separatrix":
         figures.put("mean_precession_rate", momentum_of(rotation) / _moments(rotation.inertia)[1])
-        figures.lack(ON_THE_SEPARATRIX, *_OF_A_CHANGE)
+        figures.lack(absence.ON_THE_SEPARATRIX, *_OF_A_CHANGE)
         return figures.answer("triaxial", regime, _oriented(rotation.inertia, 1))
     _put_periodic(figures, rotation)
     return figures.answer("triaxial", regime, _oriented(rotation.inertia, rotation.motion.circled))
@@ -245,7 +236,7 @@ def _put_periodic(figures: _Figures, rotation: FreeRotation) -> None:
         per_second = Fraction(turned) * Fraction(motion.rate) * Fraction(motion.time_scale) / 4
         figures.put("mean_precession_rate", per_second)
     if rotation.flip_interval is None:
-        figures.lack(NO_MIDDLE_AXIS, "flip_interval")
+        figures.lack(absence.NO_MIDDLE_AXIS, "flip_interval")
     else:
         figures.put("flip_interval", rotation.flip_interval)
 
@@ -280,10 +271,10 @@ def _symmetric(rotation: FreeRotation) -> Precession:
     else:
         regime = "steady" if across == 0 or w[k] == 0 else "periodic"
     _put_regular(figures, split, regime == "periodic")
-    figures.lack(NO_MIDDLE_AXIS, "flip_interval")
+    figures.lack(absence.NO_MIDDLE_AXIS, "flip_interval")
     order = order_of_directions(symmetry) if split.along != 0 and split.across_squared != 0 else None
     if order is None:
-        figures.lack(SAME_DIRECTION, "order_of_directions")
+        figures.lack(absence.SAME_DIRECTION, "order_of_directions")
     return figures.answer(symmetry, regime, axis, order)
 
 
@@ -300,7 +291,7 @@ def _put_regular(figures: _Figures, s: _Split, periodic: bool) -> None:
         figures.put("precession_per_period", space_rate * period)
         figures.put("mean_precession_rate", space_rate)
     else:
-        figures.lack(STEADY_IN_BODY, "body_rate", *_OF_A_CHANGE)
+        figures.lack(absence.STEADY_IN_BODY, "body_rate", *_OF_A_CHANGE)
     direction = -1 if s.along < 0 else 1
     along, across = s.along**2, s.across_squared
     figures.put("axis_to_angular_momentum", angle(s.equal**2 * across, s.single**2 * along, direction))
@@ -325,7 +316,7 @@ def _beyond_symmetry(figures: _Figures, rotation: FreeRotation) -> Precession:
     figures.lack(reason, *OF_SYMMETRIC_BODIES)
     if motion.regime == SEPARATRIX:
         figures.put("mean_precession_rate", momentum_of(rotation) / _moments(rotation.inertia)[1])
-        figures.lack(ON_THE_SEPARATRIX, *_OF_A_CHANGE)
+        figures.lack(absence.ON_THE_SEPARATRIX, *_OF_A_CHANGE)
         return figures.answer(symmetry, "separatrix", _oriented(rotation.inertia, 1))
     _put_periodic(figures, rotation)
     return figures.answer(symmetry, "periodic", _oriented(rotation.inertia, motion.circled))
