@@ -16,7 +16,7 @@ from core.certified.exact_inertia import ExactInertia, Matrix, Vector, of_matter
 from core.certified.exact_inputs import Number, exact, exact_numbers, nearest
 from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
-from core.rotation.torque_free import not_free
+from core.rotation.torque_free import AT_THE_ORIGIN, not_free
 
 LONGEST_LIST = 100_000
 
@@ -76,8 +76,11 @@ class ExactMass:
                 "has; the equations of motion hold all the same"
             )
             found.append(Notice("unphysical-inertia", detail, (self.given_by,) if self.given_by else ()))
-        if self.about == "origin" and self.center_of_mass is not None and any(self.center_of_mass):
-            found.append(not_free(hypot(*map(nearest, self.center_of_mass))))
+        if self.about == "origin" and self.mass is not None and self.center_of_mass is not None:
+            square, trace = sum((x * x for x in self.center_of_mass), Fraction(0)), self.of_motion.trace
+            # Places given as doubles miss the origin by their rounding, which is no pin.
+            if square * self.mass > Fraction(AT_THE_ORIGIN) ** 2 * trace:
+                found.append(not_free(hypot(*map(nearest, self.center_of_mass))))
         return tuple(found)
 
     def placed(self, attitude: Sequence[Fraction], position: Sequence[Fraction]) -> ExactMass:

@@ -111,6 +111,13 @@ def test_bodies_welded_together(about):
     assert [notice.code for notice in found.notices] == ([] if about == "center-of-mass" else ["not-free"])
 
 
+def test_a_centre_of_mass_that_rounding_moves_is_at_the_origin():
+    for offset, told in (("1e-17", []), ("1e-3", ["not-free"])):
+        points = [[1, 0, 0], [-1, 0, 0], [0, 1, offset], [0, -1, 0]]
+        body = {"kind": "point-masses", "masses": 1, "positions": points, "about": "origin"}
+        assert [notice.code for notice in exact_body(body).notices] == told
+
+
 def test_a_part_is_turned_and_moved_exactly():
     turned = {"kind": "cuboid", "edges": ["0.1", "0.2", "0.3"], "mass": "1.2"}
     found = exact_body({"kind": "composite", "parts": [{"body": turned, "attitude": [0, "0.1", 0, 0]}]})
