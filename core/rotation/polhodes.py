@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 
@@ -27,7 +28,6 @@ from core.rotation.closed_form import FreeRotation
 from core.rotation.constants_of_motion import REST, SEPARATRIX, STEADY
 from core.rotation.energy_surface import EnergyEllipsoid
 from core.rotation.exact_figures import double, square_root
-from core.rotation.precession import momentum_of
 
 MOST_POINTS = 100_000
 
@@ -68,7 +68,7 @@ def polhode(body: MassProperties, angular_velocity: Floats, count: int = 256) ->
     rotation = FreeRotation(body.principal_of_motion, angular_velocity)
     motion = rotation.motion
     regime = rotation.model.regime
-    momentum = double(momentum_of(rotation))
+    momentum = _momentum(rotation)
     if motion.regime in (REST, STEADY):
         return Polhode(regime, False, momentum, angular_velocity.reshape(1, 3).copy())
     cosine, sine = _circle(count)
@@ -102,6 +102,15 @@ def separatrix(body: MassProperties, energy: float, count: int = 256) -> tuple[P
     return tuple(curves)
 
 
+def _momentum(rotation: FreeRotation) -> float | None:
+    """Return |L|, formed with exponents apart; None where it leaves the range of normal doubles."""
+    moments, rates = rotation.resolved.moments, rotation.resolved.angular_velocity
+    size, rate = math.frexp(float(moments[2]))[1], math.frexp(float(np.abs(rates).max()))[1]
+    mantissa, exponent = math.frexp(math.hypot(*(np.ldexp(moments, -size) * np.ldexp(rates, -rate)).tolist()))
+    exponent += size + rate
+    return math.ldexp(mantissa, exponent) if -1021 <= exponent <= 1024 else None
+
+
 def _shares(principal: PrincipalInertia) -> tuple[float, float] | None:
     """Return A_a/A_b and A_c/A_b of the separatrix, or None if two moments are equal."""
     i = [scaled(h, low, 0) for h, low in zip(principal.moments.tolist(), principal.moments_tail.tolist(), strict=True)]
@@ -120,6 +129,7 @@ def _shares(principal: PrincipalInertia) -> tuple[float, float] | None:
     return share(high, i[0]), share(low, i[2])
 
 
+@lru_cache(maxsize=4)
 def _circle(count: int) -> tuple[Floats, Floats]:
     """Return cosines and sines of even steps around the circle, the last the same as the first.
 
@@ -130,7 +140,10 @@ def _circle(count: int) -> tuple[Floats, Floats]:
     c, s = np.cos(angle), np.sin(angle)
     cosine = np.choose(quadrant, (c, -s, -c, s)) + 0.0
     sine = np.choose(quadrant, (s, c, -s, -c)) + 0.0
-    return np.append(cosine, cosine[0]), np.append(sine, sine[0])
+    cosine, sine = np.append(cosine, cosine[0]), np.append(sine, sine[0])
+    cosine.setflags(write=False)
+    sine.setflags(write=False)
+    return cosine, sine
 
 
 def check_count(count: int) -> None:
