@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from html import escape
 from math import ceil, floor, log10
 
+SVG = "image/svg+xml"
+"""Media type."""
+
 COLOURS = ("#c1440e", "#1f4e8c", "#2a6f4e", "#7a1fa2", "#b8860b", "#008b8b", "#8b2252", "#555555")
 LEFT, TOP, WIDTH, HEIGHT = 70.0, 40.0, 560.0, 400.0
 MOST_TICKS = 9

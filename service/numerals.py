@@ -11,18 +11,19 @@ from dataclasses import MISSING, dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ForwardRef, Union, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, Field, create_model
 
 from core.bodies import Body
+from core.bodies.composite import Composite, Count, Part
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS
 from core.certified.exact_bodies import UNIFORM, exact_body
-from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, exact, exact_numbers
-from core.errors import InvalidParameter, NotApplicable
-from core.quantities import Quantity, Rows, members_of
+from core.certified.exact_mass import ExactMass
+from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
+from core.quantities import Quantity, Rows, TaggedBy, members_of
 from service.schemas import ObjectOrArray, Request
 
 DigitCount = Annotated[
@@ -34,6 +35,10 @@ DigitCount = Annotated[
         "decimal strings. Numbers of the question are exact: doubles, or decimal strings.",
     ),
 ]
+
+
+ANY_BODY = "AnyBodyInNumerals"
+"""Name by which the form of a part refers to the forms of all bodies, of which it is itself a piece."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,11 @@ def in_numerals(hint: Any) -> Any:
     origin, parts = get_origin(hint), get_args(hint)
     if origin is Annotated:
         for mark in parts[1:]:
+            if isinstance(mark, TaggedBy):
+                return ForwardRef(ANY_BODY)
+            if isinstance(mark, Count):
+                bounds = Field(min_length=mark.at_least, max_length=mark.at_most)
+                return _annotated(list.__class_getitem__(form_of(get_args(parts[0])[0])), bounds)
             if isinstance(mark, Quantity) and parts[0] is float:
                 return _annotated(float | str, Numeral(mark))
             if isinstance(mark, Rows):
@@ -123,23 +133,23 @@ def given(form: BaseModel, *left_out: str) -> Mapping[str, Any]:
     return form.model_dump(exclude_unset=True, exclude=set(left_out))
 
 
-@dataclass(frozen=True)
-class ExactBodies:
-    """Mark of a body that can be summed exactly: all but composites and meshes."""
+def _bodies() -> Any:
+    """Return the union of the forms of bodies that can be summed exactly: all but meshes."""
+    members = (PrincipalMoments, InertiaTensor, PointMasses, *UNIFORM.values(), Composite)
+    forms = tuple(form_of(member) for member in members_of(Body) if member in members)
+    union = _annotated(Union.__getitem__(forms), Field(discriminator="kind"))
+    # A composite holds parts and a part any body, composites among them.
+    form_of(Part).model_rebuild(_types_namespace={ANY_BODY: union})
+    form_of(Composite).model_rebuild()
+    return union
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
-        measured = (PrincipalMoments, InertiaTensor, PointMasses)
-        exactly = [form_of(member) for member in members_of(Body) if member in (*measured, *UNIFORM.values())]
-        union = Union.__getitem__(tuple(exactly))
-        schema: dict[str, Any] = handler.generate_schema(_annotated(union, Field(discriminator="kind")))
-        return schema
 
-
-BodyInNumerals = Annotated[BaseModel, ExactBodies()]
+BodyInNumerals: Any = _bodies()
 RateInNumerals = Annotated[float | str, Numeral(Quantity("rad s^-1"))]
 AngularVelocityInNumerals = tuple[RateInNumerals, RateInNumerals, RateInNumerals]
 _Pure = Annotated[float | str, Numeral(Quantity("1"))]
 QuaternionInNumerals = tuple[_Pure, _Pure, _Pure, _Pure]
+EnergyInNumerals = Annotated[float | str, Numeral(Quantity("J", above=0))]
 TimeInNumerals = Annotated[float | str, Numeral(Quantity("s"))]
 
 
@@ -158,14 +168,17 @@ TimesInNumerals = Annotated[
 """Times from the given state, of either sign, in any order."""
 
 
-def inertia_of(body: BaseModel) -> ExactInertia:
-    """Return the inertia of a question's body; faults are told as seen from the question."""
+def body_of(body: BaseModel) -> ExactMass:
+    """Return a question's body; faults are told as seen from the question."""
     try:
         return exact_body(given(body))
     except InvalidParameter as fault:
         raise fault.inside("body") from None
     except NotApplicable as fault:
         raise NotApplicable(fault.detail, path=("body", *fault.path), remedy=fault.remedy) from None
+    except BudgetExceeded as fault:
+        fault.path = ("body", *fault.path)
+        raise
 
 
 def instants(times: SpanInNumerals | list[float | str]) -> tuple[Fraction, ...]:

@@ -6,10 +6,10 @@ A reader validates JSON bytes in one step, without an intermediate Python docume
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, field
+from functools import cache, partial
 from typing import Any, Generic, TypeVar, get_args
 
 from pydantic import TypeAdapter, ValidationError
@@ -19,7 +19,7 @@ from core.quantities import Rows
 from service.faults import Layout
 from service.guards import require_distinct_keys, require_simple
 from service.large_arrays import Taken, take_out, taking
-from service.problems import Refusal
+from service.problems import Fault, Refusal
 
 Q = TypeVar("Q")
 
@@ -46,9 +46,15 @@ class ByPresence:
     ----------
     key : str
         Name of a plain ASCII key of the document itself.
+    beside : mapping of str to str
+        Fields of the first question that the second has not, and why they cannot go with the key.
+    remedies : mapping of str to str
+        What would mend a fault: by the rule broken in a document without the key; under the key itself, what to give.
     """
 
     key: str
+    beside: Mapping[str, str] = field(default_factory=dict, hash=False)
+    remedies: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __get_pydantic_core_schema__(self, union: Any, handler: Any) -> dict[str, Any]:
         without, having = (handler.generate_schema(member) for member in get_args(union))
@@ -56,6 +62,14 @@ class ByPresence:
 
     def _label(self, document: Any) -> str:
         return WITH if isinstance(document, dict) and self.key in document else WITHOUT
+
+    def advised(self, fault: Fault, having: bool) -> Fault:
+        """Return a fault of a document that has the key, or has not, with what would mend it."""
+        name = fault.pointer.removeprefix("/")
+        if having and name in self.beside and fault.detail == f"does not go with {self.key}":
+            return Fault(fault.pointer, f"{fault.detail}: {self.beside[name]}", fault.remedy)
+        remedy = self.remedies.get(fault.detail if not having else self.key if name == self.key else "")
+        return Fault(fault.pointer, fault.detail, remedy) if remedy else fault
 
     def in_document(self, body: bytes) -> bool:
         """Return whether the document has the key, building nothing but its value."""
@@ -86,9 +100,13 @@ class Reader(Generic[Q]):
         A pydantic model, which may hold dataclasses of core; or a union of two that a `ByPresence` tells apart.
     limits : Limits
         On the document.
+    advised : callable
+        Returns a fault with what would mend it.
     """
 
-    def __init__(self, question: type[Q], limits: Limits) -> None:
+    def __init__(
+        self, question: type[Q], limits: Limits, advised: Callable[[Fault], Fault] = lambda fault: fault
+    ) -> None:
         self._arrays: dict[str, Rows] = {}
         schema = _failing_fast(taking(TypeAdapter(question).core_schema, self._arrays))
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
@@ -97,10 +115,18 @@ class Reader(Generic[Q]):
         marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, ByPresence)]
         # The discriminator of the union would have the whole document built to look for a key.
         self._told_apart = [
-            (mark, [Reader(member, limits) for member in get_args(get_args(question)[0])]) for mark in marks
+            (
+                mark,
+                [
+                    Reader(member, limits, partial(mark.advised, having=having))
+                    for having, member in zip((False, True), get_args(get_args(question)[0]), strict=True)
+                ],
+            )
+            for mark in marks
         ]
         for mark, (without, having) in self._told_apart:
             having._layout = having._layout.told_from(mark.key, without._layout)
+        self._advised = advised
         self._deepest, self._most_keys, self._most_arrays = limits.nesting, limits.keys, limits.arrays
 
     def read(self, body: bytes) -> Q:
@@ -150,7 +176,8 @@ class Reader(Generic[Q]):
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
             return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
-        faults, codes = self._layout.faults(found)
+        found_faults, codes = self._layout.faults(found)
+        faults = [self._advised(fault) for fault in found_faults]
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"
         more = f", and {len(faults) - 1} more" if len(faults) > 1 else ""
         return Refusal(code, f"{faults[0].sentence}{more}", faults=faults)

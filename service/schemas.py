@@ -5,6 +5,8 @@ Answers are never passed through these views; they are written as they come from
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import fields
 from math import isfinite
 from typing import Annotated, Any, Literal, Protocol
 
@@ -53,6 +55,15 @@ class Envelope(View):
 
     signature: Signature
     warnings: list[Warned]
+
+
+def fields_of(found: Any) -> dict[str, Any]:
+    """Return a dataclass of core field by field, mappings as JSON objects."""
+    return {
+        entry.name: dict(value) if isinstance(value, Mapping) else value
+        for entry in fields(found)
+        for value in (getattr(found, entry.name),)
+    }
 
 
 class ProblemFault(View):

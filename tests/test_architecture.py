@@ -56,7 +56,7 @@ SERVICE_LAYERS = (
         "kept",
         "records",
     },
-    {"guards", "large_arrays"},
+    {"guards", "large_arrays", "ellipsoid_figure"},
     {"faults"},
     {"reading"},
     {"schemas"},

@@ -103,12 +103,12 @@ def parallel_axis(mass: Fraction, offset: Vector, inertia: Matrix) -> list[list[
     ]
 
 
-def rotation(quaternion: Sequence[float]) -> list[list[Fraction]]:
+def rotation(quaternion: Sequence[float | Fraction]) -> list[list[Fraction]]:
     """Return the rotation matrix of a quaternion [w, x, y, z] of any length but zero, exactly orthogonal.
 
     The Euler-Rodrigues matrix divided by the squared length is rational in the components.
     """
-    w, x, y, z = (Fraction(float(q)) for q in quaternion)
+    w, x, y, z = (Fraction(q) for q in quaternion)
     n = w * w + x * x + y * y + z * z
     return [
         [(w * w + x * x - y * y - z * z) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n],

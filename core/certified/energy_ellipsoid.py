@@ -1,74 +1,201 @@
-"""The energy ellipsoid and the polhode on it, to any number of digits."""
+"""The energy ellipsoid, the polhodes on it and the separatrix, to any number of digits."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
-from flint import arb
+from flint import arb, fmpq
 
-from core.certified.decimals import decimal, decimals, floor_below
+from core.certified.decimals import DEEPEST, decimal, decimal_of_fraction, decimals, floor_below
+from core.certified.directions import floor_of_directions
 from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import Number, enclosed, exact
-from core.certified.exact_start import ExactStart
+from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
+from core.certified.exact_start import Balls, dot, principal_axes
 from core.certified.free_rotation import CertifiedRotation, Rows
 from core.certified.raising import bits_for, check_digits, determined, each_determined
 from core.certified.turning_motion import TurningMotion
-from core.errors import InvalidParameter, NotApplicable
+from core.errors import InvalidParameter
+from core.rotation.polhodes import check_count
 
 
-def certified_semi_axes(inertia: ExactInertia, energy: Number, digits: int) -> list[str]:
-    """Return the semi-axes sqrt(2E/I) of the energy ellipsoid, in ascending order of moments (rad/s).
+@dataclass(frozen=True)
+class CertifiedPolhode:
+    """One curve; the fields are those of `core.rotation.polhodes.Polhode`.
 
-    Raises
-    ------
-    InvalidParameter
-        For an energy that is not positive, or digits outside 16 to 1000.
+    Attributes
+    ----------
+    regime : str
+        Of the motion that draws it.
+    closed : bool
+        Whether the last point is the first; a steady rotation draws a single point.
+    angular_momentum : str
+        Magnitude, the same at every point (kg m^2/s).
+    points : list of rows of 3 str
+        In body axes (rad/s).
     """
-    check_digits(digits)
-    twice = 2 * exact(energy, "energy")
-    if twice <= 0:
-        raise InvalidParameter("energy", "be greater than 0 J")
-    zero = Fraction(0)
 
-    def evaluate() -> list[str]:
-        rational = inertia.rational_moments
-        if rational is not None:
-            return [decimal(enclosed(twice / moment).sqrt(), digits) for moment in rational]
-        moments = ExactStart(inertia, (zero, zero, zero)).principal_state().moments
-        return [decimal((enclosed(twice) / moment).sqrt(), digits) for moment in moments]
-
-    return determined(evaluate, bits_for(digits))
+    regime: str
+    closed: bool
+    angular_momentum: str
+    points: Rows
 
 
-def certified_polhode(rotation: CertifiedRotation, count: int, digits: int) -> Rows:
-    """Return points of the polhode in body axes, `count` rows of 3 numerals, equally spaced in time.
+@dataclass(frozen=True)
+class CertifiedEllipsoid:
+    """The surface w.I.w = 2E.
 
-    A closed polhode is gone round once, from u = 0, in the direction of the motion and without repeating the first
-    point. The arc of the separatrix through the start is given for u from -log(count) to log(count), where it has come
-    as near to its ends as the points are to each other.
+    Every point that is returned lies on it to its last digit but one, and a polhode's points lie on |I w|^2 = L^2 as
+    well.
 
-    Raises
-    ------
-    InvalidParameter
-        For a count below 2, or digits outside 16 to 1000.
-    NotApplicable
-        If the angular velocity is constant, so that the polhode is one point.
+    Attributes
+    ----------
+    inertia : ExactInertia
+    twice_energy : Fraction
+        2E (J).
     """
-    if count < 2:
-        raise InvalidParameter("count", "be at least 2")
-    check_digits(digits, 3 * count)
-    if not rotation.turns:
-        raise NotApplicable("the angular velocity is constant, so its polhode is one point")
 
-    def evaluators() -> Callable[[int], list[str]]:
-        motion = TurningMotion(rotation.start)
-        floor = floor_below(motion.largest_rate, digits)
-        if motion.separatrix:
-            reach = arb(count).log()
-            return lambda i: decimals(
-                motion.in_body(motion.in_frame(reach * (2 * i - count + 1) / (count - 1))), digits, floor
-            )
-        return lambda i: decimals(motion.in_body(motion.in_frame(arb(2 * i) / count)), digits, floor)
+    inertia: ExactInertia
+    twice_energy: Fraction
 
-    return each_determined(evaluators, count, bits_for(digits))
+    def __post_init__(self) -> None:
+        self.inertia.require_extent()
+
+    @classmethod
+    def of(cls, inertia: ExactInertia, energy: Number) -> CertifiedEllipsoid:
+        """Return the ellipsoid of a body at an energy greater than 0 (J)."""
+        twice = 2 * exact(energy, "energy")
+        if twice <= 0:
+            raise InvalidParameter("energy", "be greater than 0 J")
+        return cls(inertia, twice)
+
+    @classmethod
+    def through(cls, inertia: ExactInertia, angular_velocity: Sequence[Number]) -> CertifiedEllipsoid:
+        """Return the ellipsoid on which an angular velocity, shape (3,), lies."""
+        rotation = CertifiedRotation.of(inertia, angular_velocity)
+        if not rotation.start.twice_energy:
+            raise InvalidParameter("angular_velocity", "not be zero: at rest there is no energy surface")
+        return cls(inertia, rotation.start.twice_energy)
+
+    def energy(self, digits: int) -> str:
+        """Return E (J)."""
+        return decimal_of_fraction(self.twice_energy / 2, check_digits(digits))
+
+    def semi_axes(self, digits: int) -> list[str]:
+        """Return sqrt(2E/I), along the body axes where these are principal, else in ascending order of moments."""
+        check_digits(digits)
+        return determined(lambda: decimals(self.semi_axis_balls(), digits), bits_for(digits))
+
+    def semi_axis_balls(self) -> Balls:
+        """Return the semi-axes at the current precision."""
+        if self.inertia.diagonal:
+            x, y, z = (enclosed(self.twice_energy / self.inertia.tensor[k][k]).sqrt() for k in range(3))
+        else:
+            x, y, z = ((enclosed(self.twice_energy) / i).sqrt() for i in principal_axes(self.inertia).moments)
+        return x, y, z
+
+    def axes(self, digits: int) -> Rows:
+        """Return the axes to which the semi-axes belong as the columns of a matrix, in body axes."""
+        check_digits(digits)
+        floor = floor_of_directions(digits)
+        return determined(lambda: [decimals(row, digits, floor) for row in self.axis_balls()], bits_for(digits))
+
+    def axis_balls(self) -> tuple[Balls, Balls, Balls]:
+        """Return the rows of that matrix at the current precision."""
+        if self.inertia.diagonal:
+            x, y, z = ((arb(k == 0), arb(k == 1), arb(k == 2)) for k in range(3))
+            return x, y, z
+        return principal_axes(self.inertia).axes
+
+    def floor_of_points(self, largest: arb, digits: int) -> int:
+        """Return the last place that is printed of points of which the farthest is at `largest`.
+
+        Along principal axes it is known which components vanish, and the others are given far deeper.
+        """
+        return floor_below(largest, digits) - (DEEPEST if self.inertia.diagonal else 0)
+
+    def polhode(self, angular_velocity: Sequence[Number], count: int, digits: int) -> CertifiedPolhode:
+        """Return the polhode in the direction of an angular velocity as `count` points and the first again.
+
+        The angular velocity is scaled to the energy of this surface, which scales its polhode with it. The points are
+        those of `core.rotation.polhodes`: even steps of the amplitude, along with the motion where it is periodic. On
+        the separatrix they are those of the whole ellipse, of which the motion draws one half.
+
+        Raises
+        ------
+        InvalidParameter, BudgetExceeded
+            For a count below 8 or above 100000, digits outside 16 to 1000, or an angular velocity of zero.
+        """
+        check_count(count)
+        check_digits(digits, 3 * count)
+        rotation = CertifiedRotation.of(self.inertia, angular_velocity)
+        own = rotation.start.twice_energy
+        if not own:
+            raise InvalidParameter("angular_velocity", "not be zero: at rest there is no energy surface")
+        ratio = self.twice_energy / own
+        squared = rotation.start.squared_momentum * ratio
+        momentum = determined(lambda: decimal(enclosed(squared).sqrt(), digits), bits_for(digits))
+        regime = rotation.model.regime
+        if not rotation.turns:
+            start = exact_numbers(angular_velocity, ("angular_velocity",), 3)
+
+            def point() -> list[str]:
+                if ratio == 1:
+                    return [decimal_of_fraction(w, digits) for w in start]
+                scale = enclosed(ratio).sqrt()
+                return [decimal(scale * enclosed(w), digits) for w in start]
+
+            return CertifiedPolhode(regime, False, momentum, [determined(point, bits_for(digits))])
+
+        def evaluators() -> Callable[[int], list[str]]:
+            motion, scale = TurningMotion(rotation.start), enclosed(ratio).sqrt()
+            floor = self.floor_of_points(scale * motion.largest_rate, digits)
+
+            def at(i: int) -> list[str]:
+                sine, cosine = arb.sin_cos_pi_fmpq(fmpq(2 * i, count))
+                along = cosine if motion.separatrix else (cosine * cosine + motion.m1 * sine * sine).sqrt()
+                frame = (motion.A_c * cosine, motion.side * motion.A_b * sine, motion.A_d * along)
+                x, y, z = motion.in_body(frame)
+                return decimals((scale * x, scale * y, scale * z), digits, floor)
+
+            return at
+
+        points = each_determined(evaluators, count, bits_for(digits))
+        return CertifiedPolhode(regime, True, momentum, [*points, list(points[0])])
+
+    def separatrix(self, count: int, digits: int) -> tuple[CertifiedPolhode, ...]:
+        """Return the separatrix: two ellipses that cross at the middle axis, none if moments are equal.
+
+        From L^2 = 2E B: A_b^2 = 2E/B, A_a^2 = 2E (C - B)/(A (C - A)), A_c^2 = 2E (B - A)/(C (C - A)).
+        """
+        check_count(count)
+        check_digits(digits, 6 * count)
+        if self.inertia.equal_moments > 1:
+            return ()
+        bits = bits_for(digits)
+
+        def momentum_on_it() -> str:
+            return decimal((enclosed(self.twice_energy) * principal_axes(self.inertia).moments[1]).sqrt(), digits)
+
+        momentum = determined(momentum_on_it, bits)
+
+        def curve(side: int) -> CertifiedPolhode:
+            def evaluators() -> Callable[[int], list[str]]:
+                state = principal_axes(self.inertia)
+                (low, middle, high), (ab, bc, ac), twice = state.moments, state.gaps, enclosed(self.twice_energy)
+                a, b = (twice * bc / (low * ac)).sqrt(), (twice / middle).sqrt()
+                c = side * (twice * ab / (high * ac)).sqrt()
+                floor = self.floor_of_points((a * a + b * b + c * c).sqrt(), digits)
+
+                def at(i: int) -> list[str]:
+                    sine, cosine = arb.sin_cos_pi_fmpq(fmpq(2 * i, count))
+                    along = (a * cosine, b * sine, c * cosine)
+                    return decimals([dot(row, along) for row in state.axes], digits, floor)
+
+                return at
+
+            points = each_determined(evaluators, count, bits)
+            return CertifiedPolhode("separatrix", True, momentum, [*points, list(points[0])])
+
+        return curve(1), curve(-1)

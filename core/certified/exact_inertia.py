@@ -7,15 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from core.bodies.exact import parallel_axis
 from core.bodies.principal_inertia import Symmetry
-from core.certified.exact_inputs import Number, exact, exact_numbers
+from core.certified.exact_inputs import Number, exact_numbers
 from core.errors import InvalidParameter
 
 Vector = tuple[Fraction, Fraction, Fraction]
 Matrix = tuple[Vector, Vector, Vector]
-
-LONGEST_LIST = 100_000
 
 
 @dataclass(frozen=True)
@@ -25,23 +22,16 @@ class ExactInertia:
     Attributes
     ----------
     tensor : tuple of 3 rows of 3 fractions
-        Symmetric, positive definite, in body axes about the point of rotation (kg m^2).
+        Symmetric, no moment negative and at most one zero, in body axes about the point of rotation (kg m^2).
     """
 
     tensor: Matrix
 
     def __post_init__(self) -> None:
-        a, b, d = self.tensor[0][0], self.tensor[0][1], self.tensor[1][1]
-        for i, j in ((0, 1), (0, 2), (1, 2)):
-            if self.tensor[i][j] != self.tensor[j][i]:
-                raise InvalidParameter(("tensor", j, i), f"equal tensor/{i}/{j}: the tensor is symmetric")
-        # Sylvester's criterion: positive definite if and only if the leading minors are positive.
-        if not (a > 0 and a * d - b * b > 0 and self.determinant_at(Fraction(0)) > 0):
-            raise InvalidParameter(
-                (),
-                "have three moments of inertia greater than 0 to rotate freely",
-                remedy="give a body with extent in at least two directions",
-            )
+        trace, minors, determinant = _symmetric_functions(self.tensor)
+        # All roots of a real cubic that has three are positive if and only if its signs alternate (Descartes).
+        if not (trace > 0 and minors > 0 and determinant >= 0):
+            raise _without_extent()
 
     @classmethod
     def of_moments(cls, moments: Sequence[Number]) -> ExactInertia:
@@ -56,48 +46,17 @@ class ExactInertia:
     @classmethod
     def of_tensor(cls, tensor: Sequence[Sequence[Number]]) -> ExactInertia:
         """Return a body given by its tensor, shape (3, 3), off-diagonal components -(integral of x y dm)."""
-        if isinstance(tensor, str) or len(tensor) != 3:
-            raise InvalidParameter("tensor", "have 3 rows")
-        x, y, z = (_triple(exact_numbers(row, ("tensor", i), 3)) for i, row in enumerate(tensor))
-        return cls((x, y, z))
+        return cls(symmetric(tensor))
 
-    @classmethod
-    def of_point_masses(
-        cls, masses: Number | Sequence[Number], positions: Sequence[Sequence[Number]], about_origin: bool = False
-    ) -> ExactInertia:
-        """Return the inertia of points about their centre of mass, or about the origin.
+    @property
+    def is_line(self) -> bool:
+        """Whether one moment is zero: matter along a line, which can only turn across itself."""
+        return self.determinant_at(Fraction(0)) == 0
 
-        Parameters
-        ----------
-        masses : number or sequence of n numbers
-            One number for n equal masses (kg).
-        positions : sequence of n sequences of 3 numbers
-            (m).
-        """
-        if len(positions) > LONGEST_LIST:
-            raise InvalidParameter("positions", f"have at most {LONGEST_LIST} entries")
-        points = [_triple(exact_numbers(point, ("positions", i), 3)) for i, point in enumerate(positions)]
-        if isinstance(masses, Sequence) and not isinstance(masses, str):
-            weights = exact_numbers(masses, ("masses",), len(points))
-        else:
-            weights = (exact(masses, "masses"),) * len(points)
-        for i, weight in enumerate(weights):
-            if weight <= 0:
-                raise InvalidParameter(("masses", i), "be greater than 0 kg")
-        if not points:
-            raise InvalidParameter("positions", "have at least one entry")
-        total = sum(weights, Fraction(0))
-        center = [sum((m * p[k] for m, p in zip(weights, points, strict=True)), Fraction(0)) / total for k in range(3)]
-        nothing = [[Fraction(0)] * 3 for _ in range(3)]
-        about = nothing
-        for m, p in zip(weights, points, strict=True):
-            offset = p if about_origin else [p[k] - center[k] for k in range(3)]
-            about = [
-                [x + y for x, y in zip(row, more, strict=True)]
-                for row, more in zip(about, parallel_axis(m, offset, nothing), strict=True)
-            ]
-        x, y, z = (_triple(row) for row in about)
-        return cls((x, y, z))
+    def require_extent(self) -> None:
+        """Raise `InvalidParameter` at the question's body if a moment is zero."""
+        if self.is_line:
+            raise _without_extent().inside("body")
 
     @property
     def diagonal(self) -> bool:
@@ -112,14 +71,11 @@ class ExactInertia:
     @cached_property
     def minors(self) -> Fraction:
         """AB + BC + CA."""
-        (a, b, c), (_, d, e), (_, _, f) = self.tensor
-        return a * d - b * b + a * f - c * c + d * f - e * e
+        return _symmetric_functions(self.tensor)[1]
 
     def determinant_at(self, x: Fraction) -> Fraction:
         """Return (A - x)(B - x)(C - x), which vanishes at the principal moments and nowhere else."""
-        (a, b, c), (_, d, e), (_, _, f) = self.tensor
-        a, d, f = a - x, d - x, f - x
-        return a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d)
+        return _determinant(self.tensor, x)
 
     @cached_property
     def rational_moments(self) -> tuple[Fraction, ...] | None:
@@ -148,17 +104,11 @@ class ExactInertia:
         moments = self.rational_moments
         if moments is None or len(set(moments)) == 3:
             return "triaxial"
+        if moments[0] == 0:
+            return "linear"
         if moments[0] == moments[2]:
             return "spherical"
         return "oblate" if moments[0] == moments[1] else "prolate"
-
-    @property
-    def physical(self) -> bool:
-        """Whether matter can have this inertia: no moment exceeds the sum of the other two.
-
-        At most one moment can exceed half the trace, so the sign of (A - s)(B - s)(C - s) at s = trace/2 tells.
-        """
-        return self.determinant_at(self.trace / 2) <= 0
 
     def momentum(self, angular_velocity: Vector) -> Vector:
         """Return I w."""
@@ -166,11 +116,68 @@ class ExactInertia:
         return x, y, z
 
 
+def _without_extent() -> InvalidParameter:
+    return InvalidParameter(
+        (),
+        "have three moments of inertia greater than 0 to rotate freely",
+        remedy="give a body with extent in at least two directions",
+    )
+
+
+def symmetric(tensor: Sequence[Sequence[Number]]) -> Matrix:
+    """Return a tensor in rational numbers.
+
+    Raises
+    ------
+    InvalidParameter
+        If it has not 3 rows of 3 numbers, or is not exactly symmetric.
+    """
+    if isinstance(tensor, str) or len(tensor) != 3:
+        raise InvalidParameter("tensor", "have 3 rows")
+    x, y, z = (triple(exact_numbers(row, ("tensor", i), 3)) for i, row in enumerate(tensor))
+    found: Matrix = (x, y, z)
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        if found[i][j] != found[j][i]:
+            raise InvalidParameter(
+                ("tensor", j, i),
+                f"equal tensor/{i}/{j}: the tensor is symmetric",
+                remedy="give both components alike; with digits nothing is taken for rounding",
+            )
+    return found
+
+
+def of_matter(tensor: Matrix) -> bool:
+    """Return whether matter can have a tensor of inertia: no principal moment exceeds the sum of the other two.
+
+    At most one moment can exceed half the trace, so the sign of (A - s)(B - s)(C - s) at s = trace/2 tells.
+    """
+    return _determinant(tensor, (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 2) <= 0
+
+
+def semidefinite(tensor: Matrix) -> bool:
+    """Return whether no principal moment is negative."""
+    return all(x >= 0 for x in _symmetric_functions(tensor))
+
+
+def _determinant(tensor: Matrix, x: Fraction) -> Fraction:
+    (a, b, c), (_, d, e), (_, _, f) = tensor
+    a, d, f = a - x, d - x, f - x
+    return a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d)
+
+
+def _symmetric_functions(tensor: Matrix) -> tuple[Fraction, Fraction, Fraction]:
+    """Return A + B + C, AB + BC + CA and ABC."""
+    (a, b, c), (_, d, e), (_, _, f) = tensor
+    minors = a * d - b * b + a * f - c * c + d * f - e * e
+    return a + d + f, minors, _determinant(tensor, Fraction(0))
+
+
 def cross(u: Sequence[Fraction], v: Sequence[Fraction]) -> Vector:
     """Return u x v."""
     return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
 
 
-def _triple(values: Sequence[Fraction]) -> Vector:
+def triple(values: Sequence[Fraction]) -> Vector:
+    """Return three fractions as a vector."""
     x, y, z = values
     return x, y, z

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from fractions import Fraction
-from math import isfinite
+from math import inf, isfinite
 from numbers import Real
 
 from flint import arb, fmpq
@@ -70,6 +70,14 @@ def evenly_spaced(start: Fraction, stop: Fraction, count: int) -> tuple[Fraction
 def enclosed(number: Fraction) -> arb:
     """Return a ball of the current precision around a rational number, of radius zero where it is dyadic and short."""
     return arb(fmpq(number.numerator, number.denominator))
+
+
+def nearest(number: Fraction) -> float:
+    """Return the nearest double, infinite beyond the largest."""
+    try:
+        return float(number)
+    except OverflowError:
+        return inf if number > 0 else -inf
 
 
 def _read(numeral: str, path: str | Path) -> Fraction:

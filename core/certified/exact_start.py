@@ -136,10 +136,16 @@ class ExactStart:
         w = self.angular_velocity
         along = sum((x * y for x, y in zip(n, w, strict=True)), Fraction(0)) / sum((x * x for x in n), Fraction(0))
         across = [x - along * y for x, y in zip(w, n, strict=True)]
+        if not any(across):
+            # Every direction in the plane of the pair is an axis: that of the body axis farthest from the third.
+            k = min(range(3), key=lambda j: abs(n[j]))
+            across = [(Fraction(j == k) - n[k] * n[j] / sum((x * x for x in n), Fraction(0))) for j in range(3)]
+            plane = arb(0)
+        else:
+            plane = enclosed(sum((x * x for x in across), Fraction(0))).sqrt()
         axis, first = _unit(n), _unit(across)
         second = _unit(cross(n, across))
         spin = enclosed(along) * enclosed(sum((x * x for x in n), Fraction(0))).sqrt()
-        plane = enclosed(sum((x * x for x in across), Fraction(0))).sqrt()
         zero = arb(0)
         if single == high:
             return PrincipalState(
@@ -158,13 +164,13 @@ class ExactStart:
         low, middle, high = moments
         axes = [_eigenvector(self.inertia, x) for x in moments]
         first, second, third = axes
-        if not _dot(_cross(first, second), third) > 0:
+        if not dot(cross_of_balls(first, second), third) > 0:
             third = _three([-x for x in third])
         w = _three([enclosed(x) for x in self.angular_velocity])
         return PrincipalState(
             moments,
             (middle - low, high - middle, high - low),
-            (_dot(first, w), _dot(second, w), _dot(third, w)),
+            (dot(first, w), dot(second, w), dot(third, w)),
             _columns(first, second, third),
         )
 
@@ -178,6 +184,12 @@ class ExactStart:
         if not (a < b < c and a > 0):
             raise Undetermined
         return a, b, c
+
+
+def principal_axes(inertia: ExactInertia) -> PrincipalState:
+    """Return principal moments and axes at the current precision, of a body that need not turn."""
+    zero = Fraction(0)
+    return ExactStart(inertia, (zero, zero, zero)).principal_state()
 
 
 def _gaps(moments: tuple[Fraction, ...] | list[Fraction]) -> Balls:
@@ -199,7 +211,7 @@ def _eigenvector(inertia: ExactInertia, moment: arb) -> Balls:
     column = columns[longest]
     if not abs(column[longest]) > 0:
         raise Undetermined
-    norm = _dot(column, column).sqrt()
+    norm = dot(column, column).sqrt()
     return _three([x / norm for x in column])
 
 
@@ -208,11 +220,13 @@ def _unit(vector: list[Fraction] | Vector) -> Balls:
     return _three([enclosed(x) / norm for x in vector])
 
 
-def _dot(u: Balls, v: Balls) -> arb:
+def dot(u: Balls, v: Balls) -> arb:
+    """Return u.v."""
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
-def _cross(u: Balls, v: Balls) -> Balls:
+def cross_of_balls(u: Balls, v: Balls) -> Balls:
+    """Return u x v."""
     return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
 
 

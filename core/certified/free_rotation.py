@@ -20,6 +20,7 @@ from core.integration.system import Model
 
 Rows = list[list[str]]
 IDENTITY = (1, 0, 0, 0)
+NAME = "torque-free rigid body"
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,17 @@ class CertifiedRotation:
 
     inertia: ExactInertia
     angular_velocity_at_start: tuple[Fraction, Fraction, Fraction]
+
+    def __post_init__(self) -> None:
+        if self.inertia.is_line and any(self.angular_velocity_at_start):
+            across = any(self.start.momentum) and self.regime == "steady"
+            if not across:
+                raise InvalidParameter(
+                    "body",
+                    "have three moments of inertia greater than 0 to rotate freely",
+                    remedy="give a body with extent in at least two directions, or let a line of matter turn across "
+                    "itself",
+                )
 
     @classmethod
     def of(cls, inertia: ExactInertia, angular_velocity: Sequence[Number]) -> CertifiedRotation:
@@ -70,21 +82,23 @@ class CertifiedRotation:
     @property
     def model(self) -> Model:
         """The branch of the solution that holds, and why."""
-        name, equal = "torque-free rigid body", self.inertia.equal_moments
+        name, equal = NAME, self.inertia.equal_moments
         if self.regime == "rest":
             return Model(name, "rest", "the angular velocity is zero", 0)
         if self.regime == "steady":
-            return Model(name, "steady rotation", "angular momentum and spin are parallel: nothing accelerates", 0)
+            why = {
+                1: "the spin lies along a principal axis",
+                2: "the spin lies along a principal axis or in the plane of two equal moments",
+                3: "the three moments are equal, so every axis is principal",
+            }[equal]
+            return Model(name, "steady rotation", f"{why}: nothing accelerates", 0)
         if self.regime == "separatrix":
             why = "L^2 = 2 E I_middle exactly: the motion tends to the middle axis, by hyperbolic functions"
             return Model(name, "separatrix", why, 1)
         if equal == 2:
             why = "two moments are equal: sine and cosine about the axis of the third"
             return Model(name, "regular precession", why, 1)
-        largest = self.start.side > 0
-        regime = f"circulation about the axis of {'largest' if largest else 'smallest'} moment"
-        why = f"three moments differ and L^2 {'>' if largest else '<'} 2 E I_middle: Jacobian elliptic functions"
-        return Model(name, regime, why, 1)
+        return triaxial_model(self.start.side)
 
     def angular_velocity(self, times: Sequence[Number], digits: int) -> Rows:
         """Return the angular velocity in body axes, n rows of 3 numerals.
@@ -227,6 +241,14 @@ class CertifiedRotation:
         radians = farthest * fastest
         magnitude = radians.numerator.bit_length() - radians.denominator.bit_length() + 2
         return bits_for(digits, magnitude)
+
+
+def triaxial_model(side: int) -> Model:
+    """Return the branch that holds where three moments differ and one extreme axis is circled."""
+    largest = side > 0
+    regime = f"circulation about the axis of {'largest' if largest else 'smallest'} moment"
+    why = f"three moments differ and L^2 {'>' if largest else '<'} 2 E I_middle: Jacobian elliptic functions"
+    return Model(NAME, regime, why, 1)
 
 
 def _of(start: ExactStart) -> TurningMotion:

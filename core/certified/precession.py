@@ -9,49 +9,53 @@ from math import isqrt
 
 from flint import arb
 
-from core.certified.decimals import decimal, decimal_of_fraction
+from core.bodies.principal_inertia import Symmetry
+from core.certified.decimals import decimal, decimal_of_fraction, decimals
+from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import Vector
 from core.certified.exact_inputs import enclosed
-from core.certified.exact_start import Regime
+from core.certified.exact_start import Balls, Regime
 from core.certified.free_rotation import CertifiedRotation
 from core.certified.raising import bits_for, check_digits, determined
 from core.certified.turning_motion import TurningMotion
+from core.rotation import absence
+from core.rotation.precession import OF_SYMMETRIC_BODIES, order_of_directions
 
 
 @dataclass(frozen=True)
 class CertifiedPrecession:
-    """Rates and angles of a precession, as numerals; None where the motion has no such thing.
+    """Rates and angles of a precession, as numerals; the fields are those of `core.rotation.precession.Precession`.
 
     Attributes
     ----------
-    regime : str
-    period : str or None
-        Of the angular velocity in the body (s).
-    flip_interval : str or None
-        Between sign changes of the middle component (s).
+    axis : list of 3 str, or None
+        Unit vector in body axes: the symmetry axis, or the principal axis that the angular velocity circles. It points
+        along the positive side of the body axis that it is nearest to.
+    body_rate, space_rate, mean_precession_rate : str or None
+        (rad/s).
+    period, flip_interval : str or None
+        (s).
+    axis_to_angular_momentum, axis_to_angular_velocity, angular_momentum_to_angular_velocity : str or None
+        Symmetric bodies only (rad).
     precession_per_period : str or None
-        Angle by which the circled axis turns about the angular momentum in a period, not reduced (rad).
-    mean_precession_rate : str or None
-        That angle over the period (rad/s); on the separatrix, the limit that the rate tends to, L/I of the middle axis.
-    body_rate : str or None
-        Rate at which the angular velocity goes round the symmetry axis, signed; symmetric bodies only (rad/s).
-    space_rate : str or None
-        Rate at which the symmetry axis goes round the angular momentum, L/I; symmetric bodies only (rad/s).
-    momentum_angle, spin_angle : str or None
-        Angle of the symmetry axis with the angular momentum and with the angular velocity; symmetric bodies only (rad).
+        Not reduced by whole turns (rad).
     absent : mapping of str to str
         Why a field is None.
     """
 
+    symmetry: Symmetry
     regime: Regime
-    period: str | None
-    flip_interval: str | None
-    precession_per_period: str | None
-    mean_precession_rate: str | None
+    axis: list[str] | None
     body_rate: str | None
     space_rate: str | None
-    momentum_angle: str | None
-    spin_angle: str | None
+    period: str | None
+    flip_interval: str | None
+    axis_to_angular_momentum: str | None
+    axis_to_angular_velocity: str | None
+    angular_momentum_to_angular_velocity: str | None
+    order_of_directions: str | None
+    precession_per_period: str | None
+    mean_precession_rate: str | None
     absent: Mapping[str, str]
 
 
@@ -87,34 +91,77 @@ def certified_precession(rotation: CertifiedRotation, digits: int) -> CertifiedP
 
     periodic = rotation.regime == "periodic"
     symmetric = _Symmetric.of(rotation)
-    figures: dict[str, str | None] = dict(
-        period=rotation.period(digits),
-        flip_interval=rotation.flip_interval(digits),
-        precession_per_period=number(per_period) if periodic else None,
-        mean_precession_rate=number(mean_rate) if rotation.turns else None,
+    symmetry = rotation.inertia.symmetry
+    has_axis = rotation.regime != "rest" and symmetry != "spherical"
+    floor = floor_of_directions(digits)
+    found: dict[str, str | None] = dict(
         body_rate=symmetric.body_rate(digits) if symmetric else None,
         space_rate=number(symmetric.space_rate) if symmetric else None,
-        momentum_angle=number(symmetric.momentum_angle) if symmetric else None,
-        spin_angle=number(symmetric.spin_angle) if symmetric else None,
+        period=rotation.period(digits),
+        flip_interval=rotation.flip_interval(digits),
+        axis_to_angular_momentum=number(symmetric.axis_to_angular_momentum) if symmetric else None,
+        axis_to_angular_velocity=number(symmetric.axis_to_angular_velocity) if symmetric else None,
+        angular_momentum_to_angular_velocity=number(symmetric.between) if symmetric else None,
+        order_of_directions=order_of_directions(symmetry) if symmetric and symmetric.inclined else None,
+        precession_per_period=number(per_period) if periodic else None,
+        mean_precession_rate=number(mean_rate) if rotation.turns else None,
     )
-    absent = {name: _why_absent(rotation, name) for name, figure in figures.items() if figure is None}
-    return CertifiedPrecession(rotation.regime, **figures, absent=absent)
+    axis = determined(lambda: decimals(oriented(_axis(rotation)), digits, floor), bits) if has_axis else None
+    absent = {name: _why_absent(rotation, name) for name, figure in found.items() if figure is None}
+    if axis is None:
+        absent["axis"] = _why_absent(rotation, "axis")
+    return CertifiedPrecession(symmetry, rotation.regime, axis, **found, absent=absent)
+
+
+def _axis(rotation: CertifiedRotation) -> Balls:
+    """Return the axis of symmetry, the one that is circled, or the one about which the body turns steadily."""
+    inertia, start = rotation.inertia, rotation.start
+    if inertia.equal_moments == 2:
+        x, y, z = (enclosed(entry) for entry in _axis_of_symmetry(rotation)[0])
+    elif rotation.regime == "steady":
+        x, y, z = (enclosed(entry) for entry in rotation.angular_velocity_at_start)
+    else:
+        state = start.principal_state()
+        k = 1 if start.side == 0 else 2 if start.side > 0 else 0
+        x, y, z = (row[k] for row in state.axes)
+        return x, y, z
+    if inertia.diagonal:
+        # One component alone is not zero.
+        x, y, z = (abs(entry) / abs(entry) if not entry.is_zero() else entry for entry in (x, y, z))
+        return x, y, z
+    norm = (x * x + y * y + z * z).sqrt()
+    return x / norm, y / norm, z / norm
+
+
+def _axis_of_symmetry(rotation: CertifiedRotation) -> tuple[Vector, Fraction, Fraction]:
+    """Return a vector along the axis of the single moment of two equal ones, the double moment, and the single one."""
+    moments, t = rotation.inertia.rational_moments, rotation.inertia.tensor
+    assert moments is not None
+    equal, single = (moments[0], moments[2]) if moments[0] == moments[1] else (moments[2], moments[0])
+    # I - equal has rank one, so its columns are along the axis; the diagonal holds the squares of the components.
+    columns: list[Vector] = [
+        (t[0][j] - (equal if j == 0 else 0), t[1][j] - (equal if j == 1 else 0), t[2][j] - (equal if j == 2 else 0))
+        for j in range(3)
+    ]
+    longest = max(range(3), key=lambda j: abs(columns[j][j]))
+    x, y, z = columns[longest]
+    axis = (x, y, z) if columns[longest][longest] > 0 else (-x, -y, -z)
+    return axis, equal, single
 
 
 def _why_absent(rotation: CertifiedRotation, name: str) -> str:
-    of_symmetric_bodies = name in ("body_rate", "space_rate", "momentum_angle", "spin_angle")
+    equal = rotation.inertia.equal_moments
     if rotation.regime == "rest":
-        return "nothing turns"
-    if of_symmetric_bodies and rotation.inertia.equal_moments != 2:
-        equal = (
-            "are equal, so that every axis is" if rotation.inertia.equal_moments == 3 else "differ, so that no axis is"
-        )
-        return f"the three moments {equal} one of symmetry"
+        return absence.NOTHING_TURNS
+    if name == "axis":
+        return absence.SPHERE
+    if name in OF_SYMMETRIC_BODIES and equal != 2:
+        return absence.SPHERE if equal == 3 else absence.TRIAXIAL
+    if name == "order_of_directions":
+        return absence.SAME_DIRECTION
     if rotation.regime == "steady":
-        return "the angular velocity is constant in the body"
-    if rotation.regime == "separatrix":
-        return "on the separatrix the body tends to the middle axis and never returns"
-    return "two moments are equal, so that there is no middle axis"
+        return {1: absence.STEADY_BY_AXIS, 2: absence.STEADY_IN_BODY, 3: absence.STEADY_ANYHOW}[equal]
+    return absence.ON_THE_SEPARATRIX if rotation.regime == "separatrix" else absence.NO_MIDDLE_AXIS
 
 
 @dataclass(frozen=True)
@@ -141,27 +188,24 @@ class _Symmetric:
 
     @classmethod
     def of(cls, rotation: CertifiedRotation) -> _Symmetric | None:
-        inertia = rotation.inertia
-        moments = inertia.rational_moments
-        if moments is None or inertia.equal_moments != 2 or rotation.regime == "rest":
+        if rotation.inertia.equal_moments != 2 or rotation.regime == "rest":
             return None
-        equal, single = (moments[0], moments[2]) if moments[0] == moments[1] else (moments[2], moments[0])
-        t, w = inertia.tensor, rotation.angular_velocity_at_start
-        columns: list[Vector] = [
-            (t[0][j] - (equal if j == 0 else 0), t[1][j] - (equal if j == 1 else 0), t[2][j] - (equal if j == 2 else 0))
-            for j in range(3)
-        ]
-        longest = max(range(3), key=lambda j: abs(columns[j][j]))
-        axis = columns[longest]
-        dot = sum((x * y for x, y in zip(axis, w, strict=True)), Fraction(0)) * (1 if axis[longest] > 0 else -1)
+        axis, equal, single = _axis_of_symmetry(rotation)
+        w = rotation.angular_velocity_at_start
+        dot = sum((x * y for x, y in zip(axis, w, strict=True)), Fraction(0))
         along = dot * dot / sum((x * x for x in axis), Fraction(0))
         total = sum((x * x for x in w), Fraction(0))
         sign = (dot > 0) - (dot < 0)
         return cls(equal, single, along, total - along, sign, rotation.start.squared_momentum)
 
+    @property
+    def inclined(self) -> bool:
+        """Whether the spin lies neither along the axis nor across it."""
+        return self.along_squared != 0 and self.across_squared != 0
+
     def body_rate(self, digits: int) -> str | None:
         """(I3 - I)/I w3: rational where w3 is."""
-        if self.across_squared == 0 or self.along_squared == 0:
+        if not self.inclined:
             return None
         factor = (self.single - self.equal) / self.equal * self.direction
         root = _rational_root(self.along_squared)
@@ -175,15 +219,21 @@ class _Symmetric:
         """L/I."""
         return enclosed(self.squared_momentum).sqrt() / enclosed(self.equal)
 
-    def momentum_angle(self) -> arb:
+    def axis_to_angular_momentum(self) -> arb:
         """Return the angle between axis and angular momentum."""
         across, along = enclosed(self.across_squared).sqrt(), enclosed(self.along_squared).sqrt()
         return arb.atan2(enclosed(self.equal) * across, enclosed(self.single) * self.direction * along)
 
-    def spin_angle(self) -> arb:
+    def axis_to_angular_velocity(self) -> arb:
         """Return the angle between axis and angular velocity."""
         across, along = enclosed(self.across_squared).sqrt(), enclosed(self.along_squared).sqrt()
         return arb.atan2(across, self.direction * along)
+
+    def between(self) -> arb:
+        """Return the angle between angular momentum and angular velocity."""
+        product = enclosed(self.along_squared * self.across_squared).sqrt()
+        dot = enclosed(self.equal * self.across_squared + self.single * self.along_squared)
+        return arb.atan2(enclosed(abs(self.single - self.equal)) * product, dot)
 
 
 def _rational_root(square: Fraction) -> Fraction | None:

@@ -1,105 +1,205 @@
-"""Eigenvalues of small perturbations of a rotation about a principal axis, to any number of digits.
+"""Every equilibrium of a free body to any number of digits.
 
-About axis i at the rate W, lambda^2 = W^2 (I_i - I_j)(I_k - I_i)/(I_j I_k), and lambda = 0.
+About axis i at the rate W, lambda^2 = W^2 (I_i - I_j)(I_k - I_i)/(I_j I_k), and lambda = 0. Which moments are equal is
+decided exactly; what follows from that stands in `core.rotation.verdict`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
 
 from flint import arb
 
-from core.certified.decimals import Undetermined, decimal
+from core.bodies.principal_inertia import Symmetry
+from core.certified.decimals import Undetermined, decimal, decimal_of_fraction, decimals
+from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import Number, enclosed, exact
-from core.certified.exact_start import ExactStart
+from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
+from core.certified.exact_start import Balls, PrincipalState, principal_axes
+from core.certified.free_rotation import CertifiedRotation, triaxial_model
 from core.certified.raising import bits_for, check_digits, determined
-
-Kind = Literal["center", "saddle", "degenerate"]
+from core.certified.turning_motion import constants_of
+from core.rotation.stability import flip_reason, no_middle_axis
+from core.rotation.verdict import REST, Attitude, Kind, Verdict, drift, verdict
 
 
 @dataclass(frozen=True)
 class CertifiedEquilibrium:
-    """A rotation about one principal axis.
+    """A constant angular velocity; the fields are those of `core.rotation.stability.Equilibrium`.
 
     Attributes
     ----------
-    moment : str
+    axis : list of 3 str, or None
+        Unit vector in body axes, along the positive side of the body axis that it is nearest to; None for the state of
+        rest.
+    moment : str or None
         About this axis (kg m^2).
-    kind : {"center", "saddle", "degenerate"}
-        Decided exactly.
-    rate : str
-        The positive number of which +- (saddle) or +-i times (centre) are the eigenvalues beside 0; "0" where
-        degenerate (1/s).
+    eigenvalues : tuple of (real, imaginary)
+        (1/s).
+    growth_rate, drift_rate : str
+        (1/s).
     """
 
-    moment: str
+    axis: list[str] | None
+    moment: str | None
+    eigenvalues: tuple[tuple[str, str], tuple[str, str], tuple[str, str]]
     kind: Kind
+    stable: bool
+    growth_rate: str
+    drift_rate: str
+    linearly_stable: bool
+    attitude: Attitude
+    survives_dissipation: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class CertifiedFlip:
+    """What becomes of a disturbed rotation about the middle axis.
+
+    Attributes
+    ----------
+    disturbance : tuple of 2 str
+        Rates along the axes of smallest and largest moment (rad/s).
+    interval : str or None
+        Between sign changes of the component along the middle axis (s).
+    reason : str
+    """
+
+    disturbance: tuple[str, str]
+    interval: str | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class CertifiedStability:
+    """All equilibria of a free body at one rate, about the axes in ascending order of moments and at rest."""
+
+    symmetry: Symmetry
     rate: str
-
-    @property
-    def growth_rate(self) -> str:
-        """Exponential rate of a small disturbance (1/s)."""
-        return self.rate if self.kind == "saddle" else "0"
-
-    @property
-    def eigenvalues(self) -> tuple[tuple[str, str], tuple[str, str], tuple[str, str]]:
-        """Real and imaginary parts; a double zero beside the third where degenerate (1/s)."""
-        zero = ("0", "0")
-        if self.kind == "degenerate":
-            return zero, zero, zero
-        if self.kind == "saddle":
-            return (self.rate, "0"), (f"-{self.rate}", "0"), zero
-        return ("0", self.rate), ("0", f"-{self.rate}"), zero
+    equilibria: tuple[CertifiedEquilibrium, ...]
+    flip: CertifiedFlip | None
 
 
-def certified_stability(inertia: ExactInertia, rate: Number, digits: int) -> list[CertifiedEquilibrium]:
-    """Return the equilibria about the three principal axes, in ascending order of moments.
+def certified_stability(
+    inertia: ExactInertia, rate: Number, digits: int, disturbance: Sequence[Number] | None = None
+) -> CertifiedStability:
+    """Return every equilibrium and, if a disturbance is given, the interval of its flips.
 
     Raises
     ------
     InvalidParameter
-        For a rate that is no number, or digits outside 16 to 1000.
+        For a rate or a disturbance that is no number, a moment that is zero, or digits outside 16 to 1000.
+    NotApplicable
+        If a disturbance is given and the body has no middle axis.
+    BudgetExceeded
+        If a precision beyond the limit would be needed: a disturbance on the separatrix of irrational moments.
     """
     check_digits(digits)
-    spin = abs(exact(rate, "rate"))
-    equal = inertia.equal_moments
+    spin = exact(rate, "rate")
+    inertia.require_extent()
+    flip = None
+    if disturbance is not None:
+        flip = _flip(inertia, spin, exact_numbers(disturbance, ("disturbance",), 2), digits)
     rational = inertia.rational_moments
+    ranks = (0, 1, 2) if rational is None else [sorted(set(rational)).index(moment) for moment in rational]
+    told = [verdict(ranks, axis, spin != 0) for axis in range(3)]
 
-    def kind(axis: int) -> Kind:
-        if spin == 0 or equal == 3:
-            return "degenerate"
-        if equal == 2 and rational is not None:
-            return "center" if rational.count(rational[axis]) == 1 else "degenerate"
-        return "saddle" if axis == 1 else "center"
+    def evaluate() -> tuple[CertifiedEquilibrium, ...]:
+        state = principal_axes(inertia)
+        return tuple(_about(state, rational, axis, spin, told[axis], digits) for axis in range(3))
 
-    def evaluate() -> list[CertifiedEquilibrium]:
-        moments = _moments(inertia)
-        found = []
-        for axis in range(3):
-            own, (first, second) = moments[axis], (moments[k] for k in range(3) if k != axis)
-            if kind(axis) == "degenerate":
-                found.append(CertifiedEquilibrium(decimal(own, digits), "degenerate", "0"))
-                continue
-            if rational is not None:
-                i, (j, k) = rational[axis], (rational[n] for n in range(3) if n != axis)
-                square = enclosed(abs((i - j) * (k - i) / (j * k)))
-            else:
-                square = abs((own - first) * (second - own) / (first * second))
-            if not square > 0:
-                raise Undetermined
-            value = enclosed(spin) * square.sqrt()
-            found.append(CertifiedEquilibrium(decimal(own, digits), kind(axis), decimal(value, digits)))
-        return found
-
-    return determined(evaluate, bits_for(digits))
+    equilibria = (*determined(evaluate, bits_for(digits)), _rest())
+    return CertifiedStability(inertia.symmetry, decimal_of_fraction(spin, digits), equilibria, flip)
 
 
-def _moments(inertia: ExactInertia) -> tuple[arb, ...]:
-    rational = inertia.rational_moments
-    if rational is not None:
-        return tuple(enclosed(x) for x in rational)
-    zero = Fraction(0)
-    return ExactStart(inertia, (zero, zero, zero)).principal_state().moments
+def _about(
+    state: PrincipalState, rational: tuple[Fraction, ...] | None, axis: int, spin: Fraction, told: Verdict, digits: int
+) -> CertifiedEquilibrium:
+    size, drifts = "0", "0"
+    if told.kind != "degenerate":
+        size = decimal(enclosed(abs(spin)) * _eigenvalue(state, axis), digits)
+    elif rational is not None:
+        low, high = (rational[n] for n in range(3) if n != axis)
+        drifts = decimal_of_fraction(drift(rational[axis], low, high, spin), digits)
+    minus = "0" if size == "0" else f"-{size}"
+    saddle = told.kind == "saddle"
+    return CertifiedEquilibrium(
+        decimals(oriented(_column(state, axis)), digits, floor_of_directions(digits)),
+        decimal(state.moments[axis], digits) if rational is None else decimal_of_fraction(rational[axis], digits),
+        ((size, "0"), (minus, "0"), ("0", "0")) if saddle else (("0", size), ("0", minus), ("0", "0")),
+        told.kind,
+        told.stable,
+        size if saddle else "0",
+        drifts,
+        told.linearly_stable,
+        told.attitude,
+        told.survives_dissipation,
+        told.reason,
+    )
+
+
+def _eigenvalue(state: PrincipalState, axis: int) -> arb:
+    """Return |lambda| at the rate one."""
+    first, second = (state.moments[k] for k in range(3) if k != axis)
+    ab, bc, ac = state.gaps
+    near = ((ab, ac), (ab, bc), (bc, ac))[axis]
+    square = near[0] * near[1] / (first * second)
+    if not square > 0:
+        raise Undetermined
+    return square.sqrt()
+
+
+def _column(state: PrincipalState, axis: int) -> Balls:
+    x, y, z = (row[axis] for row in state.axes)
+    return x, y, z
+
+
+def _rest() -> CertifiedEquilibrium:
+    zero, told = ("0", "0"), REST
+    return CertifiedEquilibrium(
+        None,
+        None,
+        (zero, zero, zero),
+        told.kind,
+        told.stable,
+        "0",
+        "0",
+        told.linearly_stable,
+        told.attitude,
+        told.survives_dissipation,
+        told.reason,
+    )
+
+
+def _flip(inertia: ExactInertia, rate: Fraction, disturbance: tuple[Fraction, ...], digits: int) -> CertifiedFlip:
+    if inertia.equal_moments > 1:
+        raise no_middle_axis()
+    small, large = disturbance
+    given = (decimal_of_fraction(small, digits), decimal_of_fraction(large, digits))
+    moments = inertia.rational_moments
+    if moments is not None:
+        along = CertifiedRotation.of_moments(moments, (small, rate, large))
+        interval = along.flip_interval(digits)
+        return CertifiedFlip(given, interval, flip_reason(interval is not None, along.model.why))
+    if (small, rate, large).count(0) >= 2:
+        # Along one axis or at rest, whatever the moments are.
+        still = CertifiedRotation.of_moments((1, 2, 3), (small, rate, large))
+        return CertifiedFlip(given, None, flip_reason(False, still.model.why))
+
+    def evaluate() -> tuple[str, int]:
+        state = principal_axes(inertia)
+        low, _, high = state.moments
+        ab, bc, _ = state.gaps
+        # D_B = L^2 - 2E B.
+        difference = high * bc * enclosed(large**2) - low * ab * enclosed(small**2)
+        if not (difference > 0 or difference < 0):
+            raise Undetermined
+        side = 1 if difference > 0 else -1
+        rates = (enclosed(small), enclosed(rate), enclosed(large))
+        return decimal(constants_of(state.moments, state.gaps, rates, side, abs(difference)).half_period, digits), side
+
+    interval, side = determined(evaluate, bits_for(digits))
+    return CertifiedFlip(given, interval, flip_reason(True, triaxial_model(side).why))

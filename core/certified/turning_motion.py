@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from typing import NamedTuple
 
 from flint import arb
 
@@ -32,6 +33,54 @@ from core.certified.exact_inputs import enclosed
 from core.certified.exact_start import Balls, ExactStart
 
 QuaternionBalls = tuple[arb, arb, arb, arb]
+
+
+class MotionConstants(NamedTuple):
+    """What a polhode determines: amplitudes (rad/s), the rate p of the phase (1/s), and the parameter of the functions.
+
+    Attributes
+    ----------
+    amplitudes : 3 balls
+        A_c, A_b, A_d.
+    p, m, m1 : arb
+        m1 = 1 - m, formed without cancellation.
+    """
+
+    amplitudes: Balls
+    p: arb
+    m: arb
+    m1: arb
+
+    @property
+    def half_period(self) -> arb:
+        """2K/p (s), where m1 > 0."""
+        return arb.pi() / (ONE.agm(self.m1.sqrt()) * self.p)
+
+
+def constants_of(moments: Balls, gaps: Balls, rates: Balls, side: int, difference: arb) -> MotionConstants:
+    """Return the constants of the motion through a state.
+
+    Parameters
+    ----------
+    moments, rates : 3 balls
+        Along ascending principal axes.
+    gaps : 3 balls
+        B - A, C - B, C - A.
+    side : int
+        1 where the axis of the largest moment is circled, -1 where that of the smallest is.
+    difference : arb
+        |L^2 - 2E B|.
+    """
+    low, middle, high = moments
+    ab, bc, ac = gaps
+    wa, wb, wc = (w * w for w in rates)
+    # L^2 - 2E I of the circled axis d and of the other extreme c, as sums of terms of one sign.
+    of_least, of_most = high * ac * wc + middle * ab * wb, low * ac * wa + middle * bc * wb
+    X, Y, bd, cb = (of_most, of_least, bc, ab) if side > 0 else (of_least, of_most, ab, bc)
+    I_c, I_d = (low, high) if side > 0 else (high, low)
+    amplitudes = ((X / (I_c * ac)).sqrt(), (X / (middle * bd)).sqrt(), (Y / (I_d * ac)).sqrt())
+    p = (bd * Y / (low * middle * high)).sqrt()
+    return MotionConstants(amplitudes, p, cb * X / (bd * Y), ac * difference / (bd * Y))
 
 
 class TurningMotion:
@@ -51,23 +100,12 @@ class TurningMotion:
     def __init__(self, start: ExactStart) -> None:
         state = start.principal_state()
         self.start, self.side, self.axes = start, start.side or -1, state.axes
-        low, middle, high = self.moments = state.moments
-        ab, bc, ac = state.gaps
+        self.moments = state.moments
         d, c = (2, 0) if self.side > 0 else (0, 2)
         self.circled, self.other = d, c
-        bd, cb = (bc, ab) if d == 2 else (ab, bc)
-        wa, wb, wc = (w * w for w in state.rates)
-        # L^2 - 2E I of the circled and of the other extreme, as sums of terms of one sign.
-        if d == 2:
-            X, Y = low * ac * wa + middle * bc * wb, high * ac * wc + middle * ab * wb
-        else:
-            X, Y = high * ac * wc + middle * ab * wb, low * ac * wa + middle * bc * wb
-        I_c, I_d = self.moments[c], self.moments[d]
-        self.A_c, self.A_b = (X / (I_c * ac)).sqrt(), (X / (middle * bd)).sqrt()
-        self.A_d = (Y / (I_d * ac)).sqrt()
-        self.p = (bd * Y / (low * middle * high)).sqrt()
-        self.m = cb * X / (bd * Y)
-        self.m1 = ac * self._difference() / (bd * Y)
+        constants = constants_of(state.moments, state.gaps, state.rates, self.side, self._difference())
+        self.A_c, self.A_b, self.A_d = constants.amplitudes
+        self.p, self.m, self.m1 = constants.p, constants.m, constants.m1
         self.L, self.twice_energy = enclosed(start.squared_momentum).sqrt(), enclosed(start.twice_energy)
         # x and z along or against their principal axes; y completes them.
         towards_d = _sign(state.rates[d])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,7 +142,6 @@ class EnergyEllipsoid:
         BudgetExceeded
             If it is above 200.
         """
-        _check_resolution(resolution, 1)
         directions, faces = _geodesic_sphere(resolution)
         vertices = self.points(directions)
         return TriangleMesh(vertices, faces, _quality(directions, vertices, faces))
@@ -152,7 +152,7 @@ class EnergyEllipsoid:
         Colatitude from the body's z axis runs from 0 to pi along rows, longitude from its x axis from 0 to 2 pi down
         columns, both ends included.
         """
-        _check_resolution(resolution, 2)
+        check_resolution(resolution, 2)
         colatitude, longitude = np.linspace(0.0, np.pi, resolution), np.linspace(0.0, 2.0 * np.pi, 2 * resolution)
         # The seam closes and the poles are points, exactly.
         cosine, sine = np.cos(longitude), np.sin(longitude)
@@ -175,7 +175,8 @@ def _ldexp(mantissa: float, exponent: int, name: str = "energy") -> float:
     return math.ldexp(mantissa, exponent)
 
 
-def _check_resolution(resolution: int, least: int) -> None:
+def check_resolution(resolution: int, least: int) -> None:
+    """Raise `InvalidParameter` for a resolution below `least`, `BudgetExceeded` for one above 200."""
     if resolution < least:
         raise InvalidParameter("resolution", f"be at least {least}")
     if resolution > FINEST:
@@ -184,14 +185,44 @@ def _check_resolution(resolution: int, least: int) -> None:
         )
 
 
-def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
-    """Return unit vectors and faces of an icosahedron with every edge cut into `parts`, corners shared."""
-    g = 0.5 * (1.0 + math.sqrt(5.0))
-    corners = np.array(
-        [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g), (0, -1, -g), (0, 1, -g),
-         (g, 0, -1), (g, 0, 1),
-         (-g, 0, -1), (-g, 0, 1)]
-    )  # fmt: skip
+class Geodesic(NamedTuple):
+    """An icosahedron whose edges are cut into parts, vertices shared, not yet put on the sphere.
+
+    Attributes
+    ----------
+    corners : ndarray, shape (n, 3)
+        Of the icosahedron; each vertex is a mean of three of them.
+    weights : ndarray, shape (n, 3)
+        Of those three: whole numbers.
+    faces : ndarray, shape (m, 3)
+        Indices of vertices.
+    """
+
+    corners: Faces
+    weights: Faces
+    faces: Faces
+
+
+CORNERS = np.array(
+    [
+        ((-1, 0, 0), (0, 1, 0)), ((1, 0, 0), (0, 1, 0)), ((-1, 0, 0), (0, -1, 0)), ((1, 0, 0), (0, -1, 0)),
+        ((0, -1, 0), (0, 0, 1)), ((0, 1, 0), (0, 0, 1)), ((0, -1, 0), (0, 0, -1)), ((0, 1, 0), (0, 0, -1)),
+        ((0, 0, -1), (1, 0, 0)), ((0, 0, 1), (1, 0, 0)), ((0, 0, -1), (-1, 0, 0)), ((0, 0, 1), (-1, 0, 0)),
+    ]
+)  # fmt: skip
+"""Of an icosahedron, shape (12, 2, 3): the first vector plus the second times the golden section (1 + sqrt 5)/2."""
+CORNERS.setflags(write=False)
+
+
+def geodesic(parts: int) -> Geodesic:
+    """Return an icosahedron with every edge cut into so many parts; see `EnergyEllipsoid.triangles`.
+
+    Raises
+    ------
+    InvalidParameter, BudgetExceeded
+        For fewer parts than 1 or more than 200.
+    """
+    check_resolution(parts, 1)
     solid = [
         (0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
         (11, 10, 2), (10, 7, 6), (7, 1, 8),
@@ -199,10 +230,16 @@ def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
     ]  # fmt: skip
     # Each vertex is made once: first the corners, then the insides of the edges, then those of the faces.
     edges = sorted({(min(p, q), max(p, q)) for a, b, c in solid for p, q in ((a, b), (b, c), (c, a))})
-    along = np.arange(1, parts)[:, None]
-    first_of = {edge: len(corners) + k * (parts - 1) for k, edge in enumerate(edges)}
-    mixed = [parts * corners, *((parts - along) * corners[p] + along * corners[q] for p, q in edges)]
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(parts + 1), np.arange(parts + 1), indexing="ij"))
+    along = np.arange(1, parts)
+    count = len(CORNERS)
+    first_of = {edge: count + k * (parts - 1) for k, edge in enumerate(edges)}
+    every = np.arange(count)
+    corners = [np.stack([every, every, every], axis=1)]
+    weights = [np.tile([parts, 0, 0], (count, 1))]
+    for first, last in edges:
+        corners.append(np.tile([first, last, first], (parts - 1, 1)))
+        weights.append(np.stack([parts - along, along, 0 * along], axis=1))
+    i, j = (grid.ravel() for grid in np.meshgrid(np.arange(parts + 1), np.arange(parts + 1), indexing="ij"))
     i, j = i[i + j <= parts], j[i + j <= parts]
     inner = (i > 0) & (j > 0) & (i + j < parts)
     local = np.full((parts + 1, parts + 1), -1, dtype=np.int64)
@@ -214,34 +251,45 @@ def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
 
     upright = i + j < parts
     inverted = i + j < parts - 1
-    next_inside = len(corners) + len(edges) * (parts - 1)
+    next_inside = count + len(edges) * (parts - 1)
     faces = []
     for a, b, c in solid:
         local[0, 0], local[parts, 0], local[0, parts] = a, b, c
         local[steps, 0], local[0, steps], local[parts - steps, steps] = edge(a, b), edge(a, c), edge(b, c)
         local[i[inner], j[inner]] = next_inside + np.arange(inner.sum())
         next_inside += int(inner.sum())
-        mixed.append(
-            np.outer((parts - i - j)[inner], corners[a])
-            + np.outer(i[inner], corners[b])
-            + np.outer(j[inner], corners[c])
-        )
+        corners.append(np.tile([a, b, c], (int(inner.sum()), 1)))
+        weights.append(np.stack([(parts - i - j)[inner], i[inner], j[inner]], axis=1))
         p, q = i[upright], j[upright]
         faces.append(np.stack([local[p, q], local[p + 1, q], local[p, q + 1]], axis=1))
         p, q = i[inverted], j[inverted]
         faces.append(np.stack([local[p + 1, q], local[p + 1, q + 1], local[p, q + 1]], axis=1))
-    vertices = np.concatenate(mixed)
-    return vertices / np.sqrt((vertices * vertices).sum(axis=1))[:, None], np.concatenate(faces)
+    return Geodesic(np.concatenate(corners), np.concatenate(weights), np.concatenate(faces))
+
+
+def _geodesic_sphere(parts: int) -> tuple[Floats, Faces]:
+    """Return unit vectors and faces."""
+    found = geodesic(parts)
+    corners = CORNERS[:, 0] + 0.5 * (1.0 + math.sqrt(5.0)) * CORNERS[:, 1]
+    vertices = np.zeros((len(found.weights), 3))
+    for k in range(3):
+        vertices += found.weights[:, k, None] * corners[found.corners[:, k]]
+    return vertices / np.sqrt((vertices * vertices).sum(axis=1))[:, None], found.faces
+
+
+def topology(vertices: int, faces: Faces) -> tuple[bool, int]:
+    """Return whether the surface of so many vertices is watertight, and its Euler characteristic."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    there = np.sort(edges[:, 0] * vertices + edges[:, 1])
+    back = np.sort(edges[:, 1] * vertices + edges[:, 0])
+    watertight = bool(np.all(np.diff(there) > 0) and np.array_equal(there, back))
+    return watertight, vertices - len(edges) // 2 + len(faces)
 
 
 def _quality(directions: Floats, vertices: Floats, faces: Faces) -> MeshQuality:
     a, b, c = (directions[faces[:, k]] for k in range(3))
     # The volume ratio is the same for sphere and ellipsoid, which differ by a linear map.
     inside = float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    there = np.sort(edges[:, 0] * len(directions) + edges[:, 1])
-    back = np.sort(edges[:, 1] * len(directions) + edges[:, 0])
-    watertight = bool(np.all(np.diff(there) > 0) and np.array_equal(there, back))
     # In units in which no product of two lengths leaves the range of doubles.
     unit = math.ldexp(1.0, math.frexp(float(np.abs(vertices).max()))[1] - 1)
     a, b, c = (vertices[faces[:, k]] / unit for k in range(3))
@@ -251,8 +299,7 @@ def _quality(directions: Floats, vertices: Floats, faces: Faces) -> MeshQuality:
         return float(np.min(np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), np.einsum("ij,ij->i", u, v))))
 
     return MeshQuality(
-        watertight,
-        len(directions) - len(edges) // 2 + len(faces),
+        *topology(len(directions), faces),
         inside / (4.0 / 3.0 * math.pi),
         min(angle(a, b, c), angle(b, c, a), angle(c, a, b)),
         unit * max(float(np.linalg.norm(x - y, axis=1).max()) for x, y in ((a, b), (b, c), (c, a))),

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.bodies.mass_properties import MassProperties
-from core.errors import BudgetExceeded, InvalidParameter, MechanicsError
+from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, Path
 from core.integration.budget import Budget
 from core.integration.error_statements import rest_of
 from core.integration.methods.method import AbstractMethod
 from core.integration.solve import checked_times, solve
 from core.integration.system import Floats
 from core.integration.trajectory import Trajectory
+from core.notices import Notice
 from core.rotation.torque_free import TorqueFree
+
+MOST_NAMED = 8
+"""Members that a warning names by their indices."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +41,30 @@ class Ensemble:
     def angular_velocity(self) -> Floats:
         """Angular velocities in body axes, shape (m, n, 3), 24 bytes a sample (rad/s)."""
         return np.stack([member.state for member in self.members])
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """What the members have to say, each kind once: in the words of the member of largest error, and of how many.
+
+        Members that say the same in other figures say one thing: a client counts kinds, and looks the figures up.
+        """
+        told: dict[tuple[str, Path], list[tuple[int, Notice]]] = {}
+        for k, member in enumerate(self.members):
+            for notice in member.warnings:
+                told.setdefault((notice.code, notice.path), []).append((k, notice))
+        return tuple(self.merged(members) for members in told.values())
+
+    def merged(self, told: Sequence[tuple[int, Notice]]) -> Notice:
+        """Return one notice for what members, each with its index, say alike."""
+        which = list(dict.fromkeys(k for k, _ in told))
+        worst, notice = max(told, key=lambda entry: self.members[entry[0]].accuracy.error)
+        everyone = len(which) == len(self.members)
+        if everyone and len({entry.detail for _, entry in told}) == 1:
+            return notice
+        named = ", ".join(map(str, which[:MOST_NAMED])) + (", ..." if len(which) > MOST_NAMED else "")
+        of = f"all {len(which)} members" if everyone else f"{len(which)} of {len(self.members)} members ({named})"
+        most = "" if len(which) == 1 else f"; of these member {worst} has the largest error"
+        return Notice(notice.code, f"{notice.detail} [{of}{most}]", notice.path)
 
     @property
     def error(self) -> float:

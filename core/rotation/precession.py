@@ -31,6 +31,7 @@ from core.bodies.mass_properties import MassProperties, Symmetry
 from core.errors import InvalidParameter
 from core.integration.system import Floats
 from core.notices import Notice
+from core.rotation import absence
 from core.rotation.circulation import PERIODIC, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
 from core.rotation.closed_form import FreeRotation, exact_difference, too_near_the_separatrix
 from core.rotation.precession_figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
@@ -106,7 +107,7 @@ FIGURES = (
     "precession_per_period",
     "mean_precession_rate",
 )
-_OF_SYMMETRIC_BODIES = (
+OF_SYMMETRIC_BODIES = (
     "body_rate",
     "space_rate",
     "axis_to_angular_momentum",
@@ -198,21 +199,19 @@ def _absent(*reasons: tuple[str, tuple[str, ...]]) -> dict[str, str]:
     return {name: reason for reason, names in reasons for name in names}
 
 
-_AT_REST = _absent(("nothing turns", ("axis", *_OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
+_AT_REST = _absent((absence.NOTHING_TURNS, ("axis", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
 _SPHERE = _absent(
-    ("the three moments are equal, so that every axis is one of symmetry", ("axis", *_OF_SYMMETRIC_BODIES)),
-    ("the angular velocity is constant", _OF_A_CHANGE),
+    (absence.SPHERE, ("axis", *OF_SYMMETRIC_BODIES)),
+    (absence.STEADY_ANYHOW, _OF_A_CHANGE),
 )
-_THREE = "the three moments differ, so that no axis is one of symmetry", _OF_SYMMETRIC_BODIES
+_THREE = absence.TRIAXIAL, OF_SYMMETRIC_BODIES
 _BEYOND = (
     "the spin lies so near the plane of two nearly equal moments that the body does not move as a symmetric one",
-    _OF_SYMMETRIC_BODIES,
+    OF_SYMMETRIC_BODIES,
 )
-_NEVER_RETURNS = "on the separatrix the body tends to the middle axis and never returns", _OF_A_CHANGE[:-1]
+_NEVER_RETURNS = absence.ON_THE_SEPARATRIX, _OF_A_CHANGE[:-1]
 _TRIAXIAL = {
-    STEADY: _Told(
-        "steady", None, _absent(_THREE, ("the spin lies along a principal axis and is constant", _OF_A_CHANGE))
-    ),
+    STEADY: _Told("steady", None, _absent(_THREE, (absence.STEADY_BY_AXIS, _OF_A_CHANGE))),
     PERIODIC: _Told("periodic", None, _absent(_THREE)),
     SEPARATRIX: _Told("separatrix", None, _absent(_THREE, _NEVER_RETURNS)),
 }
@@ -224,13 +223,18 @@ _CONSTANT = _Told(
     "steady",
     None,
     _absent(
-        ("the angular velocity is constant in the body", ("body_rate", *_OF_A_CHANGE)),
-        ("two of the directions coincide", ("order_of_directions",)),
+        (absence.STEADY_IN_BODY, ("body_rate", *_OF_A_CHANGE)),
+        (absence.SAME_DIRECTION, ("order_of_directions",)),
     ),
 )
-_NO_MIDDLE_AXIS = _absent(("two moments are equal, so that there is no middle axis", ("flip_interval",)))
-_OBLATE = "oblate: the angular momentum lies between the axis and the angular velocity"
-_PROLATE = "prolate: the angular velocity lies between the axis and the angular momentum"
+_NO_MIDDLE_AXIS = _absent((absence.NO_MIDDLE_AXIS, ("flip_interval",)))
+
+
+def order_of_directions(symmetry: Symmetry) -> str:
+    """Return which of axis, angular momentum and angular velocity lies between the others, no two in one direction."""
+    if symmetry == "oblate":
+        return "oblate: the angular momentum lies between the axis and the angular velocity"
+    return "prolate: the angular velocity lies between the axis and the angular momentum"
 
 
 def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], _Told]:
@@ -238,10 +242,10 @@ def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], _Told]:
     found: dict[tuple[Symmetry, int, bool], _Told] = {
         ("triaxial", regime, False): told for regime, told in _TRIAXIAL.items()
     }
-    orders: dict[Symmetry, str] = {"oblate": _OBLATE, "prolate": _PROLATE, "linear": _PROLATE}
-    for symmetry, order in orders.items():
+    symmetric: tuple[Symmetry, ...] = ("oblate", "prolate", "linear")
+    for symmetry in symmetric:
         found[symmetry, STEADY, False] = _CONSTANT
-        found[symmetry, PERIODIC, False] = _Told("periodic", order, _NO_MIDDLE_AXIS)
+        found[symmetry, PERIODIC, False] = _Told("periodic", order_of_directions(symmetry), _NO_MIDDLE_AXIS)
         found |= {(symmetry, regime, True): told for regime, told in _UNLIKE_SYMMETRIC.items()}
     return found
 

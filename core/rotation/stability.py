@@ -5,14 +5,7 @@ About principal axis i at the rate W, with j and k the other two, small disturba
     lambda^2 = W^2 (I_i - I_j)(I_k - I_i) / (I_j I_k),   and lambda = 0 along the axis:
 
 a centre on the axes of largest and smallest moment, a saddle on the middle one. The differences are formed exactly.
-A centre of the linear equation proves nothing by itself; the energy-Casimir method does: on an extreme axis the energy
-has a strict extremum among the angular velocities of the same |L|.
-
-References
-----------
-J. E. Marsden, T. S. Ratiu, "Introduction to Mechanics and Symmetry", 2nd ed., sections 1.7 and 15.9. V. I. Arnold,
-"Mathematical Methods of Classical Mechanics", section 29. R. N. Bracewell, O. K. Garriott, "Rotation of artificial
-earth satellites", Nature 182 (1958) 760 (the major-axis rule).
+What follows from them, and where it is proved, stands in `core.rotation.verdict`.
 """
 
 from __future__ import annotations
@@ -20,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import isfinite
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,9 +28,8 @@ from core.rotation.linearised import LinearRates, linear_rates
 from core.rotation.precession_figures import OUT_OF_RANGE, oriented
 from core.rotation.principal_frame import PrincipalFrame
 from core.rotation.torque_free import inherited_notices
+from core.rotation.verdict import REST, Attitude, Kind, verdict
 
-Kind = Literal["center", "saddle", "degenerate"]
-Attitude = Literal["orbital", "unstable"]
 Eigenvalue = tuple[float, float]
 
 _finite_rate = Quantity("rad s^-1")
@@ -174,31 +166,16 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
 
 
 def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, inertia: PrincipalInertia) -> Equilibrium:
-    own, (low, high) = moments[axis], (moments[n] for n in range(3) if n != axis)
-    survives = own == moments[2]
-    after = _DISSIPATION[survives]
-    kind: Kind = "degenerate"
-    stable = linearly_stable = True
-    if rates.turning == 0.0:
-        reason = _REST
-    elif low == own == high:
-        reason = _SPHERE
-    elif own in (low, high):
-        stable = linearly_stable = False
-        reason = f"{_PLANE} {after}"
-    elif low < own < high:
-        kind, stable, linearly_stable = "saddle", False, False
-        reason = f"{_SADDLE} {after}"
-    else:
-        kind, reason = "center", _CENTERS[survives]
+    distinct = sorted(set(moments))
+    told = verdict([distinct.index(moment) for moment in moments], axis, rates.turning != 0.0)
     size = None if rates.size == OUT_OF_RANGE else rates.size
     pair: tuple[Eigenvalue, Eigenvalue] | None = None
     growth: float | None = 0.0
-    if kind == "saddle":
+    if told.kind == "saddle":
         growth = size
     if size is not None:
         back = -size if size else 0.0
-        pair = ((size, 0.0), (back, 0.0)) if kind == "saddle" else ((0.0, size), (0.0, back))
+        pair = ((size, 0.0), (back, 0.0)) if told.kind == "saddle" else ((0.0, size), (0.0, back))
     *pointing, _ = oriented(inertia.axes, axis)
     axis_of: Floats = np.array(pointing)
     axis_of.setflags(write=False)
@@ -206,55 +183,31 @@ def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, in
         axis_of,
         float(inertia.moments[axis]),
         None if pair is None else (*pair, (0.0, 0.0)),
-        kind,
-        stable,
+        told.kind,
+        told.stable,
         growth,
         None if rates.drift == OUT_OF_RANGE else rates.drift,
-        linearly_stable,
-        "orbital" if stable and rates.turning != 0.0 else "unstable",
-        survives,
-        reason,
+        told.linearly_stable,
+        told.attitude,
+        told.survives_dissipation,
+        told.reason,
     )
 
 
-_CENTER = (
-    "The moment is the {size}: a disturbance circles the axis (eigenvalues +-i times a rate). That is only linear; "
-    "stability is proved by the energy-Casimir method, the energy being strictly {extremum} here for the given |L|. "
-    "The attitude is stable as an orbit only."
-)
-_SADDLE = (
-    "The moment lies between the other two: a disturbance grows exponentially, which the linearised equation "
-    "proves also for the full one, and the body turns over again and again."
-)
-_PLANE = (
-    "Two moments are equal and the spin lies in their plane, where every axis is an equilibrium: the three eigenvalues "
-    "are zero but form a Jordan block, so that a rate along the third axis makes the spin drift round the plane "
-    "linearly. It is unstable as a point, yet the motion is bounded: the ring of all such spins is stable."
-)
-_SPHERE = (
-    "The three moments are equal: every angular velocity is constant, so that a disturbance neither grows nor decays "
-    "(neutral: Lyapunov stable, not asymptotically). The attitude is stable as an orbit only. Dissipation has nothing "
-    "to act upon, as the energy is the same on every axis."
-)
-_REST = (
-    "Nothing turns: a small angular velocity stays small because its energy does, though the linearised equation is "
-    "zero and says nothing. The attitude is unstable: the slightest rate carries it round."
-)
-_DISSIPATION = {
-    True: "With energy lost inside at constant angular momentum the body ends here (major-axis rule).",
-    False: "With energy lost inside at constant angular momentum the body leaves it for the axis of largest moment.",
-}
-
-
-_CENTERS = {
-    True: f"{_CENTER.format(size='largest', extremum='least')} {_DISSIPATION[True]}",
-    False: f"{_CENTER.format(size='smallest', extremum='greatest')} {_DISSIPATION[False]}",
-}
-
 _ZERO = (0.0, 0.0)
 _AT_REST = Equilibrium(
-    None, None, (_ZERO, _ZERO, _ZERO), "degenerate", True, 0.0, 0.0, True, "unstable", False, _REST
-)  # fmt: skip
+    None,
+    None,
+    (_ZERO, _ZERO, _ZERO),
+    REST.kind,
+    REST.stable,
+    0.0,
+    0.0,
+    REST.linearly_stable,
+    REST.attitude,
+    REST.survives_dissipation,
+    REST.reason,
+)
 
 
 def _moments(inertia: PrincipalInertia) -> tuple[tuple[Floats, Floats], list[Notice]]:
@@ -290,11 +243,7 @@ def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tu
     for n, x in enumerate(disturbance):
         _finite_rate.check(("disturbance", n), x)
     if distinct < 3:
-        raise NotApplicable(
-            "two moments are equal, so that there is no middle axis to be disturbed",
-            path=("disturbance",),
-            remedy="leave out the disturbance",
-        )
+        raise no_middle_axis()
     given = (float(disturbance[0]), float(disturbance[1]))
     # A body along its principal axes moves as this one does; in them the disturbance is exact.
     along = replace(inertia, axes=np.eye(3), axes_tail=np.zeros((3, 3)))
@@ -307,6 +256,18 @@ def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tu
     if interval is not None and not isfinite(interval):
         reason = "it turns over, but after a time that leaves the range of double precision"
         return Flip(given, None, f"{reason}; {rotation.model.why}")
-    if interval is not None:
-        return Flip(given, interval, f"it turns over every half period; {rotation.model.why}")
-    return Flip(given, None, f"it never turns over; {rotation.model.why}")
+    return Flip(given, interval, flip_reason(interval is not None, rotation.model.why))
+
+
+def no_middle_axis() -> NotApplicable:
+    """Return the refusal of a disturbance where two moments are equal."""
+    return NotApplicable(
+        "two moments are equal, so that there is no middle axis to be disturbed",
+        path=("disturbance",),
+        remedy="leave out the disturbance",
+    )
+
+
+def flip_reason(flips: bool, why: str) -> str:
+    """Return what becomes of a disturbed rotation about the middle axis, with the reason for its model."""
+    return f"{'it turns over every half period' if flips else 'it never turns over'}; {why}"

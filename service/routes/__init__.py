@@ -6,6 +6,7 @@ from service.routes.bodies import BODIES
 from service.routes.certified import with_digits
 from service.routes.certified_rotation import PRECESSION_IN_DIGITS, STABILITY_IN_DIGITS, TRAJECTORY_IN_DIGITS
 from service.routes.certified_scenes import scenes_in_digits
+from service.routes.certified_surfaces import ELLIPSOID_IN_DIGITS
 from service.routes.ensemble import ENSEMBLE
 from service.routes.plan import planning
 from service.routes.precession import PRECESSION
@@ -24,6 +25,7 @@ def questions() -> tuple[Question, ...]:
         "/v1/rotation/trajectory": TRAJECTORY_IN_DIGITS,
         "/v1/rotation/precession": PRECESSION_IN_DIGITS,
         "/v1/rotation/stability": STABILITY_IN_DIGITS,
+        "/v1/rotation/energy-ellipsoid": ELLIPSOID_IN_DIGITS,
         **scenes_in_digits(),
     }
     asked = [with_digits(route, in_digits[route.path]) if route.path in in_digits else route for route in plain]

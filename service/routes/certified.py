@@ -10,15 +10,33 @@ from typing import Annotated, Any, Literal, Union
 from pydantic import BaseModel, Field
 
 from core.certified.decimals import decimal_of_fraction
+from core.certified.exact_bodies import MOST_PARTS
 from core.certified.exact_inputs import exact
+from core.certified.exact_mass import ExactMass
 from core.certified.raising import check_digits
 from core.integration.budget import Budget
 from core.integration.trajectory import Work
+from core.notices import Notice
 from service.numerals import SpanInNumerals, instants
-from service.pricing import Priced
+from service.pricing import Foreseen, Priced
 from service.reading import ByPresence
 from service.routing import Answer, Example, Question
 from service.schemas import View, sample_count
+
+BESIDE: Mapping[str, str] = {
+    "accuracy": "the digits say how accurate the answer is",
+    "method": "every digit is proven in closed form, and a method steps in doubles",
+    "measure": "a measurement steps in doubles, of which no digit is proven",
+    "round": "the digits say how many are written",
+    "input_uncertainty": "every number of the question is taken as exact",
+}
+"""What a question has only without digits, and why."""
+
+REMEDIES: Mapping[str, str] = {
+    "must be a number": 'give a JSON number; decimal strings are taken, as exact numbers, only beside "digits" '
+    "(16 to 1000)",
+    "digits": "give a whole number from 16 to 1000, or leave it out for an answer in double precision",
+}
 
 SET_UP = 5e-3
 """Predicted time without samples (s): precision may be raised a hundredfold, so no such question runs in the server."""
@@ -76,12 +94,18 @@ class Cost:
         Time of a sample.
     before : float
         Time before the first (s).
+    beside : int
+        Numbers beside those of the samples.
+    text : float
+        Bytes that are no numbers.
     """
 
     samples: int
     numbers: int
     each: PerSample
     before: float = 0.0
+    beside: int = 10
+    text: float = 600.0
 
 
 @dataclass(frozen=True)
@@ -98,8 +122,8 @@ class PricedInDigits:
     def size(self, question: Any, budget: Budget) -> float:
         """Return the predicted length of an answer as JSON (bytes)."""
         cost, digits = self.cost(question, budget), int(question.digits)
-        # A numeral has a sign, a point, two quotes and a comma, and there are about ten beside the samples.
-        return 600.0 + (10 + cost.samples * cost.numbers) * (digits + 5.0)
+        # A numeral has a sign, a point, two quotes and a comma.
+        return cost.text + (cost.beside + cost.samples * cost.numbers) * (digits + 5.0)
 
 
 @dataclass(frozen=True)
@@ -117,7 +141,7 @@ class InDigits:
     question: type[BaseModel]
     answer: type[BaseModel]
     handle: Callable[[Any, Budget], Answer]
-    price: PricedInDigits
+    price: Foreseen
     outline: Callable[[Any], Any] | None = None
     examples: Mapping[str, Example] = field(default_factory=dict)
 
@@ -156,13 +180,18 @@ def with_digits(route: Question, other: InDigits) -> Question:
     either = Union.__getitem__((route.question, other.question))
     return replace(
         route,
-        question=Annotated.__class_getitem__((either, ByPresence("digits"))),  # type: ignore[attr-defined]
+        question=Annotated.__class_getitem__((either, ByPresence("digits", BESIDE, REMEDIES))),  # type: ignore[attr-defined]
         answer=Union.__getitem__((route.answer, other.answer)),
         handle=handle,
         price=EitherPrice(route.price.operation, route.price.counts, other),
         outline=outline,
         examples={**route.examples, **other.examples},
     )
+
+
+def notices(body: ExactMass) -> tuple[Notice, ...]:
+    """Return what every answer about a question's body has to say of it."""
+    return tuple(notice.inside("body") for notice in body.notices)
 
 
 def times_written(times: Iterable[Fraction], digits: int) -> list[str]:
@@ -184,6 +213,19 @@ def ends(times: SpanInNumerals | list[float | str]) -> tuple[Fraction, Fraction]
     else:
         found = exact(times.start, ("times", "start")), exact(times.stop, ("times", "stop"))
     return min(found), max(found)
+
+
+def summing(body: BaseModel) -> float:
+    """Return the predicted time to sum a body in rational arithmetic (s)."""
+    positions: Any = getattr(body, "positions", ())
+    length = max((longest(row) for row in positions), default=0)
+    # Every part turns and moves by denominators of its own, which multiply; more parts are refused, at no cost.
+    parts = min(_parts(body), MOST_PARTS)
+    return len(positions) * (1.2e-4 + 8.5e-9 * length * length) + parts * (4e-3 + 5e-5 * parts)
+
+
+def _parts(body: Any) -> int:
+    return sum(max(1, _parts(part.body)) for part in getattr(body, "parts", ()))
 
 
 def longest(numbers: Sequence[Any]) -> int:

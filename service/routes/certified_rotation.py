@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from core.bodies.principal_inertia import Symmetry
-from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_start import Regime
 from core.certified.free_rotation import IDENTITY, CertifiedRotation
 from core.certified.precession import certified_precession
 from core.certified.stability import certified_stability
 from core.integration.budget import Budget
-from core.notices import Notice
 from service.numerals import (
     AngularVelocityInNumerals,
     BodyInNumerals,
@@ -21,7 +19,7 @@ from service.numerals import (
     QuaternionInNumerals,
     RateInNumerals,
     TimesInNumerals,
-    inertia_of,
+    body_of,
     instants,
 )
 from service.routes.certified import (
@@ -33,16 +31,19 @@ from service.routes.certified import (
     accuracy,
     affordable,
     ends,
-    longest,
+    notices,
+    summing,
     times_written,
     work,
 )
 from service.routes.rotation import T_HANDLE, ModelView, Output, WorkView
 from service.routing import Answer, Example
-from service.schemas import Envelope, Request, View
+from service.schemas import Envelope, Request, View, fields_of
 
 RATES = PerSample(2e-5, 6e-8, 1.7e-10)
 RATES_AND_ATTITUDES = PerSample(5e-5, 1.2e-7, 8.5e-10)
+PRECESSION = PerSample(4e-4, 1e-6, 4e-9)
+STABILITY = PerSample(1.5e-4, 3e-7, 5e-10)
 
 
 class TrajectoryInDigits(Request):
@@ -96,12 +97,15 @@ class PrecessionAnswerInDigits(Envelope):
 
     symmetry: Symmetry
     regime: Regime = Field(description="Of the angular velocity in the body.")
+    axis: list[str] | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
     body_rate: str | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
     space_rate: str | None = Field(description="L/I (rad/s).")
     period: str | None = Field(description="Of the angular velocity in the body (s).")
     flip_interval: str | None = Field(description="Between sign changes along the middle axis (s).")
     axis_to_angular_momentum: str | None = Field(description="rad")
     axis_to_angular_velocity: str | None = Field(description="Half-angle of the body cone (rad).")
+    angular_momentum_to_angular_velocity: str | None = Field(description="Half-angle of the space cone (rad).")
+    order_of_directions: str | None = Field(description="Which of the three directions lies between the others.")
     precession_per_period: str | None = Field(description="Not reduced modulo 2 pi (rad).")
     mean_precession_rate: str | None = Field(description="Of the axis about the angular momentum (rad/s).")
     absent: dict[str, str] = Field(description="Why a figure is null.")
@@ -113,23 +117,45 @@ class StabilityInDigits(Request):
 
     body: BodyInNumerals
     rate: RateInNumerals = Field(default=1.0, description="About each principal axis in turn (rad/s).")
+    disturbance: tuple[RateInNumerals, RateInNumerals] | None = Field(
+        default=None,
+        description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
+        "the interval of its flips is then answered (rad/s).",
+    )
     digits: DigitCount
 
 
 class EquilibriumInDigits(View):
-    """A rotation about a principal axis."""
+    """A constant angular velocity, and what becomes of one near it."""
 
-    moment: str
+    axis: list[str] | None = Field(description="In body axes; null for the state of rest.")
+    moment: str | None
     eigenvalues: list[tuple[str, str]] = Field(description="Real and imaginary parts (1/s).")
     kind: Literal["center", "saddle", "degenerate"]
+    stable: bool = Field(description="In the sense of Lyapunov, of the angular velocity.")
     growth_rate: str = Field(description="Exponential rate of a small disturbance (1/s).")
+    drift_rate: str = Field(description="Linear rate per unit of disturbance (1/s).")
+    linearly_stable: bool
+    attitude: Literal["orbital", "unstable"] = Field(description="In which sense the attitude is stable.")
+    survives_dissipation: bool
+    reason: str
+
+
+class FlipInDigits(View):
+    """What becomes of a disturbed rotation about the middle axis."""
+
+    disturbance: tuple[str, str]
+    interval: str | None = Field(description="Between sign changes of the component along the middle axis (s).")
+    reason: str
 
 
 class StabilityAnswerInDigits(Envelope):
-    """The rotations about the three principal axes, in ascending order of moments."""
+    """Every equilibrium of a free body at one rate: about its axes in ascending order of moments, and at rest."""
 
     symmetry: Symmetry
+    rate: str
     equilibria: list[EquilibriumInDigits]
+    flip: FlipInDigits | None
     accuracy: AccuracyInDigits
 
 
@@ -138,7 +164,8 @@ def answer_trajectory(question: TrajectoryInDigits, budget: Budget) -> Answer:
     digits, wanted = question.digits, _outputs(question)
     samples = affordable(question.times, digits, _numbers(wanted), budget)
     times = instants(question.times)
-    motion = CertifiedRotation.of(inertia_of(question.body), question.angular_velocity)
+    body = body_of(question.body)
+    motion = CertifiedRotation.of(body.of_motion, question.angular_velocity)
     fields: Answer = {
         "model": motion.model,
         "method": "closed-form",
@@ -149,7 +176,7 @@ def answer_trajectory(question: TrajectoryInDigits, budget: Budget) -> Answer:
         "accuracy": accuracy(digits),
         "work": work(samples),
         "ended": "horizon",
-        "warnings": _notices(motion.inertia),
+        "warnings": notices(body),
     }
     if "time" in wanted:
         fields["time"] = times_written(times, digits)
@@ -164,50 +191,22 @@ def answer_trajectory(question: TrajectoryInDigits, budget: Budget) -> Answer:
 
 def answer_precession(question: PrecessionInDigits, budget: Budget) -> Answer:
     """Answer with the figures."""
-    motion = CertifiedRotation.of(inertia_of(question.body), question.angular_velocity)
-    found = certified_precession(motion, question.digits)
-    named = {"momentum_angle": "axis_to_angular_momentum", "spin_angle": "axis_to_angular_velocity"}
-    return {
-        "symmetry": motion.inertia.symmetry,
-        "regime": found.regime,
-        "body_rate": found.body_rate,
-        "space_rate": found.space_rate,
-        "period": found.period,
-        "flip_interval": found.flip_interval,
-        "axis_to_angular_momentum": found.momentum_angle,
-        "axis_to_angular_velocity": found.spin_angle,
-        "precession_per_period": found.precession_per_period,
-        "mean_precession_rate": found.mean_precession_rate,
-        "absent": {named.get(name, name): reason for name, reason in found.absent.items()},
-        "accuracy": accuracy(question.digits),
-        "warnings": _notices(motion.inertia),
-    }
+    body = body_of(question.body)
+    motion = CertifiedRotation.of(body.of_motion, question.angular_velocity)
+    found = fields_of(certified_precession(motion, question.digits))
+    return found | {"accuracy": accuracy(question.digits), "warnings": notices(body)}
 
 
 def answer_stability(question: StabilityInDigits, budget: Budget) -> Answer:
-    """Answer with the rotations about the principal axes."""
-    inertia = inertia_of(question.body)
+    """Answer with every equilibrium."""
+    body = body_of(question.body)
+    found = certified_stability(body.of_motion, question.rate, question.digits, question.disturbance)
     return {
-        "symmetry": inertia.symmetry,
-        "equilibria": [
-            {
-                "moment": found.moment,
-                "eigenvalues": found.eigenvalues,
-                "kind": found.kind,
-                "growth_rate": found.growth_rate,
-            }
-            for found in certified_stability(inertia, question.rate, question.digits)
-        ],
+        **fields_of(found),
+        "equilibria": [fields_of(equilibrium) for equilibrium in found.equilibria],
         "accuracy": accuracy(question.digits),
-        "warnings": _notices(inertia),
+        "warnings": notices(body),
     }
-
-
-def _notices(inertia: ExactInertia) -> tuple[Notice, ...]:
-    if inertia.physical:
-        return ()
-    detail = "one moment is larger than the sum of the other two, which no distribution of positive mass has"
-    return (Notice("unphysical-inertia", detail, ("body",)),)
 
 
 def _outputs(question: TrajectoryInDigits) -> tuple[Output, ...]:
@@ -226,7 +225,7 @@ def trajectory_cost(question: TrajectoryInDigits, budget: Budget) -> Cost:
     numbers = _numbers(wanted)
     samples = affordable(question.times, question.digits, numbers, budget)
     each = RATES_AND_ATTITUDES if "attitude" in wanted else RATES
-    return Cost(samples, numbers + ("time" in wanted), each, _summing(question.body))
+    return Cost(samples, numbers + ("time" in wanted), each, summing(question.body))
 
 
 def trajectory_outline(question: TrajectoryInDigits) -> TrajectoryInDigits:
@@ -234,16 +233,14 @@ def trajectory_outline(question: TrajectoryInDigits) -> TrajectoryInDigits:
     return question.model_copy(update={"times": [max(ends(question.times), key=abs)]})
 
 
-def figures_cost(question: PrecessionInDigits | StabilityInDigits, budget: Budget) -> Cost:
+def precession_cost(question: PrecessionInDigits, budget: Budget) -> Cost:
     """Return what is counted of a question without times: a handful of figures that cost a few samples each."""
-    return Cost(10, 0, RATES_AND_ATTITUDES, _summing(question.body))
+    return Cost(1, 0, PRECESSION, summing(question.body), beside=9, text=900.0)
 
 
-def _summing(body: BaseModel) -> float:
-    """Return the predicted time to sum a body in rational arithmetic (s)."""
-    positions: Any = getattr(body, "positions", ())
-    length = max((longest(row) for row in positions), default=0)
-    return len(positions) * (1.2e-4 + 8.5e-9 * length * length)
+def stability_cost(question: StabilityInDigits, budget: Budget) -> Cost:
+    """Return the same of the equilibria, of which each is explained in some 600 characters."""
+    return Cost(1, 0, STABILITY, summing(question.body), beside=18, text=3000.0)
 
 
 EXACT_T_HANDLE = {"kind": "principal-moments", "moments": ["837.2", "714", "437.7"]}
@@ -281,7 +278,7 @@ PRECESSION_IN_DIGITS = InDigits(
     PrecessionInDigits,
     PrecessionAnswerInDigits,
     answer_precession,
-    PricedInDigits(figures_cost),
+    PricedInDigits(precession_cost),
     examples={
         "digits": Example(
             "a spinning coin, 100 digits of its precession",
@@ -298,6 +295,6 @@ STABILITY_IN_DIGITS = InDigits(
     StabilityInDigits,
     StabilityAnswerInDigits,
     answer_stability,
-    PricedInDigits(figures_cost),
+    PricedInDigits(stability_cost),
     examples={"digits": Example("a T-handle, 40 digits", {"body": EXACT_T_HANDLE, "rate": "10", "digits": 40})},
 )

@@ -11,6 +11,7 @@ from core.bodies import Body
 from core.errors import InvalidParameter
 from core.integration.budget import Budget
 from core.integration.methods import Method
+from core.notices import Notice
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.initial_states import initial_states
@@ -78,24 +79,24 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         body, _starts(question, body), times, accuracy=question.accuracy, method=question.method, budget=budget
     )
     samples, added = many.angular_velocity, [0.0] * len(many.members)
-    told = [notice for member in many.members for notice in member.warnings]
+    by_rounding = []
+    outside: list[Notice] = []
     if question.round is not None:
         for k, member in enumerate(many.members):
             stated = member.accuracy
             samples[k], added[k] = rounded(samples[k], question.round, stated.error + (stated.inherited or 0.0))
-            told += notices_of(stated, added[k])
+            by_rounding += [(k, notice) for notice in notices_of(stated, added[k])]
     members = [
         {
             "model": member.model,
             "method": member.method,
-            "period": in_range("period", member.period, told),
+            "period": in_range("period", member.period, outside),
             "accuracy": covering(member.accuracy, more),
             "work": member.work,
             "ended": member.ended,
         }
         for member, more in zip(many.members, added, strict=True)
     ]
-    warnings = {(notice.code, notice.detail): notice for notice in told}
     return {
         "error": max(member.accuracy.error + more for member, more in zip(many.members, added, strict=True)),
         "seed": None if question.sample is None else question.sample.seed,
@@ -104,7 +105,9 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         "angular_velocity": samples,
         "warnings": (
             *(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
-            *warnings.values(),
+            *many.warnings,
+            *((many.merged(by_rounding),) if by_rounding else ()),
+            *outside[:1],
         ),
     }
 

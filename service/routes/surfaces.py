@@ -15,10 +15,13 @@ from core.quantities import AngularVelocity, Energy
 from core.rotation.energy_surface import EnergyEllipsoid
 from core.rotation.initial_states import initial_states
 from core.rotation.polhodes import Polhode, polhode, separatrix
+from core.rotation.torque_free import pinned_notices
+from service.ellipsoid_figure import ellipsoid_figure
+from service.figures import SVG
 from service.pricing import Priced
 from service.routes.bodies import counts, properties_of
 from service.routing import Answer, Example, Question
-from service.schemas import Envelope, Matrix, Request, Vector, View
+from service.schemas import Envelope, Matrix, Request, Vector, View, fields_of
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
 FINEST_PRICED = 1000
@@ -42,7 +45,9 @@ class EllipsoidRequest(Request):
     layout: Literal["triangles", "grid"] = "triangles"
     polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through these starts.")
     separatrix: bool = Field(default=False, description="Draw the separatrix.")
-    points: Count = Field(default=256, description="Points of each curve.")
+    points: Count = Field(
+        default=256, description="Points of each curve; a multiple of 4 has the extreme points among them."
+    )
 
 
 class QualityView(View):
@@ -76,6 +81,7 @@ class PolhodeView(View):
 
     regime: str
     closed: bool
+    angular_momentum: float | None = Field(description="Magnitude, the same at every point (kg m^2/s).")
     points: list[Vector]
 
 
@@ -116,7 +122,7 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
         "energy": surface.energy,
         "semi_axes": surface.semi_axes,
         "axes": surface.axes,
-        "warnings": tuple(notice.inside("body") for notice in body.warnings),
+        "warnings": tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
     }
     if question.layout == "triangles":
         mesh = surface.triangles(question.resolution)
@@ -134,18 +140,23 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
     return answer
 
 
-def _surface(question: EllipsoidRequest, body: MassProperties) -> EnergyEllipsoid:
+def require_one(question: Any) -> None:
+    """Raise `InvalidParameter` unless a question gives one of energy and angular velocity."""
     if (question.energy is None) == (question.angular_velocity is None):
         raise InvalidParameter(
             "energy", "be given, or angular_velocity, and not both", remedy="give one of energy and angular_velocity"
         )
+
+
+def _surface(question: EllipsoidRequest, body: MassProperties) -> EnergyEllipsoid:
+    require_one(question)
     if question.energy is not None:
         return EnergyEllipsoid.of(body, question.energy)
     return EnergyEllipsoid.through(body, np.array(question.angular_velocity))
 
 
 def _curve(curve: Polhode) -> dict[str, Any]:
-    return {"regime": curve.regime, "closed": curve.closed, "points": curve.points}
+    return fields_of(curve)
 
 
 def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, float]:
@@ -207,6 +218,8 @@ SURFACES = (
         energy_ellipsoid,
         Priced("energy_ellipsoid", ellipsoid_counts),
         ellipsoid_outline,
+        description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
+        representations={SVG: ellipsoid_figure},
         examples={
             "triangles": Example(
                 "a coarse mesh with five polhodes and the separatrix",

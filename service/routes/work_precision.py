@@ -14,14 +14,12 @@ from core.integration.methods import ClosedFormEvaluation, Method
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
 from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
-from service.figures import Curve, Level, log_log
+from service.figures import SVG, Curve, Level, log_log
 from service.pricing import Priced, effort, extreme, speed_of
 from service.routes.bodies import counts, properties_of
 from service.routes.rotation import T_HANDLE
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
-
-SVG = "image/svg+xml"
 
 
 class WorkPrecisionRequest(Request):

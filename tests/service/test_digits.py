@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import isclose
 from typing import Any
 
@@ -21,7 +22,9 @@ from tests.oracles.free_rotation import flip_interval, period, reference_angular
 from tests.service.conftest import Server, client_of
 
 SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
-TRAJECTORY, PRECESSION, STABILITY = (f"/v1/rotation/{name}" for name in ("trajectory", "precession", "stability"))
+TRAJECTORY, PRECESSION, STABILITY, ELLIPSOID = (
+    f"/v1/rotation/{name}" for name in ("trajectory", "precession", "stability", "energy-ellipsoid")
+)
 ROD = "/v1/scenes/rod-in-hole"
 HANDLE = (795.7921810699588, 713.5092592592592, 395.7829218106996)
 START = (1.0, 10.0, 1.0)
@@ -134,7 +137,7 @@ async def test_equilibria() -> None:
         # W sqrt((B - A)(C - B)/(A C)) about the middle axis.
         assert abs(mpf(many["equilibria"][1]["growth_rate"]) - 10 / mp.sqrt(3)) < mpf("1e-38")
     coin = {"kind": "principal-moments", "moments": [1, 1, 2]}
-    ends = (await answer(STABILITY, {"body": coin, "digits": 16}))["equilibria"]
+    ends = (await answer(STABILITY, {"body": coin, "digits": 16}))["equilibria"][:3]
     assert [entry["kind"] for entry in ends] == ["degenerate", "degenerate", "center"]
 
 
@@ -172,13 +175,57 @@ async def test_only_what_is_asked_for_is_answered() -> None:
     assert not {"time", "angular_velocity"} & set(found)
 
 
+async def test_a_body_held_away_from_its_centre_of_mass_is_told_not_to_be_free() -> None:
+    """By every answer about it, with digits and without."""
+    body = {"kind": "composite", "parts": [WALL | {"position": ["3", 0, "4"]}], "about": "origin"}
+    plain = {"body": {"kind": "cuboid", "edges": [1.0, 2.0, 0.1], "mass": 3.0}, "position": [3.0, 0.0, 4.0]}
+    for path, more in (
+        (TRAJECTORY, {"angular_velocity": [1, 2, 3], "times": [1]}),
+        (PRECESSION, {"angular_velocity": [1, 2, 3]}),
+        (STABILITY, {}),
+        (ELLIPSOID, {"energy": 1}),
+    ):
+        for question in ({"body": body, "digits": 20}, {"body": body | {"parts": [plain]}}):
+            (told,) = (await answer(path, question | more))["warnings"]
+            assert (told["code"], told["pointer"]) == ("not-free", "/body/about")
+            assert "5 m from its centre of mass" in told["detail"]
+
+
+async def test_a_composite_of_decimal_strings_is_exact() -> None:
+    question = QUESTION | {"times": ["0.1"], "digits": 30}
+    tenth = WALL | {"body": WALL["body"] | {"edges": ["0.1", "0.2", "0.3"]}, "attitude": ["0.1", "0", 0, "0.1"]}
+    found = await answer(TRAJECTORY, question | {"body": {"kind": "composite", "parts": [tenth]}})
+    # A quarter of a turn about z takes the edges x and y to each other.
+    same = await answer(TRAJECTORY, question | {"body": WALL["body"] | {"edges": ["0.2", "0.1", "0.3"]}})
+    for name in ("energy", "angular_velocity", "period", "warnings"):
+        assert found[name] == same[name]
+
+
+async def test_polhodes_drawn_with_a_seed_have_the_energy_exactly() -> None:
+    body = {"kind": "principal-moments", "moments": ["2", "1", "0.5"]}
+    question = {"body": body, "energy": "0.7", "polhodes": {"count": 3, "seed": 5}, "points": 9, "digits": 40}
+    found = await answer(ELLIPSOID, question)
+    assert "mesh" not in found
+    for curve in found["polhodes"]:
+        for point in curve["points"]:
+            x, y, z = (Fraction(entry) for entry in point)
+            assert abs(2 * x * x + y * y + z * z / 2 - Fraction("1.4")) < Fraction(1, 10**38)
+            square = 4 * x * x + y * y + z * z / 4
+            assert abs(square - Fraction(curve["angular_momentum"]) ** 2) < Fraction(1, 10**38)
+
+
 async def test_what_no_matter_can_be_is_warned_of() -> None:
     found = await answer(STABILITY, {"body": {"kind": "principal-moments", "moments": [1, 1, "2.1"]}, "digits": 20})
-    assert [(entry["code"], entry["pointer"]) for entry in found["warnings"]] == [("unphysical-inertia", "/body")]
+    assert [(entry["code"], entry["pointer"]) for entry in found["warnings"]] == [
+        ("unphysical-inertia", "/body/moments")
+    ]
     assert (await answer(STABILITY, {"body": BODY | {"moments": ["1", "1", "2"]}, "digits": 20}))["warnings"] == []
 
 
 POINTS = {"kind": "point-masses", "masses": 1.0, "positions": [[0, 0, 0], [1, 0, 0], [0, 1, "1"]]}
+WALL: dict[str, Any] = {"body": {"kind": "cuboid", "edges": ["1", "2", "0.1"], "mass": "3"}}
+COIN = {"kind": "principal-moments", "moments": ["1", "1", "2"]}
+LINE = {"kind": "rod", "length": "1", "mass": "1"}
 REFUSED: list[tuple[str, dict[str, Any], str, str]] = [
     (TRAJECTORY, {"digits": 15}, "invalid-parameter", "/digits"),
     (TRAJECTORY, {"digits": 1001}, "invalid-parameter", "/digits"),
@@ -205,7 +252,7 @@ REFUSED: list[tuple[str, dict[str, Any], str, str]] = [
     (TRAJECTORY, {"body": BODY | {"moments": ["1", "-2", "3"]}}, "invalid-parameter", "/body/moments/1"),
     (TRAJECTORY, {"body": BODY | {"moments": [1, 2]}}, "invalid-parameter", "/body/moments"),
     (TRAJECTORY, {"body": BODY | {"mass": "1"}}, "invalid-parameter", "/body/mass"),
-    (TRAJECTORY, {"body": {"kind": "composite", "parts": []}}, "invalid-parameter", "/body/kind"),
+    (TRAJECTORY, {"body": {"kind": "composite", "parts": []}}, "invalid-parameter", "/body/parts"),
     (TRAJECTORY, {"body": {"kind": "mesh"}}, "invalid-parameter", "/body/kind"),
     (TRAJECTORY, {"body": {"kind": "ball", "radius": "1", "density": "1"}}, "not-applicable", "/body/density"),
     (TRAJECTORY, {"body": {"kind": "cuboid", "edges": [1, 2, "3"], "mass": -1}}, "invalid-parameter", "/body/mass"),
@@ -215,6 +262,38 @@ REFUSED: list[tuple[str, dict[str, Any], str, str]] = [
     (TRAJECTORY, {"body": POINTS | {"masses": {"all": 1}}}, "invalid-parameter", "/body/masses"),
     (TRAJECTORY, {"body": POINTS | {"masses": None}}, "invalid-parameter", "/body/masses"),
     (TRAJECTORY, {"body": POINTS | {"about": "here"}}, "invalid-parameter", "/body/about"),
+    (
+        TRAJECTORY,
+        {"body": {"kind": "composite", "parts": [WALL | {"colour": 1}]}},
+        "invalid-parameter",
+        "/body/parts/0/colour",
+    ),
+    (
+        TRAJECTORY,
+        {"body": {"kind": "composite", "parts": [WALL | {"body": WALL["body"] | {"edges": ["1", "x", 3]}}]}},
+        "invalid-parameter",
+        "/body/parts/0/body/edges/1",
+    ),
+    (
+        TRAJECTORY,
+        {"body": {"kind": "composite", "parts": [WALL | {"body": {"kind": "ball", "radius": 1, "density": "1"}}]}},
+        "not-applicable",
+        "/body/parts/0/body/density",
+    ),
+    (TRAJECTORY, {"body": {"kind": "composite", "parts": [WALL] * 101}}, "budget-exceeded", "/body/parts"),
+    (ELLIPSOID, {}, "invalid-parameter", "/energy"),
+    (ELLIPSOID, {"energy": "0"}, "invalid-parameter", "/energy"),
+    (ELLIPSOID, {"energy": "1", "points": 7, "separatrix": True}, "invalid-parameter", "/points"),
+    (ELLIPSOID, {"energy": "1", "resolution": 0}, "invalid-parameter", "/resolution"),
+    (ELLIPSOID, {"energy": "1", "layout": "grid", "resolution": 1}, "invalid-parameter", "/resolution"),
+    (ELLIPSOID, {"energy": "1", "layout": "cubes"}, "invalid-parameter", "/layout"),
+    (ELLIPSOID, {"energy": "1", "resolution": 201}, "budget-exceeded", "/digits"),
+    (ELLIPSOID, {"energy": "1", "polhodes": {"count": 10**6}}, "budget-exceeded", "/polhodes/count"),
+    (ELLIPSOID, {"energy": "1", "polhodes": {"count": 100}}, "budget-exceeded", "/digits"),
+    (STABILITY, {"disturbance": ["1", "x"]}, "invalid-parameter", "/disturbance/1"),
+    (STABILITY, {"body": COIN, "disturbance": ["1", "1"]}, "not-applicable", "/disturbance"),
+    (STABILITY, {"body": LINE}, "invalid-parameter", "/body"),
+    (TRAJECTORY, {"body": LINE}, "invalid-parameter", "/body"),
     (PRECESSION, {"measure": None}, "invalid-parameter", "/measure"),
     (STABILITY, {"rate": "fast"}, "invalid-parameter", "/rate"),
     (ROD, {"times": [0, "1e301"]}, "invalid-parameter", "/times/1"),
@@ -232,7 +311,7 @@ REFUSED: list[tuple[str, dict[str, Any], str, str]] = [
 def whole(path: str) -> dict[str, Any]:
     if path == ROD:
         return LENGTHS
-    left_out = {TRAJECTORY: (), PRECESSION: ("times",), STABILITY: ("times", "angular_velocity")}[path]
+    left_out = {TRAJECTORY: (), PRECESSION: ("times",)}.get(path, ("times", "angular_velocity"))
     return {name: value for name, value in QUESTION.items() if name not in left_out}
 
 
@@ -252,6 +331,10 @@ async def test_refusals(path: str, change: dict[str, Any], code: str, pointer: s
         ({"times": [0.0, "0.1"]}, ["/times/1"]),
         ({"angular_velocity": [1.0, "10", 1.0]}, ["/angular_velocity/1"]),
         ({"body": BODY | {"moments": [1.0, 2.0, "2.5"]}}, ["/body/moments/2"]),
+        (
+            {"body": {"kind": "point-masses", "masses": 1.0, "positions": [[0.0, "1", 0.0]] * 4}},
+            ["/body/positions/0/1"],
+        ),
         ({"body": BODY | {"digits": 50}}, ["/body/digits"]),
     ],
     ids=str,
@@ -260,7 +343,34 @@ async def test_strings_are_no_numbers_without_digits(change: dict[str, Any], poi
     question = {name: value for name, value in QUESTION.items() if name != "digits"} | change
     response = await asked(TRAJECTORY, question)
     assert response.status_code == 422
-    assert [fault["pointer"] for fault in response.json()["errors"]] == pointers
+    faults = response.json()["errors"]
+    assert [fault["pointer"] for fault in faults] == pointers
+    if not pointers[0].endswith("digits"):
+        assert all(fault["detail"] == "must be a number" and '"digits"' in fault["remedy"] for fault in faults)
+
+
+BESIDE = [
+    (TRAJECTORY, "accuracy", 1e-9),
+    (TRAJECTORY, "method", {"kind": "explicit-euler", "step": 0.1}),
+    (TRAJECTORY, "round", 5),
+    (TRAJECTORY, "input_uncertainty", 1e-9),
+    (PRECESSION, "measure", {"method": {"kind": "runge-kutta-4", "step": 0.1}, "duration": 5.0, "samples": 10}),
+]
+
+
+@pytest.mark.parametrize(("path", "name", "value"), BESIDE, ids=lambda value: str(value)[:40])
+async def test_what_cannot_go_with_digits_says_why(path: str, name: str, value: Any) -> None:
+    fault = (await asked(path, whole(path) | {name: value})).json()["errors"][0]
+    assert fault["pointer"] == f"/{name}"
+    assert fault["detail"].startswith("does not go with digits: ")
+    assert fault["remedy"] == f"leave out either {name} or digits"
+
+
+@pytest.mark.parametrize("digits", [15, 1001, 20.5, "50", None])
+async def test_digits_out_of_range_are_told_their_range(digits: Any) -> None:
+    fault = (await asked(TRAJECTORY, QUESTION | {"digits": digits})).json()["errors"][0]
+    assert fault["pointer"] == "/digits"
+    assert "16 to 1000" in fault["remedy"]
 
 
 @pytest.mark.parametrize("body", [b"[]", b"3", b'"digits"', b'["digits"]', b"null"])

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.certified.exact_inertia import ExactInertia, cross
+from core.certified.exact_inertia import ExactInertia, cross, of_matter
+from core.certified.exact_mass import ExactMass
 from core.errors import InvalidParameter
 
 small = st.integers(-9, 9)
@@ -13,7 +14,7 @@ small = st.integers(-9, 9)
 
 def test_point_masses_give_their_tensor_exactly():
     # Source: sum of m (r.r 1 - r r^T) about the centre of mass, worked by hand for three masses.
-    inertia = ExactInertia.of_point_masses(["0.1", "0.2", "0.1"], [(0, 0, 0), (1, 0, 0), (0, 2, "0.5")])
+    inertia = ExactMass.of_point_masses(["0.1", "0.2", "0.1"], [(0, 0, 0), (1, 0, 0), (0, 2, "0.5")]).of_motion
     center = [Fraction(1, 2), Fraction(1, 2), Fraction(1, 8)]
     points = [(Fraction(1, 10), (0, 0, 0)), (Fraction(1, 5), (1, 0, 0)), (Fraction(1, 10), (0, 2, Fraction(1, 2)))]
     for i in range(3):
@@ -27,15 +28,15 @@ def test_point_masses_give_their_tensor_exactly():
 
 def test_point_masses_about_the_origin_keep_their_offset():
     points = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
-    assert ExactInertia.of_point_masses(1, points, about_origin=True).tensor[0] == (2, 0, 0)
-    assert ExactInertia.of_point_masses("1", points).tensor[0] == (Fraction(4, 3), Fraction(1, 3), Fraction(1, 3))
+    assert ExactMass.of_point_masses(1, points, "origin").of_motion.tensor[0] == (2, 0, 0)
+    assert ExactMass.of_point_masses("1", points).inertia[0] == (Fraction(4, 3), Fraction(1, 3), Fraction(1, 3))
 
 
 @settings(deadline=None, derandomize=True)
 @given(st.lists(st.tuples(small, small, small), min_size=4, max_size=6, unique=True))
 def test_moments_are_roots_of_the_cubic(points):
     try:
-        inertia = ExactInertia.of_point_masses(1, points)
+        inertia = ExactMass.of_point_masses(1, points).of_motion
     except InvalidParameter:
         return
     moments = np.linalg.eigvalsh(np.array(inertia.tensor, dtype=float))
@@ -68,10 +69,12 @@ def test_a_double_moment_is_recognised_in_oblique_axes():
         (lambda: ExactInertia.of_tensor([[1, 2, 0], [2, 1, 0], [0, 0, 1]]), ()),
         (lambda: ExactInertia.of_tensor([[1, 0.1, 0], [0.2, 1, 0], [0, 0, 1]]), ("tensor", 1, 0)),
         (lambda: ExactInertia.of_tensor([[1, 0], [0, 1]]), ("tensor",)),
-        (lambda: ExactInertia.of_point_masses(1, [(0, 0, 0), (1, 1, 1)]), ()),
-        (lambda: ExactInertia.of_point_masses([1, -1], [(0, 0, 0), (1, 1, 1)]), ("masses", 1)),
-        (lambda: ExactInertia.of_point_masses([1], [(0, 0, 0), (1, 1, 1)]), ("masses",)),
-        (lambda: ExactInertia.of_point_masses(1, []), ("positions",)),
+        (lambda: ExactMass.of_point_masses(1, [(0, 0, 0), (0, 0, 0)]).of_motion, ()),
+        (lambda: ExactInertia.of_tensor([[1, 0, 0], [0, 1, 0], [0, 0, "-1e-300"]]), ()),
+        (lambda: ExactMass.of_point_masses(1, [(0, 0, 0), (1, 1, 1)]).of_motion.require_extent(), ("body",)),
+        (lambda: ExactMass.of_point_masses([1, -1], [(0, 0, 0), (1, 1, 1)]), ("masses", 1)),
+        (lambda: ExactMass.of_point_masses([1], [(0, 0, 0), (1, 1, 1)]), ("masses",)),
+        (lambda: ExactMass.of_point_masses(1, []), ("positions",)),
     ],
 )
 def test_what_is_no_body_is_refused(build, path):
@@ -100,11 +103,11 @@ def test_momentum_and_cross_product():
 )
 def test_symmetry_and_the_triangle_of_moments_are_decided_exactly(moments, symmetry, physical):
     inertia = ExactInertia.of_moments(moments)
-    assert (inertia.symmetry, inertia.physical) == (symmetry, physical)
+    assert (inertia.symmetry, of_matter(inertia.tensor)) == (symmetry, physical)
     # Turned by a rational rotation, the tensor is full and its moments are the same.
     (a, _, _), (_, b, _), (_, _, c) = inertia.tensor
     s, t = Fraction(3, 5), Fraction(4, 5)
     turned = ((s * s * a + t * t * b, s * t * (a - b), 0), (s * t * (a - b), t * t * a + s * s * b, 0), (0, 0, c))
     same = ExactInertia.of_tensor(turned)
-    assert same.physical == physical
+    assert of_matter(same.tensor) == physical
     assert same.symmetry == symmetry

@@ -8,6 +8,7 @@ from mpmath import mp, mpf
 
 from core.bodies.exact import rotated, rotation
 from core.certified.exact_inertia import ExactInertia
+from core.certified.exact_mass import ExactMass
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import BudgetExceeded, InvalidParameter
 from tests.oracles.cases import Case, cases
@@ -199,6 +200,22 @@ def test_what_is_refused(ask, path):
     with pytest.raises(InvalidParameter) as caught:
         ask(CertifiedRotation.of_moments(*T_HANDLE))
     assert caught.value.path == path
+
+
+def test_matter_along_a_line_turns_across_itself_or_not_at_all():
+    line = ExactMass.of_point_masses("0.5", [("0.1", 0, 0), ("0.3", 0, 0)]).of_motion
+    across = CertifiedRotation.of(line, ["0", "0.3", "0.4"])
+    assert (across.regime, across.energy(16), across.model.regime) == (
+        "steady",
+        "0.001250000000000000",
+        "steady rotation",
+    )
+    assert across.attitude(["2"], 16)[0] == ["0.8775825618903727", "0", "0.2876553231625218", "0.3835404308833624"]
+    assert CertifiedRotation.of(line, [0, 0, 0]).regime == "rest"
+    for along in (["1", 0, 0], ["1e-300", "0.3", "0.4"]):
+        with pytest.raises(InvalidParameter) as caught:
+            CertifiedRotation.of(line, along)
+        assert caught.value.path == ("body",)
 
 
 def test_far_out_on_the_separatrix_there_is_only_the_middle_axis():

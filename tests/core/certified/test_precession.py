@@ -54,8 +54,8 @@ def test_symmetric_bodies(moments, rates, body_rate, oblique):
         across = mp.sqrt(mpf(across2.numerator) / across2.denominator)
         momentum = mp.hypot(single * along, equal * across)
         assert abs(mpf(found.space_rate or 0) - momentum / equal) < mpf("1e-17")
-        assert abs(mpf(found.momentum_angle or 0) - mp.atan2(equal * across, single * along)) < mpf("1e-17")
-        assert abs(mpf(found.spin_angle or 0) - mp.atan2(across, along)) < mpf("1e-17")
+        assert abs(mpf(found.axis_to_angular_momentum or 0) - mp.atan2(equal * across, single * along)) < mpf("1e-17")
+        assert abs(mpf(found.axis_to_angular_velocity or 0) - mp.atan2(across, along)) < mpf("1e-17")
         # The axis of symmetry goes round the angular momentum at the space rate, always in the positive sense.
         assert found.mean_precession_rate == found.space_rate
 

@@ -48,3 +48,18 @@ def test_a_member_s_fault_names_the_member():
     with pytest.raises(AccuracyUnreachable) as caught:
         ensemble(diagonal((1.0, 2.0, 3.0)), starts, np.zeros(1))
     assert caught.value.path == ("angular_velocities", 1)
+
+
+def test_what_many_members_say_is_said_once():
+    starts = np.concatenate([np.eye(3), [[1.0, 0.5, 0.2], [0.2, 1.0, 0.3], [0.1, 0.2, 1.0]]])
+    body, times = diagonal((1.0, 2.0, 3.0)), np.linspace(0, 10, 11)
+    many = ensemble(body, starts, times, method=ExplicitEuler(0.01))
+    (notice,) = many.warnings
+    assert (notice.code, notice.path) == ("accuracy-not-reached", ("method",))
+    errors = [member.accuracy.error for member in many.members]
+    worst = int(np.argmax(errors))
+    assert f"{errors[worst]:.3g}" in notice.detail
+    assert f"3 of 6 members (3, 4, 5); of these member {worst} has the largest error" in notice.detail
+    alike = ensemble(body, starts[3:], times, method=ExplicitEuler(0.01)).warnings
+    assert [f"[all 3 members; of these member {worst - 3} has the largest error]" in n.detail for n in alike] == [True]
+    assert ensemble(body, starts, times).warnings == ()
