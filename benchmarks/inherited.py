@@ -127,21 +127,26 @@ def summary(rows: list[Row]) -> list[Row]:
     return found
 
 
-def main() -> None:
-    """Compare, summarise and draw."""
-    each = int(sys.argv[1]) if len(sys.argv) > 1 else 34
-    cases = [
-        (1000 * n + k, kind, regime) for n in range(each) for k, (kind, regime) in enumerate(product(KINDS, REGIMES))
-    ]
-    with ProcessPoolExecutor(2) as pool:
-        rows = [row for found in pool.map(compared, cases, chunksize=10) for row in found]
+def written(rows: list[Row], cases: int) -> list[Row]:
+    """Write result and figure of the rows that there are, and return the summary."""
     below = [row for row in rows if row["stated"] < row["observed"]]
-    for row in below:
-        print("below:", row)
     found = summary(rows)
-    result = {"machine": described("numpy", "python-flint"), "cases": len(cases), "below": below, "classes": found}
+    result = {"machine": described("numpy", "python-flint"), "cases": cases, "below": below, "classes": found}
     (RESULTS / "inherited.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     PICTURE.write_text(drawn(found), encoding="utf-8")
+    return found
+
+
+def main() -> None:
+    """Compare, summarise and draw, anew after every round of all kinds and regimes."""
+    rows: list[Row] = []
+    classes = list(product(KINDS, REGIMES))
+    with ProcessPoolExecutor(2) as pool:
+        for n in range(int(sys.argv[1]) if len(sys.argv) > 1 else 34):
+            cases = [(1000 * n + k, kind, regime) for k, (kind, regime) in enumerate(classes)]
+            rows += [row for found in pool.map(compared, cases, chunksize=3) for row in found]
+            found = written(rows, (n + 1) * len(classes))
+            print(n, "below:", [row for row in rows if row["stated"] < row["observed"]], flush=True)
     for row in found:
         if row["regime"] == "all" or row["kind"] == "all":
             print(row)

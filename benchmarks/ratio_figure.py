@@ -7,7 +7,7 @@ from typing import Any
 
 # Okabe and Ito's colours, told apart with any colour vision; the rows are labelled as well.
 COLOURS = {"inherited": "#0072B2", "inherited, attitude": "#56B4E9", "error": "#D55E00"}
-LEFT, RIGHT, ROW, DECADES = 250.0, 860.0, 19.0, 5
+LEFT, RIGHT, ROW, DECADES = 285.0, 850.0, 19.0, 4
 
 
 def drawn(classes: list[dict[str, Any]]) -> str:
@@ -19,7 +19,7 @@ def drawn(classes: list[dict[str, Any]]) -> str:
         if of == "inherited":
             lines += [(row["regime"], row) for row in mine if row["kind"] == "all" and row["regime"] != "all"]
         if not of.startswith("inherited"):
-            lines = [("all kinds", row) for row in mine if row["regime"] == row["kind"] == "all"]
+            lines = [("", row) for row in mine if row["regime"] == row["kind"] == "all"]
         groups.append((of, lines))
     parts, y = [], 64.0
     for of, lines in groups:
@@ -37,7 +37,7 @@ def drawn(classes: list[dict[str, Any]]) -> str:
         grid.append(f'<text x="{x:.1f}" y="{y + 16:.0f}" text-anchor="middle" fill="#333">{10**k:g}</text>')
     head = (
         '<text x="20" y="22" font-size="15">Stated over observed: never left of 1</text>'
-        '<text x="20" y="38" fill="#555">bar: 10 to 90 % of the cases, dot: median, line: smallest and largest</text>'
+        '<text x="20" y="38" fill="#555">bar: 10 to 90 % of the cases, dot and number: median, line: all</text>'
     )
     box = f'viewBox="0 0 900 {y + 26:.0f}" font-family="sans-serif" font-size="12"'
     return (

@@ -255,6 +255,7 @@ class FreeRotation:
         if i[0] == 0.0 and not self.frame.aligned:
             return None
         exponent, rate = math.frexp(float(i[2]))[1], math.frexp(float(np.abs(w).max()))[1]
+        rate = max(-1000, min(1000, rate))
         low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
         largest = math.ldexp(self.largest_rate, -rate)
         components = np.ldexp(w, -rate)

@@ -94,7 +94,7 @@ class Motion(NamedTuple):
     start_tail: float
     """Quarter periods at t = 0: start_quarter + start; on the separatrix, u at t = 0."""
     inherited: Sensitivity
-    """With u = 1: for uncertainties of the client's inputs."""
+    """With u = 1: for uncertainties of moments and start, as the rounding of derived ones is."""
     computed: Sensitivity
     """With u = 1: for the rounding of 2^-104 with which these constants were formed."""
 

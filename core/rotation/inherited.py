@@ -71,7 +71,9 @@ class Inherited:
         """
         time = self._scaled(horizon)
         # The attitude turns away by no more than the integral of the error of the angular velocity.
-        turned = min(self._grown(uncertainty, time) * self.largest * time, self._turned(uncertainty, time))
+        turned = min(
+            _known(self._grown(uncertainty, time) * self.largest * time), _known(self._turned(uncertainty, time))
+        )
         turned = turned + 2.0 * uncertainty
         return turned * (1.0 + CURVATURE * turned) if turned < FIRST_ORDER else WHOLE_TURN
 
@@ -91,7 +93,7 @@ class Inherited:
 
     def _turning(self, u: float, time: float) -> float:
         m, s = self.motion, self.moves.sums
-        if u * max(s[moved.TURN], s[moved.RATE]) > FIRST_ORDER:
+        if not self.moves.finite or u * max(s[moved.TURN], s[moved.RATE]) > FIRST_ORDER:
             return math.inf
         A = [abs(x) / self.unit for x in (m.A_c, m.A_b, m.A_d)]
         a = s[moved.AMPLITUDE_C], s[moved.AMPLITUDE_B], s[moved.AMPLITUDE_D]
@@ -116,7 +118,10 @@ class Inherited:
     def _phase(self, u: float, time: float) -> float:
         """Return a bound of |Q|, what the phase u moves by, from the drift of the frequency."""
         m, s = self.motion, self.moves.sums
-        if m.regime == SEPARATRIX or not u * max(s[moved.FREQUENCY], s[moved.MODULUS] / self.moves.k1) <= FIRST_ORDER:
+        if (
+            m.regime == SEPARATRIX
+            or not u * max(s[moved.FREQUENCY], _quotient(s[moved.MODULUS], self.moves.k1)) <= FIRST_ORDER
+        ):
             return math.inf
         # Between phases the elliptic integral's derivative departs from its mean growth by K' at most, each.
         return float(s[moved.PHASE] + s[moved.FREQUENCY] * self._angle(time) + self._spread * s[moved.MODULUS])
@@ -140,12 +145,18 @@ class Inherited:
     def _turned(self, u: float, time: float) -> float:
         """Return a bound of the attitude's turn by way of the angular momentum, which it precesses about."""
         m, s = self.motion, self.moves.sums
-        if m.regime == STEADY or u * max(s[moved.TURN], s[moved.RATE], s[moved.TIP]) > FIRST_ORDER:
+        if (
+            m.regime == STEADY
+            or not self.moves.finite
+            or u * max(s[moved.TURN], s[moved.RATE], s[moved.TIP]) > FIRST_ORDER
+        ):
             return math.inf
         momenta, total = self._momenta
-        pole = [x / total for x in momenta]
+        pole = [_quotient(x, total) for x in momenta]
         wandering = self._displaced(u, time, pole, (s[moved.POLE_C], s[moved.POLE_B], s[moved.POLE_D]))
         angle, rate = self._angle(time), self.motion.p / self.unit
+        if rate == 0.0:
+            return math.inf
         early = s[moved.PHASE] + s[moved.RATE] * angle
         swing, steepest = self._swing
         late = early + s[moved.MODULUS] * self._growth(angle) if math.isfinite(self._phase(u, time)) else math.inf
@@ -173,7 +184,7 @@ class Inherited:
         # |L^2 - 2E I_d| = I_c g_dc A_c^2.
         size = x * x * (low + high) / I_c * abs(m.A_d) / self.unit
         top, bottom = L + z, L + z * k1
-        return size * (1.0 - k1) / (top * bottom), size / (bottom * bottom)
+        return _quotient(size * (1.0 - k1), top * bottom), _quotient(size, bottom * bottom)
 
     def _growth(self, angle: float) -> float:
         m = self.motion
@@ -195,6 +206,11 @@ def lost_after(lost: Callable[[float], bool], longest: float) -> float | None:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if lost(2.0**middle) else (middle, high)
     return float(2.0**low)
+
+
+def _quotient(dividend: float, divisor: float) -> float:
+    """Return a quotient, infinite where the divisor is below every double, so that nothing is stated by it."""
+    return dividend / divisor if divisor else math.inf
 
 
 def _known(size: float) -> float:

@@ -24,6 +24,7 @@ MOST_INPUTS = 3000
 """With more inputs the bounds that need no phases are stated."""
 
 _MOST = 700.0
+_LEAST = 2.0**-1074
 _PLANES = ((0, 1), (1, 2), (2, 0))
 
 
@@ -109,9 +110,15 @@ class Moves:
         if motion.regime == PERIODIC and motion.m <= LARGEST_MODULUS and not crossed and len(table) <= MOST_INPUTS:
             c = 0 if motion.circled == 2 else 2
             A_c, A_b, A_d = (abs(x) * unit for x in (motion.A_c, motion.A_b, motion.A_d))
-            start = math.atan2(float(components[1]) / A_b, float(components[c]) / A_c)
-            phases = phase_errors(A_c, A_b, A_d, motion.m, start, k1, table)
+            start = math.atan2(float(components[1]) * A_c, float(components[c]) * A_b)
+            found = phase_errors(A_c, A_b, A_d, motion.m, start, k1, table)
+            phases = found if np.isfinite(found).all() else None
         return cls(moments, components, gaps, own, own_start, sums.tolist(), largest, crossed, dn, k1, phases)
+
+    @cached_property
+    def finite(self) -> bool:
+        """Whether every sum is a number, none having left the range of doubles on its way."""
+        return all(map(math.isfinite, self.sums))
 
     @cached_property
     def _ratios(self) -> tuple[float, float, float]:
@@ -170,10 +177,11 @@ def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Mot
     d, c = (2, 0) if motion.circled == 2 else (0, 2)
     (low, high), i, x = gaps, moments.tolist(), np.abs(w).tolist()
     near, far = (high, low) if d == 2 else (low, high)
-    dn = x[d] / math.hypot(x[d], math.sqrt(i[1] * far / (i[d] * (low + high))) * x[1])
+    # Components below every double next to the largest leave nothing to divide by, and bounds that are infinite.
+    dn = max(_LEAST, x[d] / max(_LEAST, math.hypot(x[d], math.sqrt(i[1] * far / (i[d] * (low + high))) * x[1])))
     if motion.regime == SEPARATRIX or motion.m1 > 1e-290:
         return dn, math.sqrt(motion.m1)
-    ratio = x[c] / x[d]
+    ratio = x[c] / max(_LEAST, x[d])
     return dn, dn * math.sqrt(max(1e-15, 1.0 - i[c] * far / (i[d] * near) * ratio * ratio))
 
 

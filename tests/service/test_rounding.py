@@ -145,3 +145,14 @@ async def test_the_horizon_is_where_the_inherited_error_is_the_whole_motion() ->
     assert answer["horizon"] is None
     assert answer["inherited"] == 0.0
     assert (await asked("/v1/rotation/trajectory", FREE)).json()["accuracy"].get("horizon") is None
+
+
+@pytest.mark.anyio
+async def test_the_attitude_has_a_horizon_of_its_own() -> None:
+    question = FREE | {"input_uncertainty": 1e-3, "attitude": [1.0, 0.0, 0.0, 0.0]}
+    horizon = (await asked("/v1/rotation/trajectory", question)).json()["accuracy"]["attitude_horizon"]
+    for time, lost in ((0.99 * horizon, False), (1.01 * horizon, True)):
+        answer = (await asked("/v1/rotation/trajectory", question | {"times": [time]})).json()
+        assert (answer["accuracy"]["attitude_inherited"] > 1.0) is lost
+    without = (await asked("/v1/rotation/trajectory", FREE)).json()["accuracy"]
+    assert without.get("attitude_inherited") is None
