@@ -27,9 +27,19 @@ SHOWN = {
     "Drake RK3": ("#ba4a00", "triangle"),
     "PyBullet": ("#d98880", "triangle"),
 }
-"""Colour and mark: diamonds are closed forms, squares compiled integrators, circles SciPy's, triangles engines."""
+"""Colour and mark."""
+HEADINGS = {
+    "star": "this project",
+    "diamond": "closed forms",
+    "square": "compiled integrators",
+    "circle": "SciPy",
+    "triangle": "physics engines",
+}
+LARGEST = 10.0
+"""Errors beyond this are off the picture, and named in it."""
+NONE_NEAR = 1e-2
 
-PANEL_WIDTH, PANEL_HEIGHT, GAP, LEFT, TOP, LEGEND = 330.0, 330.0, 66.0, 70.0, 46.0, 210.0
+PANEL_WIDTH, PANEL_HEIGHT, GAP, LEFT, TOP, LEGEND = 330.0, 330.0, 66.0, 70.0, 46.0, 244.0
 ROW_GAP = 84.0
 
 
@@ -37,6 +47,7 @@ def picture(cases: Mapping[str, Mapping[str, Any]], columns: int = 2) -> str:
     """Return the panels of the cases, side by side, on the same scales, with one legend."""
     shown = {name: drawn(case) for name, case in cases.items()}
     points = [point for curves in shown.values() for curve in curves.values() for point in curve]
+    errors = [min(error, LARGEST) for _, error in points]
     rows = -(-len(shown) // columns)
     width = LEFT + columns * PANEL_WIDTH + (columns - 1) * GAP + LEGEND
     height = TOP + rows * PANEL_HEIGHT + (rows - 1) * ROW_GAP + 58.0
@@ -45,10 +56,11 @@ def picture(cases: Mapping[str, Mapping[str, Any]], columns: int = 2) -> str:
         left = LEFT + (k % columns) * (PANEL_WIDTH + GAP)
         top = TOP + (k // columns) * (PANEL_HEIGHT + ROW_GAP)
         x = Scale.over([px for px, _ in points], left, PANEL_WIDTH)
-        y = Scale.over([py for _, py in points], top + PANEL_HEIGHT, -PANEL_HEIGHT)
+        y = Scale.over([0.2 * min(errors), *errors], top + PANEL_HEIGHT, -PANEL_HEIGHT)
         parts += _panel(name, x, y, left, top)
         for peer, curve in curves.items():
-            parts += _curve(curve, x, y, peer)
+            parts += _curve([point for point in curve if point[1] <= LARGEST], x, y, peer)
+        parts += _remarks(curves, x, y)
     parts += _legend(width - LEGEND + 22.0, {peer for curves in shown.values() for peer in curves})
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" font-family="sans-serif" '
@@ -70,7 +82,7 @@ def _panel(name: str, x: Scale, y: Scale, left: float, top: float) -> list[str]:
     parts = [f'<text x="{left:g}" y="{top - 14:g}" font-weight="bold">{escape(name)}</text>']
     for exponent in range(x.low, x.high + 1):
         at = f"{x(10.0**exponent):.1f}"
-        label = f"{10.0**exponent:g}"
+        label = f"{10.0**exponent:g}" if exponent < 4 else f'10<tspan dy="-5" font-size="9">{exponent}</tspan>'
         parts.append(f'<line x1="{at}" y1="{top:g}" x2="{at}" y2="{bottom:g}" stroke="#e8e8e8"/>')
         parts.append(f'<text x="{at}" y="{bottom + 17:g}" text-anchor="middle" fill="#555">{label}</text>')
     for exponent in range(y.low + y.low % 2, y.high + 1, 2):
@@ -119,12 +131,40 @@ def _mark(mark: str, x: float, y: float, colour: str) -> str:
     return f'<polygon points="{corners}" fill="{colour}"/>'
 
 
-def _legend(left: float, present: set[str]) -> list[str]:
+def _remarks(curves: Mapping[str, list[tuple[float, float]]], x: Scale, y: Scale) -> list[str]:
+    """Return who is off the picture, and that nobody comes near where that is so."""
     parts = []
-    for k, peer in enumerate(peer for peer in SHOWN if peer in present):
+    right = x.start + x.length - 8.0
+    beyond = {
+        peer: f"error {max(error for _, error in curve):.0e}" if curve else "no answer"
+        for peer, curve in curves.items()
+        if not curve or any(error > LARGEST for _, error in curve)
+    }
+    for k, (peer, remark) in enumerate(beyond.items()):
+        parts.append(
+            f'<text x="{right:g}" y="{y(NONE_NEAR) + 48 + 17 * k:.1f}" text-anchor="end" fill="{SHOWN[peer][0]}">'
+            f"{escape(peer)}: {remark}</text>"
+        )
+    others = [error for peer, curve in curves.items() if peer != OURS for _, error in curve]
+    if others and min(others) > NONE_NEAR:
+        parts.append(
+            f'<text x="{right:g}" y="{y(NONE_NEAR) + 24:.1f}" text-anchor="end" fill="#444" font-style="italic">'
+            "wrong at every setting, whatever it costs</text>"
+        )
+    return parts
+
+
+def _legend(left: float, present: set[str]) -> list[str]:
+    parts, at, last = [], TOP - 24.0, ""
+    for peer in (peer for peer in SHOWN if peer in present):
         colour, mark = SHOWN[peer]
-        at = TOP + 10.0 + 20.5 * k
+        if mark != last:
+            at += 14.0
+            parts.append(f'<text x="{left - 6:g}" y="{at:g}" fill="#777" font-size="12">{HEADINGS[mark]}</text>')
+            at += 16.0
+            last = mark
         weight = ' font-weight="bold"' if peer == OURS else ""
-        parts.append(_mark(mark, left, at, colour))
-        parts.append(f'<text x="{left + 14:g}" y="{at + 4:g}" fill="#222"{weight}>{escape(peer)}</text>')
+        parts.append(_mark(mark, left + 4.0, at, colour))
+        parts.append(f'<text x="{left + 18:g}" y="{at + 4.5:g}" fill="#222"{weight}>{escape(peer)}</text>')
+        at += 16.0
     return parts
