@@ -50,7 +50,8 @@ def cold_starts(peers: Iterable[Peer], repeats: int) -> dict[str, float]:
             start = time.perf_counter()
             done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False)
             spent.append(time.perf_counter() - start)
-            if done.returncode:
-                raise RuntimeError(done.stderr.decode()[-2000:])
-        found[peer.name] = statistics.median(spent)
+        if done.returncode:
+            print(f"{peer.name} failed from cold: {done.stderr.decode()[-2000:]}", file=sys.stderr)
+        else:
+            found[peer.name] = statistics.median(spent)
     return found

@@ -12,7 +12,7 @@ OURS = "Polhode"
 SHOWN = {
     "Polhode": ("#d0021b", "star"),
     "SciPy ellipj, textbook form": ("#8e44ad", "diamond"),
-    "Orekit TorqueFree": ("#c39bd3", "diamond"),
+    "Orekit TorqueFree": ("#af7ac5", "diamond"),
     "Dormand-Prince 853, Numba": ("#0b5345", "square"),
     "numbalsoda DOP853": ("#1e8449", "square"),
     "CyRK DOP853": ("#58d68d", "square"),
