@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import time
 from pathlib import Path
@@ -34,6 +35,7 @@ def measured(quick: bool) -> dict[str, Any]:
     result: dict[str, Any] = {
         "machine": described(*packages),
         "samples": SAMPLES,
+        "load average": {"before": os.getloadavg()[0]},
         "not installed": sorted({peer.name for peer in PEERS if not peer.version}),
         "left out": LEFT_OUT,
         "peers": {peer.name: {"family": peer.family, "package": peer.package} for peer in PEERS},
@@ -46,6 +48,7 @@ def measured(quick: bool) -> dict[str, Any]:
     if not quick:
         result["horizons"] = horizons()
         result["kernel"] = kernel_rows()
+        result["load average"]["after"] = os.getloadavg()[0]
         result["cold start in seconds"] = cold_starts(PEERS, 3)
     return result
 

@@ -58,7 +58,7 @@ def _numbalsoda(method: str, case: Case, tolerance: float) -> Run:
     coefficients = np.array(case.coefficients)
 
     def run() -> Floats:
-        states, success = solver(address, start, times, data=coefficients, rtol=tolerance, atol=tolerance)
+        states, success = solver(address, start, times, data=coefficients, rtol=tolerance, atol=tolerance, mxstep=10**8)
         if not success:
             raise ArithmeticError("the integrator reports failure")
         return answer(case, states)

@@ -135,15 +135,17 @@ def _remarks(curves: Mapping[str, list[tuple[float, float]]], x: Scale, y: Scale
     """Return who is off the picture, and that nobody comes near where that is so."""
     parts = []
     right = x.start + x.length - 8.0
-    beyond = {
-        peer: f"error {max(error for _, error in curve):.0e}" if curve else "no answer"
+    remarks = [
+        f"off the picture: {peer}, {max(error for _, error in curve):.0e}"
         for peer, curve in curves.items()
-        if not curve or any(error > LARGEST for _, error in curve)
-    }
-    for k, (peer, remark) in enumerate(beyond.items()):
+        if any(error > LARGEST for _, error in curve)
+    ]
+    silent = dict.fromkeys(peer.split()[0] for peer, curve in curves.items() if not curve)
+    remarks += [f"no answer: {', '.join(silent)}"] if silent else []
+    for k, remark in enumerate(reversed(remarks)):
         parts.append(
-            f'<text x="{right:g}" y="{y(NONE_NEAR) + 48 + 17 * k:.1f}" text-anchor="end" fill="{SHOWN[peer][0]}">'
-            f"{escape(peer)}: {remark}</text>"
+            f'<text x="{right:g}" y="{y.start - 8 - 15 * k:.1f}" text-anchor="end" fill="#444" font-size="12">'
+            f"{escape(remark)}</text>"
         )
     others = [error for peer, curve in curves.items() if peer != OURS for _, error in curve]
     if others and min(others) > NONE_NEAR:

@@ -23,13 +23,23 @@ TOO_LONG = 2.5
 TAKEN_ONCE = 0.7
 """A run that takes longer (s) is not repeated: it is warm from the settings before, and hides no start-up."""
 
+SHORT = 0.02
+"""Runs that are shorter (s) are repeated most, and are tried thrice to see how short they are."""
+
 QUICK = 0.2
 """What is too long in a quick trial (s)."""
 
 
 def repeats(once: float) -> int:
     """Return how often a run that takes `once` seconds is taken for its median."""
-    return 15 if once < 0.02 else 5 if once < 0.2 else 3
+    return 15 if once < SHORT else 5 if once < 0.2 else 3
+
+
+def seconds(run: Run) -> float:
+    """Return the time of one run."""
+    start = time.perf_counter()
+    run()
+    return time.perf_counter() - start
 
 
 def measure(case: Case, peers: Sequence[Peer], quick: bool) -> dict[str, Any]:
@@ -69,13 +79,15 @@ def measure(case: Case, peers: Sequence[Peer], quick: bool) -> dict[str, Any]:
                 point["failure"] = f"{type(failure).__name__}: {failure}".splitlines()[0][:200]
                 continue
             spent = done - prepared
+            if spent > TAKEN_ONCE and len(own["points"]) == 1:
+                # The first run of all may compile.
+                spent = seconds(run)
             if spent > TAKEN_ONCE:
                 point["milliseconds"] = 1e3 * spent
                 point["set-up milliseconds"] = 1e3 * (prepared - begun)
             else:
                 key = f"{peer.name}, {setting:g}"
-                run()
-                once[key] = time.perf_counter() - done
+                once[key] = min(seconds(run) for _ in range(3)) if spent < SHORT else seconds(run)
                 runs[key], points[key], firsts[key] = run, point, done - begun
             if spent > (QUICK if quick else TOO_LONG):
                 own["left out"] = list(peer.settings[peer.settings.index(setting) + 1 :])
