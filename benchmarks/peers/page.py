@@ -145,7 +145,7 @@ def _rival(cases: Mapping[str, Any]) -> str:
             ratio, peer, name = min(found)
             said.append(f"{peer} took {ratio:.2g} times the closed form's time on {name}")
     return (
-        "If an error of 1e-6 will do on a short motion, a compiled integrator comes near or wins, the more so where the "
+        "If an error of 1e-6 will do on a short motion, a compiled integrator comes near or wins, and so where the "
         f"attitude is asked for: {'; '.join(said)}."
     )
 
