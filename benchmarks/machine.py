@@ -29,17 +29,36 @@ def medians(runs: dict[str, Callable[[], object]], repeats: int, least: float = 
 
     Short runs are repeated within one measurement until it lasts `least` seconds.
     """
-    loops = {}
+    once = {}
     for name, run in runs.items():
         run()
         start = time.perf_counter()
         run()
-        loops[name] = max(1, int(least / max(time.perf_counter() - start, 1e-9)))
+        once[name] = time.perf_counter() - start
+    return medians_in_turn(runs, once, lambda _: repeats, least)
+
+
+def medians_in_turn(
+    runs: dict[str, Callable[[], object]],
+    once: dict[str, float],
+    repeats: Callable[[float], int],
+    least: float = 2e-3,
+) -> dict[str, float]:
+    """Return the median time of each run (s) as `medians` does, for runs that are warm and take about `once` seconds.
+
+    `repeats` says how often to take one, given how long it takes.
+    """
+    loops = {name: max(1, int(least / max(once[name], 1e-9))) for name in runs}
+    wanted = {name: repeats(once[name]) for name in runs}
     spent: dict[str, list[float]] = {name: [] for name in runs}
-    for _ in range(repeats):
+    for turn in range(max(wanted.values(), default=0)):
         for name, run in runs.items():
-            start = time.perf_counter()
-            for _ in range(loops[name]):
-                run()
-            spent[name].append((time.perf_counter() - start) / loops[name])
+            if turn < wanted[name]:
+                if loops[name] > 1:
+                    # The runs between have emptied the caches; a long run fills them again by itself.
+                    run()
+                start = time.perf_counter()
+                for _ in range(loops[name]):
+                    run()
+                spent[name].append((time.perf_counter() - start) / loops[name])
     return {name: statistics.median(times) for name, times in spent.items()}
