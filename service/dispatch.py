@@ -19,6 +19,7 @@ from typing import Any
 from core.errors import MechanicsError
 from service import archive
 from service.answering import Answering
+from service.composing import Document, composed
 from service.compute import Compute
 from service.cors import Cors
 from service.guards import ClientGone, negotiated, read_body, require_acceptable, require_json
@@ -28,7 +29,6 @@ from service.metrics import Metrics
 from service.problems import MEDIA_TYPE, REGISTRY, Problem, Refusal, problem_of
 from service.routing import Page, Question, Route
 from service.settings import Settings
-from service.writing import ONE_PIECE, array_size, chunks, written
 
 Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
@@ -129,31 +129,28 @@ class Dispatcher:
         if accept != b"*/*" and accept != b"application/json":
             media = negotiated(accept, (*route.representations, archive.MEDIA_TYPE))
         body = await read_body(exchange.receive, headers, settings.max_body_bytes)
-        if media == archive.MEDIA_TYPE:
-            answer = await self._answer(route, body, exchange)
-            self._metrics.samples.inc(array_size(answer))
-            etag = etag_of(route.path.encode(), media.encode(), body)
-            await exchange.stream(archive.archive(answer), etag, _NPZ)
-            return
-        if media is not None:
-            document = route.representations[media](await self._answer(route, body, exchange))
-            await exchange.represented(document, media.encode())
-            return
         key = (route.path, body)
-        kept = self._kept.get(key)
+        kept = self._kept.get(key) if media is None else None
         if kept is not None:
             self._kept.move_to_end(key)
             self._metrics.cache_hits.inc()
             await exchange.answer(*kept)
             return
-        answer = await self._answer(route, body, exchange)
-        size = array_size(answer)
-        if size > ONE_PIECE:
-            self._metrics.samples.inc(size)
-            # The question and the version determine the answer to the bit, so their hash names it.
-            await exchange.stream(chunks(answer), etag_of(route.path.encode(), body))
+        document = await self._document(route, body, media, exchange)
+        if media == archive.MEDIA_TYPE:
+            self._metrics.samples.inc(document.numbers)
+            etag = etag_of(route.path.encode(), media.encode(), body)
+            await exchange.stream(document.pieces(), etag, _NPZ)
             return
-        text = written(answer)
+        if media is not None:
+            await exchange.represented(document.whole(), media.encode())
+            return
+        if document.large:
+            self._metrics.samples.inc(document.numbers)
+            # The question and the version determine the answer to the bit, so their hash names it.
+            await exchange.stream(document.pieces(), etag_of(route.path.encode(), body))
+            return
+        text = document.whole()
         etag = etag_of(text)
         if settings.cached_answers and len(text) + len(body) <= 8192:
             self._kept[key] = text, etag
@@ -161,7 +158,7 @@ class Dispatcher:
                 self._kept.popitem(last=False)
         await exchange.answer(text, etag)
 
-    async def _answer(self, route: Question, body: bytes, exchange: Exchange) -> Any:
+    async def _document(self, route: Question, body: bytes, media: str | None, exchange: Exchange) -> Document:
         longest = self._settings.deadline_seconds
         if len(body) <= self._settings.inline_bytes:
             question = self._answering.read(route, body)
@@ -170,13 +167,13 @@ class Dispatcher:
             if exchange.key is not None:
                 exchange.key.work(price)
             if price <= self._settings.inline_seconds:
-                return self._answering.answer(route, question)
+                return composed(route, self._answering.answer(route, question), media)
         else:
             # What has not been read has no price yet; reading alone takes about this long.
             price = min(4e-8 * len(body), longest)
             if exchange.key is not None:
                 exchange.key.work(price)
-        return await self._compute.answer(route, body, price, gone=exchange.gone)
+        return await self._compute.answer(route, body, price, media, gone=exchange.gone)
 
     async def _page(self, route: Page, exchange: Exchange) -> None:
         reply = route.content()

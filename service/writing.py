@@ -73,31 +73,45 @@ def chunks(answer: Any) -> Iterator[bytes]:
     return _chunks(answer)
 
 
-def _chunks(value: Any) -> Iterator[bytes]:
+def _chunks(answer: Any) -> Iterator[bytes]:
+    for part in parts(answer):
+        if isinstance(part, bytes):
+            yield part
+        else:
+            yield from rows(part)
+
+
+def parts(value: Any) -> Iterator[bytes | np.ndarray[Any, Any]]:
+    """Yield an answer as JSON, but for its large arrays, which `rows` writes; it has to be finite."""
     if array_size((value,)) <= CHUNK:
         yield orjson.dumps(value, default=_plain, option=_OPTIONS)
     elif type(value) is dict:
         opening = b"{"
         for key, entry in value.items():
             yield opening + orjson.dumps(key) + b":"
-            yield from _chunks(entry)
+            yield from parts(entry)
             opening = b","
         yield b"}"
     elif isinstance(value, np.ndarray):
-        rows = max(1, CHUNK * len(value) // value.size)
-        opening = b"["
-        for start in range(0, len(value), rows):
-            block = np.ascontiguousarray(value[start : start + rows])
-            yield opening + orjson.dumps(block, option=_OPTIONS)[1:-1]
-            opening = b","
-        yield b"]"
+        yield value
     else:
         opening = b"["
         for entry in value:
             yield opening
-            yield from _chunks(entry)
+            yield from parts(entry)
             opening = b","
         yield b"]"
+
+
+def rows(array: np.ndarray[Any, Any]) -> Iterator[bytes]:
+    """Yield an array as JSON in chunks; it has to be finite."""
+    step = max(1, CHUNK * len(array) // array.size)
+    opening = b"["
+    for start in range(0, len(array), step):
+        block = np.ascontiguousarray(array[start : start + step])
+        yield opening + orjson.dumps(block, option=_OPTIONS)[1:-1]
+        opening = b","
+    yield b"]"
 
 
 def _plain(value: Any) -> Any:
