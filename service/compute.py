@@ -16,17 +16,15 @@ from math import ceil
 from pathlib import Path
 from typing import Any
 
-from core.integration.budget import Budget
 from service.composing import Document
 from service.guards import ClientGone
 from service.logs import LOG
 from service.metrics import Metrics
 from service.problems import Problem, Refusal
 from service.processes import Died, Job, NoTurn, Overdue, Processes, Stopped
-from service.reading import Limits
 from service.routing import Question
 from service.settings import Settings
-from service.worker import Asked, Failed, Terms, restored, serve
+from service.worker import Asked, Failed, restored, serve, terms_of
 
 MEMORY = 20.0
 """About how many of the last jobs tell how fast this machine is."""
@@ -70,11 +68,7 @@ class Compute:
 
     def __init__(self, settings: Settings, metrics: Metrics, table: str) -> None:
         self._settings, self._metrics = settings, metrics
-        self.terms = Terms(
-            table,
-            Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
-            Limits(settings.max_nesting, settings.max_keys, settings.max_arrays),
-        )
+        self.terms = terms_of(settings, table)
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
         self.processes = Processes(self.size, serve, (self.terms,), "service.prepared", self._lost)

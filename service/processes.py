@@ -153,6 +153,11 @@ class Processes:
         """Process ids, and whether each works on something."""
         return {process.handle.pid or 0: process.job is not None for process in self._all}
 
+    @property
+    def ready(self) -> bool:
+        """Whether all processes are there and ready."""
+        return sum(process.ready and not process.killed for process in self._all) == self.size
+
     async def start(self) -> None:
         """Start all processes and return when each is ready."""
         for _ in range(self.size):
@@ -197,7 +202,7 @@ class Processes:
             return
         if not process.ready:
             process.ready = True
-            if sum(one.ready for one in self._all) == self.size:
+            if self.ready:
                 self._up.set()
         elif job is None:
             return

@@ -28,6 +28,7 @@ from service.problems import Problem, Refusal, problem_of
 from service.processes import HEADER, framed
 from service.reading import Limits
 from service.routing import Question
+from service.settings import Settings
 
 SMALL = 65_536
 """Bytes of a document that travel through the socket."""
@@ -91,8 +92,19 @@ class Failed:
 
 @cache
 def answering(terms: Terms) -> Answering:
-    """Return this process's answering of questions."""
-    return Answering(_routes(terms.table).values(), terms.budget, terms.limits)
+    """Return this process's answering of questions, warm; inherited warm if the fork server has made it."""
+    made = Answering(_routes(terms.table).values(), terms.budget, terms.limits)
+    made.warm()
+    return made
+
+
+def terms_of(settings: Settings, table: str) -> Terms:
+    """Return what compute processes need to know of the settings."""
+    return Terms(
+        table,
+        Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
+        Limits(settings.max_nesting, settings.max_keys, settings.max_arrays),
+    )
 
 
 @cache
@@ -122,7 +134,7 @@ def serve(channel: socket.socket, terms: Terms) -> None:
 def prepare(terms: Terms) -> None:
     """Make this process ready, and let it yield to the server process where they compete for a core."""
     os.nice(10)
-    answering(terms).warm()
+    answering(terms)
 
 
 def work(terms: Terms, asked: Asked) -> Document | Problem | Failed:

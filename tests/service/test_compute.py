@@ -111,7 +111,7 @@ def alive(pid: int) -> bool:
 async def ready(service: Service) -> None:
     """Wait until every process is there and has nothing to do."""
     async with asyncio.timeout(60):
-        while [busy for busy in service.compute.processes.pids.values() if not busy] != [False] * service.compute.size:
+        while not service.compute.processes.ready or any(service.compute.processes.pids.values()):
             await asyncio.sleep(0.01)
 
 
@@ -198,8 +198,9 @@ async def test_every_process_killed_again_and_again_loses_nothing(service: Servi
         while len(outcomes) < 24:
             await asyncio.sleep(0.17)
             for pid in service.compute.processes.pids:
-                if pid and alive(pid):
-                    os.kill(pid, signal.SIGKILL)
+                os.kill(pid, signal.SIGKILL)
+            while not service.compute.processes.ready:
+                await asyncio.sleep(0.01)
 
     async with asyncio.timeout(60):
         await asyncio.gather(large(), large(), large(), little(), killing())
