@@ -16,7 +16,7 @@ from functools import partial
 from multiprocessing.context import ForkServerProcess
 from threading import Thread
 from time import perf_counter
-from typing import Any
+from typing import Any, cast
 
 from service.logs import LOG
 
@@ -86,8 +86,7 @@ class Process(asyncio.Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Keep the connection."""
-        assert isinstance(transport, asyncio.WriteTransport)
-        self._transport = transport
+        self._transport = cast(asyncio.WriteTransport, transport)
 
     def give(self, job: Job) -> None:
         """Send a request."""

@@ -6,6 +6,7 @@ the server process maps: texts as they are sent, large arrays as numbers, which 
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import signal
@@ -120,7 +121,8 @@ def serve(channel: socket.socket, terms: Terms) -> None:
     # Ctrl-C in a terminal reaches every process; the server ends this one when it has finished.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     prepare(terms)
-    with channel, channel.makefile("rb") as requests:
+    # Once the connection is closed nobody waits for anything.
+    with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
         channel.sendall(framed(b""))
         while header := requests.read(HEADER):
             asked: Asked = pickle.loads(requests.read(int.from_bytes(header, "little")))
