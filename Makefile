@@ -51,7 +51,10 @@ clean:
 # A longer fuzz than the tests', with a new seed each time; FUZZ is the number of questions for each endpoint.
 FUZZ ?= 2000
 
-.PHONY: fuzz schemathesis soak
+# Seconds of load and faults.
+SOAK ?= 300
+
+.PHONY: fuzz schemathesis soak overload health calibration
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
@@ -60,4 +63,13 @@ schemathesis: environment
 	$(BIN)/python -m tests.service.schema_run
 
 soak: environment
-	$(BIN)/python -m benchmarks.soak
+	$(BIN)/python -m benchmarks.soak $(SOAK)
+
+overload: environment
+	$(BIN)/python -m benchmarks.service_overload
+
+health: environment
+	$(BIN)/python -m benchmarks.service_health
+
+calibration: environment
+	$(BIN)/python -m benchmarks.calibration
