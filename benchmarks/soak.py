@@ -85,8 +85,9 @@ class Soak:
     def large(self, seed: int) -> None:
         """Ask large questions; those that are admitted are compared."""
         draw = random.Random(seed)
-        connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=120)
         while time.monotonic() < self.until:
+            # Comparing may take longer than the server keeps an idle connection open.
+            connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=120)
             moments, count = (1.0, 1.5, draw.uniform(1.6, 2.4)), draw.choice([20_000, 100_000, 400_000])
             times = {"start": 0.0, "stop": draw.uniform(1.0, 50.0), "count": count}
             question = {
@@ -95,6 +96,7 @@ class Soak:
                 "times": times,
             }
             status, answer, spent = self._ask(connection, TRAJECTORY, question)
+            connection.close()
             if status == 200:
                 self.waits["large"].append(spent)
                 system = TorqueFree(PrincipalMoments(moments).mass_properties(), np.array([0.1, 2.0, 0.1]))
