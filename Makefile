@@ -53,7 +53,10 @@ clean:
 # A longer fuzz than the tests', with a new seed each time; FUZZ is the number of questions for each endpoint.
 FUZZ ?= 2000
 
-.PHONY: fuzz schemathesis soak image
+# Seconds of load and faults.
+SOAK ?= 300
+
+.PHONY: fuzz schemathesis soak overload health calibration image
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
@@ -62,7 +65,16 @@ schemathesis: environment
 	$(BIN)/python -m tests.service.schema_run
 
 soak: environment
-	$(BIN)/python -m benchmarks.soak
+	$(BIN)/python -m benchmarks.soak $(SOAK)
+
+overload: environment
+	$(BIN)/python -m benchmarks.service_overload
+
+health: environment
+	$(BIN)/python -m benchmarks.service_health
+
+calibration: environment
+	$(BIN)/python -m benchmarks.calibration
 
 # The steps of the Dockerfile in a clean Debian, and the image as it is meant to run; needs root and debootstrap.
 image: environment

@@ -1,30 +1,32 @@
 """A bounded mix of load and faults against a real server: every answer is checked against core, memory must stay flat.
 
-Run: python -m benchmarks.soak [minutes]. Everything stays on 127.0.0.1. Faults: compute processes killed, clients that
-leave, garbage, more large questions than are admitted. Only processes that the server itself started are killed.
+Run: python -m benchmarks.soak [seconds]. Everything stays on 127.0.0.1. Faults: compute processes killed one by one and
+all at once, clients that leave while they ask, while they wait and while they are answered, garbage, more large
+questions than are admitted. Only processes that the server itself started are killed.
 """
 
 from __future__ import annotations
 
+import contextlib
 import http.client
 import json
+import multiprocessing
 import os
 import random
-import re
 import signal
 import socket
-import statistics
-import subprocess
 import sys
 import threading
 import time
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.machine import RESULTS, described
+from benchmarks.servers import Server, service
 from core.bodies.measured import PrincipalMoments
 from core.integration.solve import solve
 from core.rotation.precession import precession
@@ -34,34 +36,58 @@ JSON = {"content-type": "application/json"}
 PRECESSION, TRAJECTORY = "/v1/rotation/precession", "/v1/rotation/trajectory"
 
 
-class Soak:
-    """The load, and what came of it."""
+MOST_GROWTH = 0.05
+"""Megabytes per second by which a server's memory may seem to grow after its first fifth."""
 
-    def __init__(self, port: int, until: float) -> None:
-        self.port, self.until = port, until
+
+class Soak:
+    """The load, and what came of it.
+
+    Attributes
+    ----------
+    waits : mapping of str to list of float
+        By kind of question, how long its answers took (s).
+    lost : list of str
+        Questions that got no answer at all, though nobody left.
+    """
+
+    def __init__(self, server: Server, until: float) -> None:
+        self.server, self.until = server, until
         self.outcomes: Counter[str] = Counter()
-        self.waits: list[float] = []
+        self.waits: dict[str, list[float]] = {"small": [], "large": [], "refused": []}
         self.wrong: list[str] = []
+        self.lost: list[str] = []
+
+    def add(self, other: Soak) -> None:
+        """Take over what came of another part of the load."""
+        self.outcomes += other.outcomes
+        self.wrong += other.wrong
+        self.lost += other.lost
+        for kind, waits in other.waits.items():
+            self.waits[kind] += waits
 
     def small(self, seed: int) -> None:
         """Ask small questions and compare each answer."""
-        draw, connection = random.Random(seed), http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        draw = random.Random(seed)
+        connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=60)
         while time.monotonic() < self.until:
             moments = (1.0, draw.uniform(1.0, 1.5), draw.uniform(1.5, 2.0))
             spin = [draw.uniform(-3, 3) for _ in range(3)]
             question = {"body": {"kind": "principal-moments", "moments": moments}, "angular_velocity": spin}
-            since = time.perf_counter()
-            status, answer = self._ask(connection, PRECESSION, question)
-            self.waits.append(time.perf_counter() - since)
+            status, answer, spent = self._ask(connection, PRECESSION, question)
+            self.waits["small"].append(spent)
             expected = precession(PrincipalMoments(moments).mass_properties(), np.array(spin))
-            if status != 200 or answer["period"] != expected.period:
+            if status != 0 and (status != 200 or answer["period"] != expected.period):
                 self.wrong.append(f"precession {question}: {status} {str(answer)[:200]}")
-            self.outcomes["small answered"] += 1
+            self.outcomes["small answered"] += status == 200
+            time.sleep(0.002)
 
     def large(self, seed: int) -> None:
         """Ask large questions; those that are admitted are compared."""
-        draw, connection = random.Random(seed), http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
+        draw = random.Random(seed)
         while time.monotonic() < self.until:
+            # Comparing may take longer than the server keeps an idle connection open.
+            connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=120)
             moments, count = (1.0, 1.5, draw.uniform(1.6, 2.4)), draw.choice([20_000, 100_000, 400_000])
             times = {"start": 0.0, "stop": draw.uniform(1.0, 50.0), "count": count}
             question = {
@@ -69,127 +95,195 @@ class Soak:
                 "angular_velocity": [0.1, 2.0, 0.1],
                 "times": times,
             }
-            status, answer = self._ask(connection, TRAJECTORY, question)
+            status, answer, spent = self._ask(connection, TRAJECTORY, question)
+            connection.close()
             if status == 200:
+                self.waits["large"].append(spent)
                 system = TorqueFree(PrincipalMoments(moments).mass_properties(), np.array([0.1, 2.0, 0.1]))
                 expected = solve(system, np.linspace(0.0, times["stop"], count)).state
                 if not np.array_equal(np.array(answer["angular_velocity"]), expected[:, :3]):
                     self.wrong.append(f"trajectory {question}")
                 self.outcomes["large answered"] += 1
-            elif status in (429, 503) and answer.get("code") in ("too-busy", "worker-lost", "deadline-exceeded"):
+            elif status in (429, 503) and answer.get("code") in ("too-busy", "worker-lost", "not-ready"):
+                self.waits["refused"].append(spent)
                 self.outcomes[f"large {answer['code']}"] += 1
                 time.sleep(0.05)
-            else:
+            elif status != 0:
                 self.wrong.append(f"trajectory: {status} {str(answer)[:200]}")
 
-    def faults(self, seed: int, server: int) -> None:
+    def crowd(self, seed: int) -> None:
+        """Now and then ask many questions at once, more than are admitted."""
+        draw = random.Random(seed)
+        body = json.dumps(HEAVY)
+        while time.monotonic() < self.until:
+            time.sleep(draw.uniform(3.0, 8.0))
+
+            def one() -> None:
+                connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=120)
+                status, answer, spent = self._ask(connection, TRAJECTORY, json.loads(body))
+                if status == 200:
+                    self.waits["large"].append(spent)
+                    self.outcomes["crowd answered"] += 1
+                elif status in (429, 503):
+                    self.waits["refused"].append(spent)
+                    self.outcomes[f"crowd {answer['code']}"] += 1
+                elif status != 0:
+                    self.wrong.append(f"crowd: {status} {str(answer)[:200]}")
+
+            threads = [threading.Thread(target=one) for _ in range(12)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+
+    def faults(self, seed: int) -> None:
         """Leave in the middle, send garbage, kill compute processes."""
         draw = random.Random(seed)
-        body = json.dumps(
-            {
-                "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
-                "angular_velocity": [0.1, 1.0, 0.1],
-                "times": {"start": 0.0, "stop": 9.0, "count": 500_000},
-            }
-        ).encode()
+        body = json.dumps(HEAVY).encode()
+        streamed = json.dumps(LONG).encode()
         head = b"POST %s HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\n" % TRAJECTORY.encode()
         while time.monotonic() < self.until:
-            kind = draw.choice(["leave", "leave early", "garbage", "kill"])
-            if kind == "kill" and (workers := compute_processes(server)):
-                os.kill(draw.choice(workers), signal.SIGKILL)
-            elif kind != "kill":
-                with socket.create_connection(("127.0.0.1", self.port), timeout=10) as connection:
+            kind = draw.choice(["left waiting", "left asking", "left being answered", "garbage", "kill", "kill all"])
+            if kind.startswith("kill"):
+                workers = self.server.compute_processes()
+                for worker in workers if kind == "kill all" else draw.sample(workers, min(1, len(workers))):
+                    with contextlib.suppress(ProcessLookupError):
+                        os.kill(worker, signal.SIGKILL)
+            else:
+                with (
+                    contextlib.suppress(ConnectionError),
+                    socket.create_connection(("127.0.0.1", self.server.port), timeout=10) as connection,
+                ):
                     sent = {
-                        "leave": head + b"content-length: %d\r\n\r\n" % len(body) + body,
-                        "leave early": head + b"content-length: 1000\r\n\r\n" + body[:50],
+                        "left waiting": head + b"content-length: %d\r\n\r\n" % len(body) + body,
+                        "left being answered": head + b"content-length: %d\r\n\r\n" % len(streamed) + streamed,
+                        "left asking": head + b"content-length: 1000\r\n\r\n" + body[:50],
                         "garbage": draw.randbytes(2000),
                     }
                     connection.sendall(sent[kind])
+                    if kind == "left being answered":
+                        connection.recv(20_000)
                     time.sleep(draw.uniform(0.0, 0.1))
             self.outcomes[f"fault: {kind}"] += 1
-            time.sleep(draw.uniform(0.1, 2.0))
+            time.sleep(draw.uniform(0.3, 3.0))
 
-    def _ask(self, connection: http.client.HTTPConnection, path: str, question: Any) -> tuple[int, Any]:
-        connection.request("POST", path, json.dumps(question), JSON)
-        response = connection.getresponse()
-        return response.status, json.loads(response.read())
-
-
-def compute_processes(server: int) -> list[int]:
-    """Return the processes that the server's fork server has started."""
-    found: list[int] = []
-    for child in _children(server):
-        if b"forkserver" in Path(f"/proc/{child}/cmdline").read_bytes():
-            found += _children(child)
-    return found
-
-
-def _children(process: int) -> list[int]:
-    text = Path(f"/proc/{process}/task/{process}/children").read_text()
-    return [int(child) for child in text.split()]
+    def _ask(self, connection: http.client.HTTPConnection, path: str, question: Any) -> tuple[int, Any, float]:
+        """Return status, answer and time; the status of a question without an answer is 0."""
+        since = time.perf_counter()
+        try:
+            connection.request("POST", path, json.dumps(question), JSON)
+            response = connection.getresponse()
+            content = response.read()
+            return response.status, json.loads(content), time.perf_counter() - since
+        except (OSError, http.client.HTTPException, ValueError) as error:
+            connection.close()
+            self.lost.append(f"{path}: {error!r}")
+            return 0, None, time.perf_counter() - since
 
 
-def _resident(process: int) -> float:
+GROUPS = ((("small", 1), ("small", 2)), (("large", 3), ("large", 4)), (("crowd", 5), ("faults", 6)))
+"""Which clients share a process, with their seeds: those that compare large answers would make the others late."""
+
+
+def load(server: Server, until: float, group: tuple[tuple[str, int], ...]) -> Soak:
+    """Run some clients to the end."""
+    soak = Soak(server, until)
+    threads = [threading.Thread(target=getattr(soak, name), args=(seed,)) for name, seed in group]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return soak
+
+
+HEAVY: dict[str, Any] = {
+    "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
+    "angular_velocity": [0.1, 1.0, 0.1],
+    "times": {"start": 0.0, "stop": 9.0, "count": 11},
+    "method": {"kind": "runge-kutta-4", "step": 5e-6},
+}
+LONG = {name: value for name, value in HEAVY.items() if name != "method"} | {
+    "times": {"start": 0.0, "stop": 9.0, "count": 500_000}
+}
+
+
+def resident(process: int) -> float:
+    """Return the memory that is a process's own (MB)."""
     text = Path(f"/proc/{process}/status").read_text()
     return int(text.split("RssAnon:")[1].split()[0]) / 1024
 
 
-def main(minutes: float = 5.0) -> None:
-    """Run and write the figures; fails if anything was wrong or memory grew."""
-    command = [sys.executable, "-m", "service", "--port", "0"]
-    environment = {**os.environ, "POLHODE_MAX_BACKLOG_SECONDS": "0.2", "POLHODE_LOG_LEVEL": "info"}
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, env=environment)
-    try:
-        assert process.stderr is not None
-        port = 0
-        for line in process.stderr:
-            found = re.search(rb"running on http://127.0.0.1:(\d+)", line)
-            if found:
-                port = int(found[1])
-                break
-        log = threading.Thread(target=lambda: [None for _ in process.stderr or ()], daemon=True)
-        log.start()
-        while _status(port) != 200:
-            time.sleep(0.2)
-        before, soak = os.getloadavg(), Soak(port, time.monotonic() + 60.0 * minutes)
-        jobs: list[tuple[Any, tuple[int, ...]]] = [(soak.small, (1,)), (soak.small, (2,))]
-        jobs += [(soak.large, (seed,)) for seed in (3, 4, 5)] + [(soak.faults, (6, process.pid))]
-        threads = [threading.Thread(target=job, args=given) for job, given in jobs]
-        for thread in threads:
-            thread.start()
-        memory: list[float] = []
-        while time.monotonic() < soak.until:
-            memory.append(_resident(process.pid))
-            time.sleep(1.0)
-        for thread in threads:
-            thread.join()
-        # The first fifth fills caches.
-        settled = memory[len(memory) // 5 :]
-        third = max(1, len(settled) // 3)
-        growth = statistics.median(settled[-third:]) - statistics.median(settled[:third])
-        waits = sorted(soak.waits)
-        result = {
-            "machine": described("uvicorn", "pebble"),
-            "load_average": {"before": before, "after": os.getloadavg()},
-            "minutes": minutes,
-            "outcomes": dict(sorted(soak.outcomes.items())),
-            "wrong": soak.wrong[:20],
-            "small_ms": {"p50": 1e3 * waits[len(waits) // 2], "p99": 1e3 * waits[int(0.99 * len(waits))]},
-            "memory_MB": {"first": settled[0], "last": settled[-1], "most": max(settled), "growth": growth},
-        }
-        (RESULTS / "soak.json").write_text(json.dumps(result, indent=2) + "\n")
-        print(json.dumps(result, indent=2))
-        assert not soak.wrong, "an answer was wrong or missing"
-        assert growth < 10.0, "memory grew"
-    finally:
-        process.terminate()
-        process.wait(60)
+class Memory:
+    """How much the server and its compute processes take, as time goes by."""
+
+    def __init__(self, server: Server) -> None:
+        self.server = server
+        self.times: list[float] = []
+        self.kinds: dict[str, list[float]] = {"server": [], "largest compute process": []}
+
+    def look(self) -> None:
+        """Take one sample."""
+        workers = [0.0]
+        for worker in self.server.compute_processes():
+            # It may have been killed since.
+            with contextlib.suppress(OSError, IndexError):
+                workers.append(resident(worker))
+        self.times.append(time.monotonic())
+        self.kinds["server"].append(resident(self.server.pid))
+        self.kinds["largest compute process"].append(max(workers))
+
+    def figures(self) -> dict[str, dict[str, float]]:
+        """Return first, last, most (MB) and the slope (MB/min) after the first fifth, which fills caches."""
+        start = len(self.times) // 5
+        found = {}
+        for name, own in self.kinds.items():
+            slope = float(np.polyfit(self.times[start:], own[start:], 1)[0])
+            found[name] = {
+                "first": round(own[start], 1),
+                "last": round(own[-1], 1),
+                "most": round(max(own), 1),
+                "slope_per_minute": round(60.0 * slope, 3),
+            }
+        return found
 
 
-def _status(port: int) -> int:
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
-    connection.request("GET", "/readyz")
-    return connection.getresponse().status
+def quantiles(waits: list[float]) -> dict[str, float]:
+    """Return median and 99th percentile (ms)."""
+    ordered = sorted(waits)
+    return {"p50": round(1e3 * ordered[len(ordered) // 2], 2), "p99": round(1e3 * ordered[int(0.99 * len(ordered))], 2)}
+
+
+def main(seconds: float = 300.0) -> None:
+    """Run and write the figures; fails if anything was wrong or lost, or memory grew."""
+    before = os.getloadavg()
+    with service(max_backlog_seconds="0.5") as server:
+        until, memory = time.monotonic() + seconds, Memory(server)
+        soak = Soak(server, until)
+        with ProcessPoolExecutor(len(GROUPS), multiprocessing.get_context("spawn")) as clients:
+            parts = [clients.submit(load, server, until, group) for group in GROUPS]
+            while time.monotonic() < until:
+                memory.look()
+                time.sleep(1.0)
+            for part in parts:
+                soak.add(part.result())
+        left = {"processes": len(server.compute_processes())}
+    result = {
+        "machine": described("uvicorn", "uvloop"),
+        "load_average": {"before": before, "after": os.getloadavg()},
+        "seconds": seconds,
+        "outcomes": dict(sorted(soak.outcomes.items())),
+        "wrong": len(soak.wrong),
+        "lost": len(soak.lost),
+        "first_wrong_or_lost": (soak.wrong + soak.lost)[:20],
+        "milliseconds": {kind: quantiles(waits) for kind, waits in soak.waits.items() if waits},
+        "memory_MB": memory.figures(),
+        "left": left,
+    }
+    (RESULTS / "soak.json").write_text(json.dumps(result, indent=2) + "\n")
+    print(json.dumps(result, indent=2))
+    assert not soak.wrong, "an answer was wrong"
+    assert not soak.lost, "an answer was lost"
+    assert result["memory_MB"]["server"]["slope_per_minute"] < 60.0 * MOST_GROWTH, "memory grew"
 
 
 if __name__ == "__main__":

@@ -7,29 +7,46 @@ of those that are accepted.
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
 import os
+import pickle
 import tempfile
 from collections.abc import Awaitable, Callable
-from concurrent.futures import BrokenExecutor, TimeoutError
 from itertools import count
 from math import ceil
 from pathlib import Path
-from threading import Thread
-from time import perf_counter
 from typing import Any
 
-from pebble import ProcessExpired, ProcessFuture, ProcessPool
-
-from core.integration.budget import Budget
+from service.composing import Document
 from service.guards import ClientGone
 from service.logs import LOG
 from service.metrics import Metrics
 from service.problems import Problem, Refusal
-from service.reading import Limits
-from service.routing import Answer, Question
+from service.processes import Died, Job, NoTurn, Overdue, Processes, Stopped
+from service.routing import Question
 from service.settings import Settings
-from service.worker import Terms, prepare, restored, work
+from service.worker import Asked, Failed, restored, serve, terms_of
+
+MEMORY = 20.0
+"""About how many of the last jobs tell how fast this machine is."""
+
+
+class Pace:
+    """How long computations take on this machine, as it is loaded now, in proportion to their prices."""
+
+    def __init__(self) -> None:
+        # One second of what was predicted, as long as nothing is known.
+        self._predicted = self._taken = 1.0
+
+    @property
+    def ratio(self) -> float:
+        """Time over price."""
+        return self._taken / self._predicted
+
+    def learn(self, price: float, seconds: float) -> None:
+        """Take a finished computation into account."""
+        kept = 1.0 - 1.0 / MEMORY
+        self._predicted = kept * self._predicted + price
+        self._taken = kept * self._taken + seconds
 
 
 class Compute:
@@ -41,80 +58,58 @@ class Compute:
     metrics : Metrics
     table : str
         Where the route table is: ``"module:function"``.
+
+    Attributes
+    ----------
+    pace : Pace
+        By which prices are corrected where times are predicted.
+    processes : Processes
     """
 
     def __init__(self, settings: Settings, metrics: Metrics, table: str) -> None:
         self._settings, self._metrics = settings, metrics
-        self.terms = Terms(
-            table,
-            Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
-            Limits(settings.max_nesting, settings.max_keys, settings.max_arrays),
-        )
+        self.terms = terms_of(settings, table)
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
-        self._pool: ProcessPool | None = None
+        self.processes = Processes(self.size, serve, (self.terms,), "service.prepared", self._lost)
         self._scratch: tempfile.TemporaryDirectory[str] | None = None
         self._numbers = count()
+        self.pace = Pace()
         self._promised = 0.0
-        self._tasks: set[ProcessFuture[Any]] = set()
-        self._stopping = False
+        self._jobs = 0
+        self._up = self._stopping = False
 
     async def start(self) -> None:
-        """Start the processes and return when each has answered something."""
+        """Start the processes and return when each is ready."""
         memory = Path("/dev/shm")
         directory = self._settings.scratch or (memory if os.access(memory, os.W_OK) else None)
         self._scratch = tempfile.TemporaryDirectory(prefix="polhode-", dir=directory, ignore_cleanup_errors=True)
-        # The fork server has everything imported, so that a process that is lost is replaced within milliseconds;
-        # forking the server process itself, with its threads and its event loop, would not be safe.
-        self._pool = self._new_pool()
-        greetings = [self._pool.schedule(_greet, (0.05,)) for _ in range(self.size)]
-        await asyncio.gather(*map(asyncio.wrap_future, greetings))
-
-    def _new_pool(self) -> ProcessPool:
-        context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload(["service.prepared"])
-        return ProcessPool(self.size, initializer=prepare, initargs=(self.terms,), context=context)
-
-    def _schedule(self, pool: ProcessPool, *question: Any) -> ProcessFuture[Any]:
-        """Hand a question to the pool; a pool that broke (a process died while it read) is replaced."""
-        try:
-            return pool.schedule(work, question, timeout=self._settings.deadline_seconds)
-        except RuntimeError:
-            if self._stopping:
-                raise _stopped() from None
-            LOG.exception("the pool of compute processes broke and is replaced")
-            self._metrics.workers_lost.inc()
-            self._pool = fresh = self._new_pool()
-            # Nobody would ever answer what the broken pool still has.
-            for task in tuple(self._tasks):
-                task.cancel()  # type: ignore[no-untyped-call]
-            Thread(target=_dispose, args=(pool,), daemon=True).start()
-            return fresh.schedule(work, question, timeout=self._settings.deadline_seconds)
+        await self.processes.start()
+        self._up = True
 
     async def stop(self) -> None:
         """Refuse and kill what still runs, and release the memory."""
         self._stopping = True
-        # The pool by itself would leave the questions in flight waiting for ever.
-        for task in tuple(self._tasks):
-            task.cancel()  # type: ignore[no-untyped-call]
-        if self._pool is not None:
-            self._pool.stop()  # type: ignore[no-untyped-call]
-            await asyncio.to_thread(self._pool.join)
+        await self.processes.stop()
         if self._scratch is not None:
             self._scratch.cleanup()
 
     @property
     def backlog(self) -> float:
         """Predicted time until a question that is accepted now would have its turn (s)."""
-        return self._promised / self.size
+        return self._promised * self.pace.ratio / self.size
 
-    async def answer(self, route: Question, body: bytes, price: float, gone: Callable[[], Awaitable[None]]) -> Answer:
-        """Return the answer to a question, computed in another process.
+    async def answer(
+        self, route: Question, body: bytes, price: float, media: str | None, gone: Callable[[], Awaitable[None]]
+    ) -> Document:
+        """Return the answer to a question, computed and composed in another process.
 
         Parameters
         ----------
         price : float
             Predicted time (s).
+        media : str or None
+            Media type of the document, None for JSON.
         gone : callable
             Returns when the client has gone; the computation is then killed.
 
@@ -126,84 +121,74 @@ class Compute:
         """
         if self._stopping:
             raise _stopped()
-        if self._pool is None or self._scratch is None:
+        if not self._up or self._scratch is None:
             raise Refusal("not-ready", "the compute processes are not up yet", headers=(("Retry-After", "1"),))
         self._admit()
-        file = Path(self._scratch.name, str(next(self._numbers)))
-        since = perf_counter()
+        file, deadline = Path(self._scratch.name, str(next(self._numbers))), self._settings.deadline_seconds
         self._promised += price
+        self._jobs += 1
         self._metrics.backlog.set(self.backlog)
-        try:
-            task = self._schedule(self._pool, self.terms, route.path, body, str(file))
-        except BaseException:
-            self._promised -= price
-            raise
-        self._tasks.add(task)
-        future = asyncio.wrap_future(task)
+        asked = Asked(route.path, body, media, str(file), deadline)
+        job = self.processes.submit(
+            pickle.dumps(asked, pickle.HIGHEST_PROTOCOL), deadline, self._settings.max_backlog_seconds + deadline
+        )
         watch = asyncio.ensure_future(gone())
         try:
-            await asyncio.wait((future, watch), return_when=asyncio.FIRST_COMPLETED)
-            if not future.done():
+            await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
+            if not job.reply.done():
                 raise ClientGone
-            result = restored(self._outcome(future), file)
+            result = self._outcome(job)
+            # A long body was not read yet when it was priced, so that its price tells nothing about the machine.
+            if len(body) <= self._settings.inline_bytes:
+                self.pace.learn(price, job.seconds)
+            self._metrics.job_seconds.observe(job.seconds)
+            if isinstance(result, Document):
+                return restored(result, file)
         finally:
             watch.cancel()
-            task.cancel()  # type: ignore[no-untyped-call]
-            self._tasks.discard(task)
+            self.processes.drop(job)
             file.unlink(missing_ok=True)
             # Nothing is promised to nobody; differences would leave a rest of rounding.
-            self._promised = self._promised - price if self._tasks else 0.0
+            self._jobs -= 1
+            self._promised = self._promised - price if self._jobs else 0.0
             self._metrics.backlog.set(self.backlog)
-        seconds = perf_counter() - since
-        self._metrics.job_seconds.observe(seconds)
         if isinstance(result, Problem):
             raise Refusal.of(result)
-        answer: Answer = result
-        return answer
+        raise RuntimeError(f"in a compute process:\n{result.traceback}")
 
     def _admit(self) -> None:
         limit = self._settings.max_backlog_seconds
-        if self.backlog > limit:
+        wait = self.backlog - limit
+        if wait > 0.0:
             raise Refusal(
                 "too-busy",
                 f"more than {limit:g} s of work wait already, the limit max_backlog_seconds",
-                headers=(("Retry-After", str(max(1, ceil(self.backlog - limit)))),),
+                headers=(("Retry-After", str(max(1, ceil(wait)))),),
+                extra={"retry_after_seconds": round(max(wait, 1e-3), 3)},
             )
 
-    def _outcome(self, future: asyncio.Future[Any]) -> Any:
+    def _outcome(self, job: Job) -> Document | Problem | Failed:
+        limit = self._settings.deadline_seconds
         try:
-            if future.cancelled():
-                raise _stopped() if self._stopping else _lost()
-            return future.result()
-        except TimeoutError:
-            limit = self._settings.deadline_seconds
+            result: Any = pickle.loads(job.reply.result())
+        except Overdue:
             detail = f"the computation took longer than {limit:g} s, the limit deadline_seconds, and was stopped"
             raise Refusal("deadline-exceeded", detail) from None
-        except ProcessExpired as error:
-            self._metrics.workers_lost.inc()
-            LOG.error("a compute process died", extra={"exit_code": error.exitcode})
-            raise _lost() from None
-        except BrokenExecutor:
-            # Raised for each question of a pool that found itself broken; the next one replaces the pool.
-            raise _lost() from None
+        except Died:
+            detail = "the process that computed this answer died; other questions are not affected"
+            raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
+        except NoTurn:
+            detail = "no compute process became free for this question in time; it was not begun"
+            raise Refusal("not-ready", detail, headers=(("Retry-After", "1"),)) from None
+        except Stopped:
+            raise _stopped() from None
+        outcome: Document | Problem | Failed = result
+        return outcome
 
-
-def _lost() -> Refusal:
-    detail = "the process that computed this answer died; other questions are not affected"
-    return Refusal("worker-lost", detail, headers=(("Retry-After", "1"),))
-
-
-def _dispose(pool: ProcessPool) -> None:
-    pool.stop()  # type: ignore[no-untyped-call]
-    pool.join()
+    def _lost(self, code: int) -> None:
+        self._metrics.workers_lost.inc()
+        LOG.error("a compute process died and is replaced", extra={"exit_code": code})
 
 
 def _stopped() -> Refusal:
     return Refusal("shutting-down", "the service is being stopped", headers=(("Retry-After", "1"),))
-
-
-def _greet(seconds: float) -> None:
-    """Occupy a process for a moment, so that as many greetings as processes reach every process."""
-    from time import sleep
-
-    sleep(seconds)

@@ -13,6 +13,7 @@ from typing import Any
 from core.errors import MechanicsError
 from service import VERSION, archive
 from service.answering import Answering
+from service.composing import Document, composed
 from service.compute import Compute
 from service.cors import Cors
 from service.exchange import VARY, Exchange, Scope, Send
@@ -26,7 +27,6 @@ from service.records import Records
 from service.representation import Header, Representation, etag_of
 from service.routing import Page, Question, Route
 from service.settings import Settings
-from service.writing import ONE_PIECE, array_size, chunks, written
 
 _NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), VARY)
 _VERSION = VERSION.encode()
@@ -109,31 +109,28 @@ class Dispatcher:
         body = exchange.body_at_once(settings.max_body_bytes)
         if body is None:
             body = await read_body(exchange.receive, headers, settings.max_body_bytes)
-        if media == archive.MEDIA_TYPE:
-            answer = await self._answer(route, body, exchange)
-            self._metrics.samples.inc(array_size(answer))
-            await exchange.stream(archive.archive(answer), _etag_of_answer(route, body, media), _NPZ)
-            return
-        if media is not None:
-            document = route.representations[media](await self._answer(route, body, exchange))
-            await exchange.represented(document, media.encode())
-            return
-        whole = self._kept.get(route.path, body)
+        whole = self._kept.get(route.path, body) if media is None else None
         if whole is not None:
             self._metrics.cache_hits.inc()
         else:
-            answer = await self._answer(route, body, exchange)
-            size = array_size(answer)
-            if size > ONE_PIECE:
-                self._metrics.samples.inc(size)
-                await exchange.stream(chunks(answer), _etag_of_answer(route, body))
+            document = await self._document(route, body, media, exchange)
+            if media == archive.MEDIA_TYPE:
+                self._metrics.samples.inc(document.numbers)
+                await exchange.stream(document.pieces(), _etag_of_answer(route, body, media), _NPZ)
                 return
-            whole = Representation(written(answer))
+            if media is not None:
+                await exchange.represented(document.whole(), media.encode())
+                return
+            if document.large:
+                self._metrics.samples.inc(document.numbers)
+                await exchange.stream(document.pieces(), _etag_of_answer(route, body))
+                return
+            whole = Representation(document.whole())
             self._kept.put(route.path, body, whole)
         if not exchange.answer_at_once(whole):
             await exchange.answer(whole)
 
-    async def _answer(self, route: Question, body: bytes, exchange: Exchange) -> Any:
+    async def _document(self, route: Question, body: bytes, media: str | None, exchange: Exchange) -> Document:
         longest = self._settings.deadline_seconds
         if len(body) <= self._settings.inline_bytes:
             question = self._answering.read(route, body)
@@ -142,13 +139,13 @@ class Dispatcher:
             if exchange.key is not None:
                 exchange.key.work(price)
             if price <= self._settings.inline_seconds:
-                return self._answering.answer(route, question)
+                return composed(route, self._answering.answer(route, question), media)
         else:
             # What has not been read has no price yet; reading alone takes about this long.
             price = min(4e-8 * len(body), longest)
             if exchange.key is not None:
                 exchange.key.work(price)
-        return await self._compute.answer(route, body, price, gone=exchange.gone)
+        return await self._compute.answer(route, body, price, media, gone=exchange.gone)
 
     async def _page(self, route: Page, exchange: Exchange) -> None:
         reply = route.content()

@@ -1,8 +1,13 @@
 """Imported once by the fork server of the compute processes, which then inherit every kernel loaded and compiled."""
 
-from core.integration.budget import Budget
-from service.reading import Limits
-from service.routing import TABLE
-from service.worker import Terms, answering
+import gc
 
-answering(Terms(TABLE, Budget(), Limits())).warm()
+from service.routing import TABLE
+from service.settings import Settings
+from service.worker import answering, terms_of
+
+# Settings come from the environment, which the fork server inherits like the server processes.
+answering(terms_of(Settings(), TABLE))
+# The collector writes into every object that it visits: pages that processes share would be copied for each.
+gc.collect()
+gc.freeze()

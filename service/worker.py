@@ -1,12 +1,17 @@
-"""What runs in a compute process: one question, from its bytes to its answer.
+"""What runs in a compute process: one question at a time, from its bytes to the document that is sent.
 
-Large arrays do not travel through the pipe between the processes. They are written to a file in shared memory that the
-server process maps; arrays of decimal strings as JSON, so that the server process makes no string of them.
+Large documents do not travel through the socket between the processes. They are put into a file in shared memory that
+the server process maps: texts as they are sent, large arrays as numbers, which take less room.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
+import pickle
+import signal
+import socket
+import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -19,18 +24,23 @@ import numpy as np
 from core.errors import MechanicsError
 from core.integration.budget import Budget
 from service.answering import Answering
+from service.composing import Document, Part, composed
 from service.problems import Problem, Refusal, problem_of
+from service.processes import HEADER, framed
 from service.reading import Limits
 from service.routing import Question
-from service.writing import Text, array_size, strings_in, text_of
+from service.settings import Settings
 
-SMALL = 8_192
-"""Arrays of fewer numbers travel with the rest of the answer."""
+SMALL = 65_536
+"""Bytes of a document that travel through the socket."""
+
+GRACE = 5.0
+"""Seconds past the deadline after which a process ends by itself, in case that there is no server to kill it."""
 
 
 @dataclass(frozen=True)
 class Terms:
-    """What a compute process needs to know; small, immutable and cheap to send with every question.
+    """What a compute process needs to know.
 
     Attributes
     ----------
@@ -44,27 +54,58 @@ class Terms:
 
 
 @dataclass(frozen=True)
+class Asked:
+    """A question on its way to a compute process.
+
+    Attributes
+    ----------
+    media : str or None
+        Media type of the document, None for JSON.
+    file : str
+        Where a large document is put.
+    deadline : float
+        Longest time that it may take (s).
+    """
+
+    path: str
+    body: bytes
+    media: str | None
+    file: str
+    deadline: float
+
+
+@dataclass(frozen=True)
 class Stored:
-    """An array that lies in the file."""
+    """A part of a document that lies in the file: numbers of a type and in a shape; text is bytes in a row."""
 
     offset: int
     shape: tuple[int, ...]
     dtype: str
+    text: bool
 
 
 @dataclass(frozen=True)
-class StoredText:
-    """An array of decimal strings that lies in the file as JSON."""
+class Failed:
+    """A fault of the service, never of the question."""
 
-    offset: int
-    length: int
-    numbers: int
+    traceback: str
 
 
 @cache
 def answering(terms: Terms) -> Answering:
-    """Return this process's answering of questions."""
-    return Answering(_routes(terms.table).values(), terms.budget, terms.limits)
+    """Return this process's answering of questions, warm; inherited warm if the fork server has made it."""
+    made = Answering(_routes(terms.table).values(), terms.budget, terms.limits)
+    made.warm()
+    return made
+
+
+def terms_of(settings: Settings, table: str) -> Terms:
+    """Return what compute processes need to know of the settings."""
+    return Terms(
+        table,
+        Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
+        Limits(settings.max_nesting, settings.max_keys, settings.max_arrays),
+    )
 
 
 @cache
@@ -72,71 +113,76 @@ def _routes(table: str) -> Mapping[str, Question]:
     return {route.path: route for route in resolve_name(table)()}
 
 
+def serve(channel: socket.socket, terms: Terms) -> None:
+    """Answer questions one by one until the server process closes the connection.
+
+    Nothing is sent but "ready", and for each question "begun" and the reply; see `service.processes`.
+    """
+    # Ctrl-C in a terminal reaches every process; the server ends this one when it has finished.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    prepare(terms)
+    # Once the connection is closed nobody waits for anything.
+    with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
+        channel.sendall(framed(b""))
+        while header := requests.read(HEADER):
+            asked: Asked = pickle.loads(requests.read(int.from_bytes(header, "little")))
+            channel.sendall(framed(b""))
+            signal.setitimer(signal.ITIMER_REAL, asked.deadline + GRACE)
+            reply = pickle.dumps(work(terms, asked), pickle.HIGHEST_PROTOCOL)
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            channel.sendall(framed(reply))
+
+
 def prepare(terms: Terms) -> None:
     """Make this process ready, and let it yield to the server process where they compete for a core."""
     os.nice(10)
-    answering(terms).warm()
+    answering(terms)
 
 
-def work(terms: Terms, path: str, body: bytes, file: str) -> Any:
-    """Answer one question; what is refused is returned as a problem."""
-    route = _routes(terms.table)[path]
+def work(terms: Terms, asked: Asked) -> Document | Problem | Failed:
+    """Answer one question; what is refused is returned as a problem, and a large document as it is stored."""
+    route = _routes(terms.table)[asked.path]
     try:
-        question = answering(terms).read(route, body)
-        answer = answering(terms).answer(route, question)
+        question = answering(terms).read(route, asked.body)
+        return kept(composed(route, answering(terms).answer(route, question), asked.media), Path(asked.file))
     except Refusal as refusal:
         return refusal.problem
     except MechanicsError as error:
         return problem_of(error)
-    if array_size(answer) <= SMALL:
-        return answer
-    with Path(file).open("xb") as out:
-        return _stored(answer, out)
+    except Exception:
+        return Failed(traceback.format_exc())
 
 
-def _stored(value: Any, out: BinaryIO) -> Any:
-    """Return an answer with its large arrays moved to a file, C-contiguous."""
-    if isinstance(value, np.ndarray) and value.size > SMALL:
-        # Numbers of eight bytes are read where eight divides the address.
-        out.write(bytes(-out.tell() % 8))
-        stored = Stored(out.tell(), value.shape, value.dtype.str)
-        # In blocks that fit caches, so that what is not contiguous needs no second array of its size.
-        rows = max(1, SMALL * len(value) // value.size)
-        for start in range(0, len(value), rows):
-            out.write(np.ascontiguousarray(value[start : start + rows]).data)
-        return stored
-    strings = strings_in(value)
-    if strings > SMALL:
-        offset = out.tell()
-        out.writelines(text_of(value))
-        return StoredText(offset, out.tell() - offset, strings)
-    if type(value) is dict:
-        return {key: _stored(entry, out) for key, entry in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_stored(entry, out) for entry in value]
-    return value
+def kept(document: Document, file: Path) -> Document:
+    """Return a document as it travels: a large one with its parts in the file."""
+    if all(not isinstance(part, np.ndarray) for part in document.parts) and sum(map(len, document.parts)) <= SMALL:
+        return document
+    with file.open("xb") as out:
+        return Document(document.numbers, tuple(_stored(part, out) for part in document.parts))
 
 
-def restored(value: Any, file: Path) -> Any:
-    """Return an answer whose stored arrays are mapped from the file; the file may be removed after that."""
-    if isinstance(value, Problem):
-        return value
-    # An answer may be large by many small arrays, of which none is stored: an empty file cannot be mapped.
-    stored = file.exists() and file.stat().st_size > 0
-    data = np.memmap(file, np.uint8, "r") if stored else np.empty(0, np.uint8)
-    return _restored(value, data)
+def _stored(part: Part, out: BinaryIO) -> Any:
+    """Put a part into the file, C-contiguous, so that it is copied only once."""
+    # Arrays of doubles are read where they lie, which is faster if that is a multiple of their size.
+    out.write(bytes(-out.tell() % 16))
+    if isinstance(part, np.ndarray):
+        stored = Stored(out.tell(), part.shape, part.dtype.str, text=False)
+        out.write(np.ascontiguousarray(part).data)
+    else:
+        stored = Stored(out.tell(), (len(part),), "|u1", text=True)
+        out.write(part)
+    return stored
 
 
-def _restored(value: Any, data: np.ndarray[Any, Any]) -> Any:
-    if isinstance(value, Stored):
-        dtype = np.dtype(value.dtype)
-        length = int(np.prod(value.shape)) * dtype.itemsize
-        flat = np.asarray(data)[value.offset : value.offset + length]
-        return flat.view(dtype).reshape(value.shape)
-    if isinstance(value, StoredText):
-        return Text(np.asarray(data)[value.offset : value.offset + value.length].data, value.numbers)
-    if type(value) is dict:
-        return {key: _restored(entry, data) for key, entry in value.items()}
-    if isinstance(value, list):
-        return [_restored(entry, data) for entry in value]
-    return value
+def restored(document: Document, file: Path) -> Document:
+    """Return a document whose stored parts are mapped from the file; the file may be removed after that."""
+    if not any(isinstance(part, Stored) for part in document.parts):
+        return document
+    data = np.asarray(np.memmap(file, np.uint8, "r"))
+    return Document(document.numbers, tuple(_restored(part, data) for part in document.parts))
+
+
+def _restored(part: Any, data: np.ndarray[Any, Any]) -> Part:
+    dtype = np.dtype(part.dtype)
+    flat = data[part.offset : part.offset + int(np.prod(part.shape)) * dtype.itemsize]
+    return flat.data if part.text else flat.view(dtype).reshape(part.shape)

@@ -40,23 +40,6 @@ class NotFinite(ValueError):
     """An answer holds NaN or an infinity, which it must not: a fault of the mechanics, never of the question."""
 
 
-class Text:
-    """An array of decimal strings that is JSON already.
-
-    Parameters
-    ----------
-    json : memoryview
-    numbers : int
-        How many.
-    """
-
-    # A dataclass would be written as an object.
-    __slots__ = ("json", "numbers")
-
-    def __init__(self, json: memoryview, numbers: int) -> None:
-        self.json, self.numbers = json, numbers
-
-
 def strings_in(value: Any) -> int:
     """Return how many decimal strings a list holds, each an entry or in one of rows of equally many; 0 for others."""
     if type(value) is not list or not value:
@@ -76,8 +59,6 @@ def array_size(answer: Any) -> int:
             continue
         if kind is np.ndarray:
             size += value.size
-        elif kind is Text:
-            size += value.numbers
         elif strings := strings_in(value):
             size += strings
         elif kind is dict or ((kind is list or kind is tuple) and value and type(value[0]) not in _NO_ARRAYS):
@@ -113,35 +94,41 @@ def chunks(answer: Any) -> Iterator[bytes]:
     return _chunks(answer)
 
 
-def text_of(strings: list[Any]) -> Iterator[bytes]:
-    """Yield an array of decimal strings as JSON; the whole is what `Text` holds."""
-    return _chunks(strings)
+def _chunks(answer: Any) -> Iterator[bytes]:
+    for part in parts(answer):
+        if isinstance(part, bytes):
+            yield part
+        else:
+            yield from rows(part)
 
 
-def _chunks(value: Any) -> Iterator[bytes]:
+def parts(value: Any) -> Iterator[bytes | np.ndarray[Any, Any]]:
+    """Yield an answer as JSON, but for its large arrays of doubles, which `rows` writes; it has to be finite."""
     if array_size((value,)) <= CHUNK:
         yield orjson.dumps(value, default=_plain, option=_OPTIONS)
     elif type(value) is dict:
         opening = b"{"
         for key, entry in value.items():
             yield opening + orjson.dumps(key) + b":"
-            yield from _chunks(entry)
+            yield from parts(entry)
             opening = b","
         yield b"}"
     elif isinstance(value, np.ndarray):
-        yield from _blocks(value, max(1, CHUNK * len(value) // value.size))
-    elif type(value) is Text:
-        for start in range(0, len(value.json), CHUNK * CHARACTERS):
-            yield bytes(value.json[start : start + CHUNK * CHARACTERS])
+        yield value
     elif strings_in(value):
         yield from _blocks(value, max(1, CHUNK * CHARACTERS // len(orjson.dumps(value[0]))))
     else:
         opening = b"["
         for entry in value:
             yield opening
-            yield from _chunks(entry)
+            yield from parts(entry)
             opening = b","
         yield b"]"
+
+
+def rows(array: np.ndarray[Any, Any]) -> Iterator[bytes]:
+    """Yield an array as JSON in chunks; it has to be finite."""
+    return _blocks(array, max(1, CHUNK * len(array) // array.size))
 
 
 def _blocks(value: Any, rows: int) -> Iterator[bytes]:
@@ -159,8 +146,6 @@ def _blocks(value: Any, rows: int) -> Iterator[bytes]:
 
 def _plain(value: Any) -> Any:
     """Return what orjson cannot write by itself as something it can."""
-    if type(value) is Text:
-        return orjson.Fragment(bytes(value.json))
     if isinstance(value, np.ndarray):
         # A transposed view, as arrays of samples often are.
         return np.ascontiguousarray(value)

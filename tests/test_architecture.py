@@ -30,7 +30,7 @@ LEDGER["scenes"] = {"integration", "elliptic", "balls"} | LEDGER["integration"] 
 LEDGER["certified"] = {"rotation", "scenes"} | LEDGER["rotation"] | LEDGER["scenes"]
 """What each room of core may import beside itself; a file that is not named here may import all of core."""
 
-WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson", "pebble",
+WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",
        "prometheus_client", "service"}  # fmt: skip
 OUTER = ("assessment", "work_precision", "plan")
 """Files directly in core that compare and price what the rooms do, and may therefore see all of it."""
@@ -55,13 +55,14 @@ SERVICE_LAYERS = (
         "representation",
         "kept",
         "records",
+        "processes",
     },
     {"guards", "large_arrays", "ellipsoid_figure"},
     {"faults"},
     {"reading"},
     {"schemas"},
     {"numerals"},
-    {"routes", "answering", "documentation"},
+    {"routes", "answering", "composing", "documentation"},
     {"worker", "prepared"},
     {"compute"},
     {"exchange"},

@@ -14,7 +14,7 @@ from core.integration.budget import Budget
 from core.integration.methods import Method
 from core.notices import Notice
 from service import pricing
-from service.pricing import Foreseen
+from service.pricing import Foreseen, Priced, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.reading import Limits, Reader
 from service.routes.rotation import T_HANDLE, ModelView
@@ -34,7 +34,10 @@ class PlanRequest(Request):
 
 
 class CostView(View):
-    """What an answer would cost. Counts and bytes hold on every machine, milliseconds on the calibrated one."""
+    """What an answer would cost. Counts and bytes hold on every machine, milliseconds on the calibrated one, idle.
+
+    Waiting for a turn is not foreseen, nor the time that the answer travels.
+    """
 
     evaluations: int | None = Field(description="Of equations of motion; null if they are not foreseen.")
     samples: int | None
@@ -101,7 +104,7 @@ def planning(routes: Sequence[Question]) -> Question:
         PlanRequest,
         PlanAnswer,
         plan,
-        lambda question, budget: PRICE,
+        Priced("plan", one),
         description="Always answered with 200: what the request would be refused for stands under `errors`.",
         examples=EXAMPLES,
     )
@@ -210,9 +213,6 @@ def _refused(path: str, problem: Problem, within: str) -> Answer:
         "warnings": [],
     }
 
-
-PRICE = 1e-3
-"""Planning takes about this long whatever is planned (s), reading apart."""
 
 TUMBLING = {
     "body": T_HANDLE,

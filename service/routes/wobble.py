@@ -10,6 +10,7 @@ from core.errors import InvalidParameter
 from core.integration.budget import Budget
 from core.quantities import Quantity
 from core.rotation.wobble import Day, EarthFigures, from_ellipticity, from_period
+from service.pricing import Priced, one
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request
 
@@ -58,6 +59,7 @@ WOBBLE = (
         WobbleRequest,
         WobbleAnswer,
         wobble,
+        Priced("wobble", one),
         examples={
             "chandler": Example("the source's 430 days", {"period": 430.0, "day": "sidereal"}),
             "shape": Example("back from the shape", {"ellipticity": 1.00336409, "day": "solar"}),

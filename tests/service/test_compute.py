@@ -2,12 +2,14 @@
 
 import asyncio
 import os
+import signal
 import time
 from collections.abc import AsyncIterator
 from typing import Any
 
 import httpx
 import numpy as np
+import orjson
 import pytest
 
 from service.app import Service
@@ -89,7 +91,9 @@ async def test_a_killed_process_fails_its_own_question_only(client: httpx.AsyncC
     after = await asyncio.gather(*(client.post("/v1/toy", json=sleeping(0.05)) for _ in range(4)))
     assert [response.status_code for response in after] == [200] * 4
     assert time.perf_counter() - since < 10
-    assert "polhode_workers_lost_total 1.0" in (await client.get("/metrics")).text
+    async with asyncio.timeout(10):
+        while "polhode_workers_lost_total 1.0" not in (await client.get("/metrics")).text:
+            await asyncio.sleep(0.01)
 
 
 async def test_a_computation_past_its_deadline_is_stopped(client: httpx.AsyncClient) -> None:
@@ -97,23 +101,142 @@ async def test_a_computation_past_its_deadline_is_stopped(client: httpx.AsyncCli
     assert (response.status_code, response.json()["code"]) == (503, "deadline-exceeded")
 
 
-async def test_a_client_that_leaves_stops_its_computation(service: Service, client: httpx.AsyncClient) -> None:
-    import orjson
+def alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
+
+async def ready(service: Service) -> None:
+    """Wait until every process is there and has nothing to do."""
+    async with asyncio.timeout(60):
+        while not service.compute.processes.ready or any(service.compute.processes.pids.values()):
+            await asyncio.sleep(0.01)
+
+
+async def test_a_client_that_leaves_stops_its_computation(service: Service, client: httpx.AsyncClient) -> None:
+    """The process that computes is killed: nothing goes on computing for nobody."""
+    await ready(service)
     messages: list[dict[str, Any]] = []
     parts = iter([{"type": "http.request", "body": orjson.dumps(sleeping(0.9)), "more_body": False}])
+    working: list[int] = []
 
     async def receive() -> dict[str, Any]:
         for message in parts:
             return message
         await asyncio.sleep(0.1)
+        working.extend(pid for pid, busy in service.compute.processes.pids.items() if busy)
         return {"type": "http.disconnect"}
 
     since = time.perf_counter()
     await service(scope("POST", "/v1/toy", JSON), receive, sending(messages))
+    assert len(working) == 1
+    async with asyncio.timeout(10):
+        while alive(working[0]):
+            await asyncio.sleep(0.005)
     assert time.perf_counter() - since < 0.6
     assert messages == []
     assert service.compute.backlog == pytest.approx(0.0)
+    assert not any(service.compute.processes.pids.values())
+    assert service.compute._scratch is not None
+    assert os.listdir(service.compute._scratch.name) == []
+
+
+async def test_one_that_leaves_the_queue_is_never_begun(service: Service, client: httpx.AsyncClient) -> None:
+    await ready(service)
+    ahead = [asyncio.create_task(client.post("/v1/toy", json=sleeping(0.5))) for _ in range(2)]
+    await asyncio.sleep(0.1)
+    before = set(service.compute.processes.pids)
+    parts = iter([{"type": "http.request", "body": orjson.dumps(sleeping(0.5)), "more_body": False}])
+
+    async def receive() -> dict[str, Any]:
+        return next(parts, {"type": "http.disconnect"})
+
+    await service(scope("POST", "/v1/toy", JSON), receive, sending([]))
+    assert [(await task).status_code for task in ahead] == [200, 200]
+    assert set(service.compute.processes.pids) == before
+    assert not any(service.compute.processes.pids.values())
+
+
+async def test_idle_processes_that_are_killed_are_replaced_and_nobody_notices(
+    service: Service, client: httpx.AsyncClient
+) -> None:
+    """All of them, three times in a row, with questions arriving the moment they die."""
+    for _ in range(3):
+        await ready(service)
+        before = set(service.compute.processes.pids)
+        for pid in before:
+            os.kill(pid, signal.SIGKILL)
+        responses = await asyncio.gather(*(client.post("/v1/toy", json=sleeping(0.02)) for _ in range(6)))
+        assert [response.status_code for response in responses] == [200] * 6
+        assert not before & set(service.compute.processes.pids)
+
+
+async def test_every_process_killed_again_and_again_loses_nothing(service: Service, client: httpx.AsyncClient) -> None:
+    """Each large question is answered in full or refused as lost; small ones never notice."""
+    await ready(service)
+    expected = (await client.post("/v1/toy", json=sleeping(0.1))).content
+    outcomes: list[tuple[int, str]] = []
+    small: list[int] = []
+
+    async def large() -> None:
+        for _ in range(8):
+            response = await client.post("/v1/toy", json=sleeping(0.1))
+            if response.status_code == 200:
+                assert response.content == expected
+            else:
+                assert response.headers["retry-after"] == "1"
+            outcomes.append((response.status_code, response.json().get("code", "")))
+
+    async def little() -> None:
+        while len(outcomes) < 24:
+            small.append((await client.post("/v1/toy", json=GOOD)).status_code)
+            await asyncio.sleep(0.005)
+
+    async def killing() -> None:
+        while len(outcomes) < 24:
+            await asyncio.sleep(0.17)
+            for pid in service.compute.processes.pids:
+                os.kill(pid, signal.SIGKILL)
+            while not service.compute.processes.ready:
+                await asyncio.sleep(0.01)
+
+    async with asyncio.timeout(60):
+        await asyncio.gather(large(), large(), large(), little(), killing())
+    assert len(outcomes) == 24
+    assert set(outcomes) == {(200, ""), (503, "worker-lost")}
+    assert set(small) == {200}
+    assert service.compute.backlog == 0.0
+    await ready(service)
+
+
+async def test_what_finds_no_process_in_time_is_told_so() -> None:
+    running = toy_service(compute_workers=1, deadline_seconds=0.5, max_backlog_seconds=0.3)
+    async with running.lifespan(), client_of(running) as client:
+        while not running.ready:
+            await asyncio.sleep(0.02)
+        await ready(running)
+        # As if it were still being started.
+        (pid,) = running.compute.processes.pids
+        running.compute.processes._idle.clear()
+        response = await client.post("/v1/toy", json=sleeping(0.1))
+        assert (response.status_code, response.json()["code"]) == (503, "not-ready")
+        assert response.headers["retry-after"] == "1"
+        assert alive(pid)
+
+
+async def test_all_kinds_of_documents_come_from_processes_as_from_here(client: httpx.AsyncClient) -> None:
+    inline = toy_service(inline_seconds=1e9, inline_bytes=10**9)
+    async with client_of(inline) as here:
+        for question in (LARGE, sleeping(0.01)):
+            for accept in ("application/json", "application/x-npz"):
+                one = await client.post("/v1/toy", json=question, headers={"accept": accept})
+                other = await here.post("/v1/toy", json=question, headers={"accept": accept})
+                assert one.status_code == 200
+                assert one.content == other.content
+                assert one.headers["etag"] == other.headers["etag"]
 
 
 async def test_more_work_than_can_be_done_in_time_is_refused_at_once(
@@ -150,7 +273,8 @@ async def test_stopping_answers_what_is_in_flight() -> None:
 async def test_a_price_beyond_all_bounds_counts_as_the_deadline(client: httpx.AsyncClient, service: Service) -> None:
     endless = asyncio.create_task(client.post("/v1/toy", json=sleeping(1e6)))
     await asyncio.sleep(0.2)
-    assert service.compute.backlog <= 0.5
+    # The deadline of one second, shared by two processes.
+    assert service.compute.backlog <= 0.5 * service.compute.pace.ratio
     assert (await client.post("/v1/toy", json=LARGE)).status_code == 200
     assert (await endless).json()["code"] == "deadline-exceeded"
     assert service.compute.backlog == 0.0

@@ -17,7 +17,8 @@ from tests.service.conftest import client_of
 
 SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
 ROUTES = {route.path: route for route in questions()}
-PLANNED = [(route, name) for route in ROUTES.values() if isinstance(route.price, Foreseen) for name in route.examples]
+# Plans are made of any other question.
+PLANNED = [(route, name) for route in ROUTES.values() if route.path != "/v1/plan" for name in route.examples]
 PATH = "/v1/rotation/trajectory"
 FREE: dict[str, Any] = {
     "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
@@ -133,6 +134,11 @@ async def test_plans_run_nothing() -> None:
     assert plan["cost"]["evaluations"] == 11 * (10**6 - 1)
     assert plan["cost"]["samples"] == 10**6
     assert plan["cost"]["milliseconds"] > 100.0 * (await planned(PATH, FREE))["cost"]["milliseconds"]
+
+
+@pytest.mark.parametrize("route", ROUTES.values(), ids=ROUTES)
+def test_every_question_has_a_price_that_foresees(route: Question) -> None:
+    assert isinstance(route.price, Foreseen)
 
 
 def test_the_table_knows_every_operation_and_every_method() -> None:

@@ -3,6 +3,8 @@
 import http.client
 import json
 import socket
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -14,7 +16,7 @@ import pytest
 
 from service.client import Client, Refused
 from tests.service import hostile
-from tests.service.conftest import Server
+from tests.service.conftest import ROOT, Server
 
 PATH = "/v1/rotation/trajectory"
 JSON = {"content-type": "application/json"}
@@ -211,3 +213,94 @@ def test_several_server_processes_give_the_same_bytes_and_shared_counters(start_
         'polhode_request_seconds_count{operation="rotation_trajectory",status="200"} 24.0'
         in httpx.get(server.url + "/metrics").text
     )
+
+
+def test_several_server_processes_count_together_whatever_is_killed(start_server: Callable[..., Server]) -> None:
+    """Counters, gauges and histograms of all processes add up, also those of large questions."""
+    server = start_server(POLHODE_WORKERS="2", POLHODE_COMPUTE_WORKERS="1", POLHODE_CACHED_ANSWERS="0")
+    server.wait_until_ready()
+    large = json.dumps(hostile.QUESTION | {"times": {"start": 0, "stop": 1, "count": 200_000}}).encode()
+    statuses = [post(server, large)[0] for _ in range(6)]
+    # A connection may reach a process whose compute processes are still being started.
+    assert set(statuses) <= {200, 503}
+    assert 200 in statuses
+    text = httpx.get(server.url + "/metrics").text
+    assert f"polhode_job_seconds_count {statuses.count(200)}.0" in text
+    assert "polhode_backlog_seconds 0.0" in text
+
+
+def test_a_large_question_in_flight_is_finished_when_the_server_is_told_to_stop(
+    start_server: Callable[..., Server],
+) -> None:
+    server = start_server(POLHODE_COMPUTE_WORKERS="1")
+    server.wait_until_ready()
+    steps = {"kind": "runge-kutta-4", "step": 2e-4}
+    heavy = json.dumps(hostile.QUESTION | {"times": {"start": 0.0, "stop": 400.0, "count": 11}, "method": steps})
+    with ThreadPoolExecutor(1) as threads:
+        flying = threads.submit(post, server, heavy.encode())
+        time.sleep(0.1)
+        log = server.stop()
+        status, _, content = flying.result()
+    assert status == 200
+    assert len(json.loads(content)["angular_velocity"]) == 11
+    assert "Traceback" not in log
+
+
+def test_what_cannot_be_finished_in_time_is_refused_when_the_server_is_told_to_stop(
+    start_server: Callable[..., Server],
+) -> None:
+    server = start_server(POLHODE_COMPUTE_WORKERS="1", POLHODE_SHUTDOWN_SECONDS="0")
+    server.wait_until_ready()
+    steps = {"kind": "explicit-euler", "step": 2.5e-5}
+    heavy = json.dumps(hostile.QUESTION | {"times": {"start": 0.0, "stop": 400.0, "count": 11}, "method": steps})
+    with ThreadPoolExecutor(3) as threads:
+        flying = [threads.submit(post, server, heavy.encode()) for _ in range(3)]
+        time.sleep(0.1)
+        server.stop()
+        answers = [one.result() for one in flying]
+    for status, headers, content in answers:
+        assert (status, json.loads(content)["code"]) == (503, "shutting-down")
+        assert headers["retry-after"] == "1"
+
+
+def test_the_first_questions_after_readiness_compile_nothing_and_import_nothing() -> None:
+    """Every example is asked of a service that has just become ready, in a process of its own, and leaves no trace."""
+    script = """
+import asyncio, sys
+import httpx
+from numba import njit
+from numba.core import event
+from service.app import create_app
+from service.routes import questions
+from service.settings import Settings
+
+async def main():
+    service = create_app(Settings(cached_answers=0, compute_workers=1, inline_seconds=1e9))
+    async with service.lifespan():
+        while not service.ready:
+            await asyncio.sleep(0.02)
+        transport = httpx.ASGITransport(service)
+        async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
+            await client.get("/healthz")
+            loaded, compiled = set(sys.modules), []
+            class Listener(event.Listener):
+                def on_start(self, event):
+                    compiled.append(event.data["dispatcher"])
+                def on_end(self, event):
+                    pass
+            event.register("numba:compile", Listener())
+            for route in questions():
+                for example in route.examples.values():
+                    response = await client.post(route.path, json=dict(example.question))
+                    assert response.status_code == 200, response.text
+            late = {name for name in set(sys.modules) - loaded if name.split(".")[0] in HEAVY}
+            print("compiled", len(compiled), "late", sorted(late))
+            njit(lambda x: x + 1)(1)
+            print("noticed", len(compiled))
+
+HEAVY = {"scipy", "numba", "flint", "numpy", "core", "service", "mpmath"}
+asyncio.run(main())
+"""
+    run = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, timeout=300)
+    # A function that does have to be compiled is noticed.
+    assert run.stdout == "compiled 0 late []\nnoticed 1\n", run.stdout + run.stderr

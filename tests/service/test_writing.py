@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from service.writing import CHUNK, ONE_PIECE, NotFinite, Text, array_size, chunks, text_of, written
+from service.writing import CHUNK, ONE_PIECE, NotFinite, array_size, chunks, written
 
 RNG = np.random.default_rng(20240229)
 
@@ -98,16 +98,6 @@ def test_decimal_strings_are_counted_and_written_in_small_chunks() -> None:
     pieces = list(chunks(STRINGS))
     assert b"".join(pieces) == written(STRINGS)
     assert json.loads(written(STRINGS)) == STRINGS
-    assert max(map(len, pieces)) < 25 * CHUNK
-
-
-def test_an_array_that_is_json_already_is_written_as_it_is() -> None:
-    text = Text(memoryview(b"".join(text_of(STRINGS["rows"]))), 30_000)
-    answer = {**STRINGS, "rows": text}
-    assert array_size(answer) == array_size(STRINGS)
-    assert written(answer) == written(STRINGS)
-    pieces = list(chunks(answer))
-    assert b"".join(pieces) == written(STRINGS)
     assert max(map(len, pieces)) < 25 * CHUNK
 
 
