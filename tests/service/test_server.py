@@ -253,14 +253,17 @@ def test_what_cannot_be_finished_in_time_is_refused_when_the_server_is_told_to_s
     server.wait_until_ready()
     steps = {"kind": "explicit-euler", "step": 2.5e-5}
     heavy = json.dumps(hostile.QUESTION | {"times": {"start": 0.0, "stop": 400.0, "count": 11}, "method": steps})
-    with ThreadPoolExecutor(3) as threads:
-        flying = [threads.submit(post, server, heavy.encode()) for _ in range(3)]
+    # The first may be finished by then; more than a second of work is queued behind it.
+    with ThreadPoolExecutor(12) as threads:
+        flying = [threads.submit(post, server, heavy.encode()) for _ in range(12)]
         time.sleep(0.1)
         server.stop()
         answers = [one.result() for one in flying]
-    for status, headers, content in answers:
-        assert (status, json.loads(content)["code"]) == (503, "shutting-down")
-        assert headers["retry-after"] == "1"
+    refused = [
+        (headers["retry-after"], json.loads(content)["code"]) for status, headers, content in answers if status != 200
+    ]
+    assert set(refused) == {("1", "shutting-down")}
+    assert {status for status, _, _ in answers} <= {200, 503}
 
 
 def test_the_first_questions_after_readiness_compile_nothing_and_import_nothing() -> None:
