@@ -149,3 +149,20 @@ def test_it_grows_with_time_and_uncertainty() -> None:
             [exact.inherited(times[20:21], u) for u in np.geomspace(1e-16, 0.5, 40)],
         ):
             assert np.all(np.diff(stated) >= 0.0)
+
+
+@pytest.mark.parametrize(
+    "moments", [(1.0, 1.0, 2.0), (1e-150, 1.0, 2.0), (1.0, 2.0, 3.0), (1e-12, 1.0, 1.0 + 2.0**-52)]
+)
+@pytest.mark.parametrize(
+    "start", [(1.0, 1.0, 5e-324), (1e150, 1e-300, 0.3), (1e-310, 1e-310, 0.0), (1e-200, 1.0, 1e-12)]
+)
+def test_at_the_ends_of_the_double_range_it_is_a_number(
+    moments: tuple[float, float, float], start: tuple[float, float, float]
+) -> None:
+    rotation = TorqueFree(diagonal(moments), np.array(start)).closed_form()
+    free = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0]))
+    times = np.array([1e-300]) / max(1.0, rotation.largest_rate)
+    for uncertainty in (2.0**-53, 0.9):
+        assert 0.0 < rotation.inherited(times, uncertainty) <= WHOLE
+        assert 0.0 < free.inherited(times, uncertainty) <= np.pi
