@@ -177,8 +177,10 @@ def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Mot
     d, c = (2, 0) if motion.circled == 2 else (0, 2)
     (low, high), i, x = gaps, moments.tolist(), np.abs(w).tolist()
     near, far = (high, low) if d == 2 else (low, high)
+    # A line of matter has no least moment, and then nothing between the others either.
+    share = i[1] * far / (i[d] * (low + high)) if far > 0.0 else 0.0
     # Components below every double next to the largest leave nothing to divide by, and bounds that are infinite.
-    dn = max(_LEAST, x[d] / max(_LEAST, math.hypot(x[d], math.sqrt(i[1] * far / (i[d] * (low + high))) * x[1])))
+    dn = max(_LEAST, x[d] / max(_LEAST, math.hypot(x[d], math.sqrt(share) * x[1])))
     if motion.regime == SEPARATRIX or motion.m1 > 1e-290:
         return dn, math.sqrt(motion.m1)
     ratio = x[c] / max(_LEAST, x[d])
