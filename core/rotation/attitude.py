@@ -175,7 +175,8 @@ class FreeAttitude:
         towards_c = math.copysign(1.0, motion.A_c) if motion.regime == SEPARATRIX else 1.0
         x, z = np.zeros(3, np.longdouble), np.zeros(3, np.longdouble)
         x[c], z[d] = towards_c, math.copysign(1.0, motion.A_d)
-        axes = np.column_stack([x, np.cross(z, x), z])
+        y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]]
+        axes = np.array([x, y, z]).T
         m = unit(axes.T @ (i / np.max(i) * (w / np.max(np.abs(w)))))
         arc = unit(np.array([1 + m[2], m[1], -m[0], 0], np.longdouble))
         tr, ti = phase_at_start(motion, self.constants)

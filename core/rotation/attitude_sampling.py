@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,87 +13,138 @@ from core.double_double import dd_add, two_prod
 from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
 from core.rotation.constants_of_motion import Motion
 from core.rotation.precession_constants import CIRCULAR, LIMIT, Precession
+from core.rotation.sampling import quotient
+
+
+class _Term(NamedTuple):
+    """Two terms of a theta series one after the other, and their sum, complex."""
+
+    before_r: float
+    before_i: float
+    r: float
+    i: float
+    sum_r: float
+    sum_i: float
+
+
+@kernel()
+def _next(t: _Term, zr: float, zi: float, step: float, back: float, weight: float) -> _Term:
+    nr = step * (zr * t.r - zi * t.i) - back * t.before_r
+    ni = step * (zr * t.i + zi * t.r) - back * t.before_i
+    return _Term(t.r, t.i, nr, ni, t.sum_r + weight * nr, t.sum_i + weight * ni)
 
 
 @kernel()
 def _theta_phase(pre: Precession, q: float, root: float, odd: bool, s1: float, c1: float) -> tuple[float, float]:
-    """Return a multiple of theta2 (near even quarters) or theta3 (odd) of eta_x + i y, given sinh y and cosh y."""
-    # cos w and cos 2w for w = eta_x + i y
+    """Return a multiple of theta2 (near even quarters) or theta3 (odd) of eta_x + i y, given sinh y and cosh y.
+
+    With w = eta_x + i y, Q = q^(1/2): theta3 ~ 1 + 2 sum b_n, b_n = Q^(n^2) cos 2nw, b_{n+1} = 2 Q^(2n+1) cos 2w b_n -
+    Q^(4n) b_{n-1}; theta2 ~ sum b_n, b_n = Q^(n(n+1)) cos(2n+1)w, b_{n+1} = 2 Q^(2n+2) cos 2w b_n - Q^(4n+2) b_{n-1}
+    with b_{-1} = b_0. Both go the same way from different starts, so that nothing branches.
+    """
     wr, wi = pre.cos_x * c1, -pre.sin_x * s1
+    # cos 2w
     zr, zi = 2.0 * (wr * wr - wi * wi) - 1.0, 4.0 * wr * wi
-    if odd:
-        # b_n = Q^(n^2) cos 2nw, Q = q^(1/2): b_{n+1} = 2 Q^(2n+1) cos 2w b_n - Q^(4n) b_{n-1}
-        br, bi, ar, ai = root * zr, root * zi, 1.0, 0.0
-        tr, ti = 1.0 + 2.0 * br, 2.0 * bi
-        step, back = 2.0 * root * q, q * q
-        for _ in range(4):
-            nr = step * (zr * br - zi * bi) - back * ar
-            ni = step * (zr * bi + zi * br) - back * ai
-            ar, ai, br, bi = br, bi, nr, ni
-            tr, ti = tr + 2.0 * br, ti + 2.0 * bi
-            step, back = step * q, back * q * q
-        return tr, ti
-    # b_n = Q^(n(n+1)) cos(2n+1)w: b_{n+1} = 2 Q^(2n+2) cos 2w b_n - Q^(4n+2) b_{n-1}, b_{-1} = b_0
-    br, bi, ar, ai = wr, wi, wr, wi
-    tr, ti = wr, wi
-    step, back = 2.0 * q, q
-    for _ in range(4):
-        nr = step * (zr * br - zi * bi) - back * ar
-        ni = step * (zr * bi + zi * br) - back * ai
-        ar, ai, br, bi = br, bi, nr, ni
-        tr, ti = tr + br, ti + bi
-        step, back = step * q, back * q * q
-    return tr, ti
+    weight = 2.0 if odd else 1.0
+    rate = root if odd else 1.0
+    more = q if odd else 1.0
+    first_r, first_i = root * zr, root * zi
+    br = first_r if odd else wr
+    bi = first_i if odd else wi
+    ar = 1.0 if odd else wr
+    ai = 0.0 if odd else wi
+    constant = 1.0 if odd else 0.0
+    q2 = q * q
+    step, back = 2.0 * q * rate, q * more
+    t = _Term(ar, ai, br, bi, constant + weight * br, weight * bi)
+    t = _next(t, zr, zi, step, back, weight)
+    t = _next(t, zr, zi, step * q, back * q2, weight)
+    t = _next(t, zr, zi, step * q2, back * q2 * q2, weight)
+    t = _next(t, zr, zi, step * q2 * q, back * q2 * q2 * q2, weight)
+    return t.sum_r, t.sum_i
+
+
+class _Turning(NamedTuple):
+    """What a quaternion Rz(psi) P is made of: the angular momentum m in the body, as a unit vector, and psi/2.
+
+    psi/2 is a rate times time, plus `extra` quarters, plus the argument of `phase_r` + i `phase_i`.
+    """
+
+    sn: float
+    cn: float
+    dn: float
+    phase_r: float
+    phase_i: float
+    extra: float
+
+
+# Inlined before the loops are looked at: called, they would be too long to be taken into a loop of four samples.
+@kernel(inline="always")
+def _near_circular(motion: Motion, pre: Precession, t: float) -> _Turning:
+    lat = motion.lattice
+    n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
+    odd, sign = half_parity(n + motion.start_quarter)
+    s, c = sin_cos_quarter(r, r_tail)
+    S, C, D3, D4 = theta_parts(True, lat.nome, 0.0, s, c)
+    # Taken out before they are chosen from, so that choosing is no branch.
+    sn_odd, cn_odd, dn_odd = lat.odd_sn[0], lat.odd_cn[0], lat.odd_dn[0]
+    sn_even, cn_even, dn_even = lat.even_sn[0], lat.even_cn[0], lat.even_dn[0]
+    below = D3 if odd else D4
+    over = 1.0 / below
+    lost = fma(-over, below, 1.0)
+    signed = sign * over
+    sn = quotient((sn_odd if odd else sn_even) * (C if odd else S), signed, lost)
+    cn = quotient((cn_odd if odd else cn_even) * (S if odd else C), signed, lost)
+    dn = quotient((dn_odd if odd else dn_even) * (D4 if odd else D3), over, lost)
+    # cos 2z and sin 2z of the whole argument
+    parity = -1.0 if odd else 1.0
+    c2, s2 = parity * fma(-2.0 * s, s, 1.0), parity * 2.0 * s * c
+    tr = 1.0 - pre.theta_c1 * c2 + pre.theta_c2 * (2.0 * c2 * c2 - 1.0)
+    ti = -pre.theta_s1 * s2 + pre.theta_s2 * 2.0 * s2 * c2
+    return _Turning(sn, cn, dn, tr, ti, 0.0)
+
+
+@kernel(inline="always")
+def _near_the_separatrix(motion: Motion, pre: Precession, t: float) -> _Turning:
+    lat = motion.lattice
+    n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
+    odd, sign = half_parity(n + motion.start_quarter)
+    xh, xl = two_prod(r, lat.scale)
+    xl += fma(r, lat.scale_tail, r_tail * lat.scale)
+    s1, c1 = sinh_cosh(0.5 * xh, 0.5 * xl)
+    S, C, D3, D4 = theta_parts(False, lat.nome, lat.root_nome, 2.0 * s1 * c1, fma(2.0 * s1, s1, 1.0))
+    # Taken out before they are chosen from, so that choosing is no branch.
+    sn_odd, cn_odd, dn_odd = lat.odd_sn[0], lat.odd_cn[0], lat.odd_dn[0]
+    sn_even, cn_even, dn_even = lat.even_sn[0], lat.even_cn[0], lat.even_dn[0]
+    below = D3 if odd else C
+    over = 1.0 / below
+    lost = fma(-over, below, 1.0)
+    signed = sign * over
+    sn = quotient((sn_odd if odd else sn_even) * (D4 if odd else S), signed, lost)
+    cn = quotient((cn_odd if odd else cn_even) * (S if odd else D4), signed, lost)
+    dn = quotient((dn_odd if odd else dn_even) * (C if odd else D3), over, lost)
+    tr, ti = _theta_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
+    return _Turning(sn, cn, dn, tr, ti, pre.eta * r * pre.eta_x * 0.6366197723675814)
 
 
 @kernel()
-def _attitude_at(motion: Motion, pre: Precession, time: float) -> tuple[float, float, float, float]:
-    """Return the quaternion Rz(psi) P at one time."""
-    t = motion.time_scale * time
-    if pre.branch == LIMIT:
-        xh, xl = two_prod(motion.rate, t)
-        yh, yl = dd_add(xh, xl + motion.rate_tail * t, motion.start, motion.start_tail)
-        sn, cn = separatrix_at(yh, yl)
-        dn = cn
-        half, _ = separatrix_at(0.5 * yh, 0.5 * yl)
-        tr, ti = pre.cos_x, -pre.sin_x * half
-        extra = 0.0
-    else:
-        lat = motion.lattice
-        n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
-        odd, sign = half_parity(n + motion.start_quarter)
-        if pre.branch == CIRCULAR:
-            s, c = sin_cos_quarter(r, r_tail)
-            S, C, D3, D4 = theta_parts(True, lat.nome, lat.root_nome, s, c)
-            # cos 2z and sin 2z of the whole argument
-            parity = -1.0 if odd else 1.0
-            c2, s2 = parity * fma(-2.0 * s, s, 1.0), parity * 2.0 * s * c
-            tr = 1.0 - pre.theta_c1 * c2 + pre.theta_c2 * (2.0 * c2 * c2 - 1.0)
-            ti = -pre.theta_s1 * s2 + pre.theta_s2 * 2.0 * s2 * c2
-            extra = 0.0
-            if odd:
-                sn, cn, dn = sign * lat.odd_sn[0] * C / D3, sign * lat.odd_cn[0] * S / D3, lat.odd_dn[0] * D4 / D3
-            else:
-                sn, cn, dn = sign * lat.even_sn[0] * S / D4, sign * lat.even_cn[0] * C / D4, lat.even_dn[0] * D3 / D4
-        else:
-            xh, xl = two_prod(r, lat.scale)
-            xl += fma(r, lat.scale_tail, r_tail * lat.scale)
-            s1, c1 = sinh_cosh(0.5 * xh, 0.5 * xl)
-            S, C, D3, D4 = theta_parts(False, lat.nome, lat.root_nome, 2.0 * s1 * c1, fma(2.0 * s1, s1, 1.0))
-            if odd:
-                sn, cn, dn = sign * lat.odd_sn[0] * D4 / D3, sign * lat.odd_cn[0] * S / D3, lat.odd_dn[0] * C / D3
-            else:
-                sn, cn, dn = sign * lat.even_sn[0] * S / C, sign * lat.even_cn[0] * D4 / C, lat.even_dn[0] * D3 / C
-            tr, ti = _theta_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
-            extra = pre.eta * r * pre.eta_x * 0.6366197723675814
-    n, r, r_tail = split_phase(pre.turn, pre.turn_tail, t, extra, 0.0)
-    s, c = sin_cos_quarter(r, r_tail)
+def _on_the_separatrix(motion: Motion, pre: Precession, t: float) -> _Turning:
+    xh, xl = two_prod(motion.rate, t)
+    yh, yl = dd_add(xh, xl + motion.rate_tail * t, motion.start, motion.start_tail)
+    tanh, sech = separatrix_at(yh, yl)
+    half, _ = separatrix_at(0.5 * yh, 0.5 * yl)
+    return _Turning(tanh, sech, sech, pre.cos_x, -pre.sin_x * half, 0.0)
+
+
+@kernel(inline="always")
+def _quaternion(pre: Precession, t: float, at: _Turning) -> tuple[float, float, float, float]:
+    """Return Rz(psi) P."""
+    n, r, r_tail = split_phase(pre.turn, pre.turn_tail, t, at.extra, 0.0)
+    sine, cosine = sin_cos_quarter(r, r_tail)
     odd, sign = half_parity(n)
-    if odd:
-        s, c = c, -s
-    s, c = sign * s, sign * c
-    ti *= pre.eta
-    m_x, m_y, m_z = pre.a_x * cn, pre.a_y * sn, pre.a_z * dn
+    s, c = sign * (cosine if odd else sine), sign * (-sine if odd else cosine)
+    tr, ti = at.phase_r, pre.eta * at.phase_i
+    m_x, m_y, m_z = pre.a_x * at.cn, pre.a_y * at.sn, pre.a_z * at.dn
     lift = 1.0 + m_z
     over = 1.0 / math.sqrt((tr * tr + ti * ti) * (lift * lift + m_x * m_x + m_y * m_y))
     zr, zi = (c * tr - s * ti) * over, (s * tr + c * ti) * over
@@ -122,15 +174,48 @@ def phase_at_start(motion: Motion, pre: Precession) -> tuple[float, float]:
     return tr * c - ti * s, tr * s + ti * c
 
 
+class _Row(NamedTuple):
+    """A row of a matrix by which quaternions are multiplied."""
+
+    w: float
+    x: float
+    y: float
+    z: float
+
+
+@kernel()
+def _row(turn: NDArray[np.float64], k: int) -> _Row:
+    return _Row(turn[k, 0], turn[k, 1], turn[k, 2], turn[k, 3])
+
+
+@kernel()
+def _dot(row: _Row, q: tuple[float, float, float, float]) -> float:
+    return fma(row.w, q[0], fma(row.x, q[1], fma(row.y, q[2], row.z * q[3])))
+
+
 @kernel()
 def sample_attitude(
     motion: Motion, pre: Precession, times: NDArray[np.float64], turn: NDArray[np.float64], out: NDArray[np.float64]
 ) -> None:
     """Fill `out`, shape (4, n), with `turn`, shape (4, 4), applied to the quaternions Rz(psi) P."""
-    for i in range(times.size):
-        w, x, y, z = _attitude_at(motion, pre, times[i])
-        for k in range(4):
-            out[k, i] = fma(turn[k, 0], w, fma(turn[k, 1], x, fma(turn[k, 2], y, turn[k, 3] * z)))
+    # One array for each component and one loop for each branch, without branches of its own: four samples at a time.
+    w, x, y, z = out[0], out[1], out[2], out[3]
+    to_w, to_x, to_y, to_z = _row(turn, 0), _row(turn, 1), _row(turn, 2), _row(turn, 3)
+    if pre.branch == CIRCULAR:
+        for i in range(times.size):
+            t = motion.time_scale * times[i]
+            q = _quaternion(pre, t, _near_circular(motion, pre, t))
+            w[i], x[i], y[i], z[i] = _dot(to_w, q), _dot(to_x, q), _dot(to_y, q), _dot(to_z, q)
+    elif pre.branch == LIMIT:
+        for i in range(times.size):
+            t = motion.time_scale * times[i]
+            q = _quaternion(pre, t, _on_the_separatrix(motion, pre, t))
+            w[i], x[i], y[i], z[i] = _dot(to_w, q), _dot(to_x, q), _dot(to_y, q), _dot(to_z, q)
+    else:
+        for i in range(times.size):
+            t = motion.time_scale * times[i]
+            q = _quaternion(pre, t, _near_the_separatrix(motion, pre, t))
+            w[i], x[i], y[i], z[i] = _dot(to_w, q), _dot(to_x, q), _dot(to_y, q), _dot(to_z, q)
 
 
 @kernel()

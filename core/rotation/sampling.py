@@ -13,7 +13,7 @@ from core.rotation.constants_of_motion import Motion
 
 
 @kernel()
-def _quotient(above: float, over: float, lost: float) -> float:
+def quotient(above: float, over: float, lost: float) -> float:
     """Return above * over (1 + lost): one reciprocal serves three quotients, each as if divided."""
     near = above * over
     return fma(near, lost, near)
@@ -41,9 +41,9 @@ def _circular(
         over = 1.0 / below
         lost = fma(-over, below, 1.0)
         signed = sign * over
-        oc[i] = _quotient((c_odd if odd else c_even) * (S if odd else C), signed, lost)
-        ob[i] = _quotient((b_odd if odd else b_even) * (C if odd else S), signed, lost)
-        od[i] = _quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost)
+        oc[i] = quotient((c_odd if odd else c_even) * (S if odd else C), signed, lost)
+        ob[i] = quotient((b_odd if odd else b_even) * (C if odd else S), signed, lost)
+        od[i] = quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost)
 
 
 @kernel()
@@ -70,9 +70,9 @@ def _hyperbolic(
         over = 1.0 / below
         lost = fma(-over, below, 1.0)
         signed = sign * over
-        oc[i] = _quotient((c_odd if odd else c_even) * (S if odd else D4), signed, lost)
-        ob[i] = _quotient((b_odd if odd else b_even) * (D4 if odd else S), signed, lost)
-        od[i] = _quotient((d_odd if odd else d_even) * (C if odd else D3), over, lost)
+        oc[i] = quotient((c_odd if odd else c_even) * (S if odd else D4), signed, lost)
+        ob[i] = quotient((b_odd if odd else b_even) * (D4 if odd else S), signed, lost)
+        od[i] = quotient((d_odd if odd else d_even) * (C if odd else D3), over, lost)
 
 
 @kernel()
