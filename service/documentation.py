@@ -28,7 +28,8 @@ are rows. Every number is a finite double; a derived figure outside the range of
 Questions with `digits` (16 to 1000) are answered in ball arithmetic: every number of the answer is a decimal string
 whose digits are proven, and numbers of the question may be decimal strings too ("0.1" is one tenth, 0.1 a double).
 
-Answers are JSON, or a numpy archive to `Accept: application/x-npz`: the same names, and the rest as JSON inside.
+Answers are JSON, or a numpy archive to `Accept: application/x-npz`: the same names, and the rest
+as JSON in metadata.json.
 
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
 """

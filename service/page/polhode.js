@@ -61,6 +61,7 @@ function tell(answer) {
   entry("model", answer.model.name);
   entry("regime", answer.model.regime);
   entry("period", answer.period ? answer.period.toPrecision(10) + " s" : "none");
+  if (answer.flip_interval) entry("flips every", answer.flip_interval.toPrecision(10) + " s");
   entry("error", answer.accuracy.error.toExponential(1) + ", " + answer.accuracy.how);
   for (const warning of answer.warnings) entry("warning", warning.detail, "bad");
 }
@@ -106,7 +107,7 @@ function draw() {
     const tip = [0, 0, 0]; tip[i] = axes[i] * 1.08;
     const [x, y] = project(tip); pen.fillText("e" + "₁₂₃"[i], x - 10, y + 8);
   });
-  if (curve.length) line(curve, color("--deep"), color("--line"), 4);
+  if (curve.length) line(curve, color("--deep"), color("--soft"), 4);
   const [x, y] = project(w);
   pen.beginPath(); pen.arc(x, y, 9, 0, 2 * Math.PI); pen.fillStyle = color("--warm");
   pen.globalAlpha = faces(w) ? 1 : 0.4; pen.fill(); pen.globalAlpha = 1;

@@ -43,7 +43,7 @@ class EllipsoidInDigits(Request):
     )
     polhodes: Drawn | None = Field(
         default=None,
-        description="Draw polhodes through these starts: the same doubles as without digits, each then scaled to the "
+        description="Draw polhodes through random starts: the same doubles as without digits, each then scaled to the "
         "energy exactly.",
     )
     separatrix: bool = Field(default=False, description="Draw the separatrix.")

@@ -71,10 +71,15 @@ class AccuracyView(View):
     """How right the answer is; errors are relative to the largest norm of the motion."""
 
     requested: float
-    error: float = Field(description="Largest error of any sample, inputs taken as exact; never below the true one.")
+    error: float = Field(description="Largest error of any sample, inputs taken as exact; see how.")
     final_error: float | None = Field(description="The same at the time farthest from the start.")
-    how: How
-    inherited: float | None = Field(description="What half an ulp, or input_uncertainty, in every input would move.")
+    how: How = Field(
+        description="Of a closed form a bound, measured against it a difference with that bound added: neither is "
+        "below the true error. A finer run estimates it."
+    )
+    inherited: float | None = Field(
+        description="What half a unit in the last place of every input, or input_uncertainty, would move."
+    )
     horizon: float | None = Field(
         default=None, description="Time after which input_uncertainty leaves nothing known of the phase (s)."
     )
@@ -92,10 +97,10 @@ class WorkView(View):
     """What the answer cost, the same on every machine."""
 
     samples: int
-    evaluations: int
+    evaluations: int = Field(description="Of equations of motion, for the samples; a closed form needs none.")
     steps: int
-    rejected_steps: int
-    evaluations_for_error: int
+    rejected_steps: int = Field(description="Steps that a method with a tolerance took and threw away.")
+    evaluations_for_error: int = Field(description="Of equations of motion, to find the error.")
 
 
 class TrajectoryAnswer(Envelope):

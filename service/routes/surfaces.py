@@ -29,7 +29,7 @@ Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 
 
 class Drawn(Request):
-    """Starts to be drawn uniformly over the scaled sphere."""
+    """How many random starts to draw, uniformly over the scaled sphere, and the seed of the draw."""
 
     count: Count
     seed: Seed = 0
@@ -40,10 +40,12 @@ class EllipsoidRequest(Request):
 
     body: Body
     energy: Energy | None = Field(default=None, description="Kinetic energy (J); this or angular_velocity.")
-    angular_velocity: AngularVelocity | None = Field(default=None, description="A state of that energy (rad/s).")
+    angular_velocity: AngularVelocity | None = Field(
+        default=None, description="A state of that energy (rad/s); its polhode is drawn unless polhodes is given."
+    )
     resolution: Count = Field(default=16, description="Parts of an icosahedron's edge, or points from pole to pole.")
     layout: Literal["triangles", "grid"] = "triangles"
-    polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through these starts.")
+    polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through random starts.")
     separatrix: bool = Field(default=False, description="Draw the separatrix.")
     points: Count = Field(
         default=256, description="Points of each curve; a multiple of 4 has the extreme points among them."
