@@ -33,7 +33,11 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument("--port", type=int, help="port to listen on (default 8000)")
     parser.add_argument("--workers", type=int, help="server processes that share the port (default 1)")
     parser.add_argument("--openapi", action="store_true", help="write the OpenAPI document to standard output and stop")
-    parser.add_argument("--new-key", metavar="NAME", help="make a key, show it and its line for keys_file, and stop")
+    parser.add_argument(
+        "--new-key",
+        metavar="NAME",
+        help="make a key, show it and its line for keys_file (two hyphens: no limit of requests, none of work), and stop",
+    )
     parser.add_argument("--version", action="version", version=VERSION)
     return parser
 

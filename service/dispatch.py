@@ -165,7 +165,9 @@ class Dispatcher:
             detail = f"this path answers {allowed}"
             problem = Problem(REGISTRY["method-not-allowed"], detail, headers=(("Allow", allowed),))
         else:
-            problem = Problem(REGISTRY["not-found"], "there is nothing at this path")
+            problem = Problem(
+                REGISTRY["not-found"], "there is nothing at this path; GET /openapi.json lists every path"
+            )
         await exchange.problem(problem)
 
 

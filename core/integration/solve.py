@@ -122,7 +122,10 @@ def _evaluated(
 ) -> Trajectory:
     error = exact.error(times)
     if not error <= accuracy:
-        remedy = "ask for earlier times or for less accuracy"
+        if accuracy < exact.error(np.zeros(1)):
+            remedy = "ask for less accuracy; what doubles cannot hold at any time takes more digits than theirs"
+        else:
+            remedy = "ask for earlier times or for less accuracy"
         raise AccuracyUnreachable(accuracy, error, "the closed form's own bound is larger", remedy=remedy)
     states = exact.sample(times)
     if not np.isfinite(states).all():

@@ -61,7 +61,7 @@ class Server:
         raise RuntimeError("".join(self.log))
 
     def wait_until_ready(self) -> None:
-        deadline = time.monotonic() + 120
+        deadline = time.monotonic() + 300
         while not self._ready():
             assert time.monotonic() < deadline
             time.sleep(0.05)
