@@ -36,7 +36,7 @@ def parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--new-key",
         metavar="NAME",
-        help="make a key, show it and its line for keys_file (two hyphens: no limit of requests, none of work), and stop",
+        help="make a key, show it and its line for keys_file (two hyphens: no limits), and stop",
     )
     parser.add_argument("--version", action="version", version=VERSION)
     return parser
