@@ -29,6 +29,7 @@ from core.errors import MechanicsError
 from core.integration.budget import Budget
 from core.integration.error_statements import measured
 from core.integration.methods import (
+    DiscreteMoserVeselov,
     DormandPrince853,
     ExplicitEuler,
     ImplicitMidpoint,
@@ -62,13 +63,14 @@ STARTS = [[1.0, 10.0, 1.0], [0.3, 1.0, 0.2], [0.5, 0.1, 2.0]]
 STEPS = (0.02, 0.005, 0.001)
 TOLERANCES = (1e-4, 1e-7, 1e-10, 1e-13)
 SIZES = (1, 30, 1000, 30_000)
-FIXED = ("explicit-euler", "runge-kutta-4", "implicit-midpoint", "symmetric-splitting")
+FIXED = ("explicit-euler", "runge-kutta-4", "implicit-midpoint", "symmetric-splitting", "discrete-moser-veselov")
 CHOOSING = ("dormand-prince-853", "lsoda", "radau")
 KINDS = {
     "explicit-euler": ExplicitEuler,
     "runge-kutta-4": RungeKutta4,
     "implicit-midpoint": ImplicitMidpoint,
     "symmetric-splitting": SymmetricSplitting,
+    "discrete-moser-veselov": DiscreteMoserVeselov,
     "dormand-prince-853": DormandPrince853,
     "lsoda": Lsoda,
     "radau": Radau,

@@ -11,6 +11,10 @@ Three distinct moments: period 4K/p of the angular velocity, and the angle by wh
 it, whose quotient is the mean precession rate. The angle is right to the last digits; modulo a whole turn it is
 Montgomery's 2 E T/L less the solid angle that L encloses in the body.
 
+Two moments that differ by rounding alone, less than 16 units in the last place, have the rates and angles of their mean
+while the elliptic parameter m is below 2^-30. Period, and angle in it, are always those of the moments as given, since
+near the plane of the two that little decides.
+
 References
 ----------
 L. D. Landau, E. M. Lifshitz, "Mechanics", sections 33 and 37. H. Goldstein, C. Poole, J. Safko, "Classical
@@ -158,7 +162,7 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
     if regime == UNREACHABLE:
         raise too_near_the_separatrix()
     if apart:
-        warnings += (_equal_within_rounding("two moments"),)
+        warnings += (_DIFFERENT_AS_GIVEN if beyond else _equal_within_rounding("two moments"),)
     told = _TOLD[symmetry, regime, beyond]
     absent = told.absent.copy()
     if OUT_OF_RANGE in figures or UNRESOLVED in figures:
@@ -251,6 +255,14 @@ def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], _Told]:
 
 
 _TOLD = _told_of_all()
+
+
+_DIFFERENT_AS_GIVEN = Notice(
+    "moments-nearly-equal",
+    "two moments differ by less than 16 units in the last place of the largest; the difference is taken as given, and "
+    "half a unit in a moment may change the whole motion",
+    ("body",),
+)
 
 
 def _equal_within_rounding(which: str) -> Notice:

@@ -59,6 +59,12 @@ UNRESOLVED = -math.inf
 SMALLEST_ANGLE = 2.0**-43
 """What 1e-29 rad are half a unit in the last place of (rad)."""
 
+LIKE_SYMMETRIC = -27
+"""Exponent of the elliptic modulus up to which two nearly equal moments move a body as two equal ones, m < 2^-54."""
+
+UNLIKE_SYMMETRIC = -15
+"""Exponent of the modulus above which they do not: the rate in the body varies by m/2, here 2^-31 of itself."""
+
 Figures = tuple[float, float, float, float, float, float, float, float, float]
 Found = tuple[int, bool, bool, tuple[float, float, float], Figures]
 
@@ -208,6 +214,7 @@ def precession_figures(
     i, it, w, wt = resolved[0], resolved[1], resolved[2], resolved[3]
     k = symmetry_axis
     regime, apart, spun = STEADY, False, 0
+    exact_period, followed = _of_a_limit(ABSENT), False
     if k >= 0:
         a, b = (0, 1) if k == 2 else (1, 2)
         apart = moments[a] != moments[b] or moments_tail[a] != moments_tail[b]
@@ -232,9 +239,11 @@ def precession_figures(
             k1 = complement(c, found.D)
             if k1.exponent < SMALLEST_MODULUS:
                 return UNREACHABLE, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
-            if circled != k:
+            if circled != k or c.k.exponent > UNLIKE_SYMMETRIC:
                 ax, ay, az, _ = oriented(axes, circled)
                 return regime, k >= 0, apart, (ax, ay, az), _elliptic(c, k1)
+            if c.k.exponent > LIKE_SYMMETRIC:
+                exact_period, followed = _elliptic(c, k1), True
         else:
             return regime, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
     a, b = (0, 1) if k == 2 else (1, 2)
@@ -248,4 +257,9 @@ def precession_figures(
     equal, single = scaled(h, tail, 0), scaled(moments[k], moments_tail[k], 0)
     h, tail = dd_sub(moments[k], moments_tail[k], h, tail)
     figures = _regular(equal, single, scaled(h, tail, 0), along, across, regime == PERIODIC)
+    if followed:
+        figures = (
+            figures[0], figures[1], exact_period[2], figures[3], figures[4], figures[5], figures[6],
+            exact_period[7], exact_period[8],
+        )  # fmt: skip
     return regime, False, apart, (ax, ay, az), figures

@@ -43,10 +43,10 @@ def verdict(ranks: Sequence[int], axis: int, turns: bool) -> Verdict:
     turns : bool
         Whether the rate is not zero.
     """
+    if not turns:
+        return REST
     own, others = ranks[axis], [ranks[n] for n in range(3) if n != axis]
     survives = own == ranks[2]
-    if not turns:
-        return Verdict("degenerate", True, True, "unstable", survives, _REST)
     if ranks[0] == ranks[2]:
         return Verdict("degenerate", True, True, "orbital", True, _SPHERE)
     after = _DISSIPATION[survives]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+import dataclasses
+from typing import Any, get_args
 
 import orjson
 import pytest
 
+from core.integration.methods import Method
 from service.app import create_app
 from service.pricing import Foreseen, Priced, calibration, steps
 from service.routes import questions
@@ -20,6 +22,7 @@ ROUTES = {route.path: route for route in questions()}
 # Plans are made of any other question.
 PLANNED = [(route, name) for route in ROUTES.values() if route.path != "/v1/plan" for name in route.examples]
 PATH = "/v1/rotation/trajectory"
+INTEGRATORS = [method for method in get_args(get_args(Method)[0]) if method.kind != "closed-form"]
 FREE: dict[str, Any] = {
     "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
     "angular_velocity": [0.3, 1.0, 0.2],
@@ -148,7 +151,16 @@ def test_the_table_knows_every_operation_and_every_method() -> None:
     for operation in operations:
         assert calibration().seconds[operation]
         assert calibration().bytes[operation]
-    assert len(calibration().methods) == 7
+    assert set(calibration().methods) == {method.kind for method in INTEGRATORS}
+
+
+@pytest.mark.parametrize("method", INTEGRATORS, ids=lambda method: method.kind)
+async def test_every_integrator_is_planned_and_run(method: Any) -> None:
+    name = dataclasses.fields(method)[0].name
+    request = FREE | {"method": {"kind": method.kind, name: {"step": 0.01, "tolerance": 1e-6}[name]}}
+    plan = await planned(PATH, request)
+    assert plan["errors"] == []
+    assert (await asked(PATH, request)).status_code == 200
 
 
 @pytest.mark.parametrize("stop", [10.0, -10.0])

@@ -273,6 +273,19 @@ def test_moments_equal_within_rounding_are_said_to_be():
     want = mpmath.mpf(period((1.0, 1.0 + ULP, 2.0), (1.0, 1.0, 1e-12)))
     assert abs(beyond.period - want) <= 2 * ULP * want
     assert beyond.body_rate is None
+    assert [notice.code for notice in beyond.warnings] == ["moments-nearly-equal"]
+
+
+@pytest.mark.parametrize("moments", [(1.0, 1.0 + 15 * ULP, 2.0), (1.0, 2.0 - 12 * ULP, 2.0)])
+@pytest.mark.parametrize("along", [4.2e-8, 8e-8, 3e-7, 1e-5, 1e-3, 0.1, 1.0])
+def test_the_period_is_that_of_the_moments_as_given_however_nearly_equal(moments, along):
+    start = (1.0, 1.0, along) if moments[1] < 1.5 else (along, 1.0, 1.0)
+    found = of(moments, start)
+    want = mpmath.mpf(period(moments, start))
+    assert abs(found.period - want) <= 2 * ULP * want
+    # Where a rate is stated, the angular velocity goes round at that rate.
+    if found.body_rate is not None:
+        assert abs(found.body_rate) * found.period == pytest.approx(2.0 * math.pi, rel=1e-9)
 
 
 @pytest.mark.parametrize("start", [(math.nan, 0.0, 1.0), (math.inf, 0.0, 1.0), (1.0, 2.0)])

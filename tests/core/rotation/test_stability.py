@@ -146,6 +146,8 @@ def test_sphere_is_neutral_and_rest_is_an_equilibrium():
         assert (equilibrium.kind, equilibrium.stable, equilibrium.drift_rate) == ("degenerate", True, 0.0)
         assert "neutral" in equilibrium.reason
     for equilibrium in stability(diagonal((1.0, 2.0, 3.0)), 0.0).equilibria:
+        # The four are one and the same state.
+        assert not equilibrium.survives_dissipation
         assert (equilibrium.kind, equilibrium.stable, equilibrium.attitude) == ("degenerate", True, "unstable")
         assert set(equilibrium.eigenvalues) == {(0.0, 0.0)}
 
