@@ -128,6 +128,44 @@ async def test_the_wire_is_that_of_uvicorn(case: str, cached: int) -> None:
     assert found[0][0].startswith(b"HTTP/1.1 ")
 
 
+H2C = b"connection: Upgrade, HTTP2-Settings\r\nupgrade: h2c\r\nhttp2-settings: AAMAAABkAAQAAP__\r\n"
+WEBSOCKET = b"upgrade: websocket\r\nconnection: keep-alive, upgrade\r\nsec-websocket-version: 13\r\n"
+CLOSING = b"connection: close, upgrade\r\nupgrade: websocket\r\n"
+OFFERED = H2C, WEBSOCKET, CLOSING
+OFFERS: dict[str, tuple[bytes, ...]] = {
+    "http 2": (ask(more=H2C) + LAST,),
+    "websocket": (ask(more=WEBSOCKET) + LAST,),
+    "chunked": (chunked(BODY, H2C) + LAST,),
+    "again and again": (ask(more=H2C) + ask() + chunked(BODY, WEBSOCKET) + ask(more=H2C) + LAST,),
+    "in pieces": (ask(more=H2C)[:-30], ask(more=H2C)[-30:] + LAST),
+    "in the headers": (ask(more=H2C)[:90], ask(more=H2C)[90:], LAST),
+    "continue": (HEAD + H2C + b"expect: 100-continue\r\ncontent-length: %d\r\n\r\n" % len(BODY), BODY, LAST),
+    "the last": (ask(more=CLOSING),),
+    "no body": (LAST.replace(b"connection: close\r\n", CLOSING),),
+    "refused": (ask(b"{", H2C) + LAST,),
+    "garbage after": (ask(more=H2C) + b"GARBAGE\r\n\r\n",),
+    "two lengths": (ask(more=H2C + b"content-length: 1\r\n") + LAST,),
+}
+
+
+@pytest.mark.parametrize("case", OFFERS)
+async def test_who_offers_another_protocol_is_answered_in_this_one(case: str) -> None:
+    """Byte for byte as who does not."""
+    whole = b"".join(OFFERS[case])
+    for offer in OFFERED:
+        whole = whole.replace(offer, b"connection: close\r\n" if b"close" in offer else b"")
+    # Whoever sends all at once is not told to continue.
+    async with serving(Protocol, cached_answers=0) as server:
+        offered = plain(await told(server, *OFFERS[case])).removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")
+        assert offered == plain(await told(server, whole)).removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")
+    assert offered.startswith(b"HTTP/1.1 ")
+
+
+async def test_a_connection_to_somewhere_else_is_not_made() -> None:
+    async with serving(Protocol) as server:
+        assert (await told(server, b"CONNECT a:1 HTTP/1.1\r\nhost: x\r\n\r\n")).startswith(b"HTTP/1.1 400 ")
+
+
 async def test_origins_are_told_either_way() -> None:
     for http in ("httptools", Protocol):
         async with serving(http, cors_origins="https://a.example") as server:
