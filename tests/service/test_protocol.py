@@ -4,7 +4,7 @@ import asyncio
 import json
 import re
 from collections import Counter
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -12,6 +12,7 @@ import pytest
 import uvicorn
 
 from service.app import Service
+from service.composing import Document
 from service.protocol import LONGEST, Protocol, ShortCuts
 from service.settings import Settings
 from tests.service.conftest import TOYS
@@ -219,6 +220,30 @@ async def test_a_client_that_leaves_harms_nobody() -> None:
         await asyncio.sleep(0.1)
         assert (await told(server, ask() + LAST)).count(b"HTTP/1.1 200") == 2
         assert not server.server_state.tasks
+
+
+async def test_nothing_more_is_written_for_a_client_that_has_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    pieces: Counter[str] = Counter()
+    written = Document.pieces
+
+    def counted(self: Document) -> Iterator[bytes]:
+        for piece in written(self):
+            pieces["taken"] += 1
+            yield piece
+
+    monkeypatch.setattr(Document, "pieces", counted)
+    endless = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 1_000_000}}).encode()
+    async with serving(Protocol) as server:
+        reader, writer = await connect(server)
+        writer.write(ask(endless))
+        assert (await reader.readline()) == b"HTTP/1.1 200 OK\r\n"
+        await asyncio.sleep(0.2)
+        unread = pieces["taken"]
+        writer.transport.abort()
+        async with asyncio.timeout(20):
+            while server.server_state.tasks:
+                await asyncio.sleep(0.01)
+    assert pieces["taken"] <= unread + 2
 
 
 async def test_an_idle_connection_is_closed_when_the_server_stops() -> None:
