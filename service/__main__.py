@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 import tempfile
@@ -57,8 +58,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     configure(settings.log_level)
     # Server processes read their settings from the environment that they inherit.
     os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
-    with tempfile.TemporaryDirectory(prefix="polhode-metrics-") as directory:
+    with contextlib.ExitStack() as stack:
+        # A single process is ended by the signal that stopped it and could not remove the directory any more.
         if settings.workers > 1:
+            directory = stack.enter_context(tempfile.TemporaryDirectory(prefix="polhode-metrics-"))
             os.environ.setdefault("PROMETHEUS_MULTIPROC_DIR", directory)
         uvicorn.run(
             "service.server:app",

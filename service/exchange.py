@@ -8,7 +8,7 @@ from time import perf_counter
 from typing import Any, Protocol
 
 from service.cors import Cors
-from service.guards import Receive
+from service.guards import ClientGone, Receive
 from service.keys import Key
 from service.problems import MEDIA_TYPE, Problem
 from service.records import Records
@@ -159,15 +159,22 @@ class Exchange:
         await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)
 
     async def stream(self, pieces: Iterable[bytes], etag: bytes, headers: Sequence[Header] = (JSON,)) -> None:
-        """Send an answer piece by piece, letting other requests run in between."""
+        """Send an answer piece by piece, letting other requests run in between, or raise `ClientGone`."""
         if self._has(etag):
             kept = [header for header in headers if header[0] != b"content-type"]
             await self._respond(304, b"", [*kept, (b"etag", etag)])
             return
         await self._start(200, [*headers, (b"etag", etag)])
-        for piece in pieces:
-            await self._send({"type": "http.response.body", "body": piece, "more_body": True})
-            await asyncio.sleep(0)
+        leaving = asyncio.ensure_future(self.gone())
+        try:
+            for piece in pieces:
+                # A server takes what is sent to nobody without a word; all of it would be written for nothing.
+                if leaving.done():
+                    raise ClientGone
+                await self._send({"type": "http.response.body", "body": piece, "more_body": True})
+                await asyncio.sleep(0)
+        finally:
+            leaving.cancel()
         await self._send({"type": "http.response.body", "body": b"", "more_body": False})
         self.close(200)
 

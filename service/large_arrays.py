@@ -25,6 +25,9 @@ LEAST_BYTES = 2048
 MOST = 64
 """Arrays that are looked at in one document."""
 
+UNREADABLE = 4
+"""Arrays that may turn out not to be of numbers, each after a look at all that follows, before no more are tried."""
+
 _TOKEN = token_hex(16)
 """Part of every token; a client does not know it and so cannot name an array that it did not send."""
 
@@ -82,12 +85,20 @@ def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken]
     # Where nothing is escaped, a name in quotes before a colon cannot be part of a string.
     if len(document) < LEAST_BYTES or not fields or b"\\" in document:
         return document, taken
-    parts, done = [], 0
+    parts, done, unreadable = [], 0, 0
     for match in islice(_opening(tuple(fields)).finditer(document), MOST):
         start = match.end() - 1
+        if start < done:
+            # Within an array that has been taken as wrong.
+            continue
         mark = fields[match[1].decode()]
         rows = read_rows(document, start, whole=mark.whole)
-        if rows is None or rows.end - start < LEAST_BYTES:
+        if rows is None:
+            unreadable += 1
+            if unreadable == UNREADABLE:
+                break
+            continue
+        if rows.end - start < LEAST_BYTES:
             continue
         array = taken.add(rows.values)
         if rows.wrong is not None:

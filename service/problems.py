@@ -134,6 +134,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             "The computation took longer than it may",
             "Ask for fewer samples or a lower accuracy.",
         ),
+        ProblemType(
+            "no-room",
+            503,
+            "There is no room for the answer now",
+            "Memory or files of the machine are used up. Ask again in a moment, or for fewer samples.",
+        ),
         ProblemType("shutting-down", 503, "The service is being stopped", "Ask again in a moment."),
         ProblemType("not-ready", 503, "The service is still preparing itself", "Ask again in a moment."),
     )

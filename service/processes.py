@@ -9,6 +9,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import multiprocessing
+import os
+import signal
 import socket
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -112,8 +114,10 @@ class Process(asyncio.Protocol):
     def kill(self) -> None:
         """End it at once, whatever it does."""
         self.killed = True
-        if self.handle.is_alive():
-            self.handle.kill()
+        # Asked by its handle, it would seem dead as soon as the fork server is, which alone tells of its end. It lives
+        # as long as its connection does.
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(self.handle.pid or 0, signal.SIGKILL)
 
 
 class Processes:
@@ -230,10 +234,10 @@ class Processes:
                 # It was on its way to a process that was dead already: it is not that request's fault.
                 job.timer = asyncio.get_running_loop().call_later(job.longest, self._impatient, job)
                 self._waiting.appendleft(job)
-        Thread(target=self._bury, args=(process, asyncio.get_running_loop()), daemon=True).start()
         if not self._stopping:
             self._replace(0.0 if process.ready else PAUSE)
             self._hand_out()
+        Thread(target=self._bury, args=(process, asyncio.get_running_loop()), daemon=True).start()
 
     async def stop(self) -> None:
         """Refuse what waits, kill what runs."""
@@ -282,23 +286,28 @@ class Processes:
     async def _begin(self, pause: float) -> None:
         await asyncio.sleep(pause)
         while True:
-            ours, theirs = socket.socketpair()
             try:
-                # One at a time: all wait for the same fork server.
-                async with self._turn:
-                    handle = await _aside(partial(self._spawn, theirs))
+                handle, ours = await self._started()
                 break
-            except (OSError, EOFError):
-                ours.close()
+            # Whatever is lacking, files or threads or memory: a process that is not replaced would be missed for good.
+            except Exception:
                 LOG.exception("a compute process could not be started")
                 await asyncio.sleep(PAUSE)
-            except BaseException:
-                ours.close()
-                raise
         process = Process(self, handle)
         self._all.add(process)
         ours.setblocking(False)
         await asyncio.get_running_loop().create_unix_connection(lambda: process, sock=ours)
+
+    async def _started(self) -> tuple[ForkServerProcess, socket.socket]:
+        """Return a new process and our end of the connection to it."""
+        ours, theirs = socket.socketpair()
+        try:
+            # One at a time: all wait for the same fork server.
+            async with self._turn:
+                return await _aside(partial(self._spawn, theirs)), ours
+        except BaseException:
+            ours.close()
+            raise
 
     def _spawn(self, end: socket.socket) -> ForkServerProcess:
         with end:

@@ -5,12 +5,18 @@ headers and body apart; for a small answer this costs as much as finding it. Her
 a response whose headers are of known form is written, by one call each. Everything else is uvicorn's own: parsing,
 keeping alive, pipelining, back-pressure, disconnection, continuation, shutdown. Where any of them has a say, the short
 cut declines, having done nothing, and the application goes the ordinary way of ASGI. See docs/decisions/0009.
+
+One thing is done otherwise: a request that offers to go on in another protocol is answered in this one, as RFC 9110,
+7.8, has it. The parser stops at the end of its headers and takes its body, and all that is pipelined behind it, for the
+other protocol; clients that offer HTTP/2 with every request would never be heard.
 """
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
+from httptools import HttpRequestParser
 from uvicorn._types import ASGI3Application
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol, RequestResponseCycle
 
@@ -24,6 +30,41 @@ _OK = STATUS_LINE[200]
 
 class Protocol(HttpToolsProtocol):
     """One connection."""
+
+    _declined: tuple[bytes, int] | None = None
+    """Headers of a request without the offer to upgrade, and the place in what was received where they ended."""
+
+    def data_received(self, data: bytes) -> None:
+        """Parse what has arrived."""
+        super().data_received(data)
+        rest: Any = memoryview(data) if self._declined else b""
+        while self._declined and not self.transport.is_closing():
+            (head, end), self._declined = self._declined, None
+            rest = rest[end:]
+            # The one that stopped may count the connection as closed.
+            self.parser = HttpRequestParser(self)
+            self.parser.set_dangerous_leniencies(lenient_data_after_close=True)
+            super().data_received(head)
+            if not self.transport.is_closing():
+                super().data_received(rest)
+
+    def _should_upgrade(self) -> bool:
+        # Then the parser's calls for this request are passed over and, for an answer, the next method is called.
+        return bool(self.scope["method"] != "CONNECT")
+
+    def handle_websocket_upgrade(self) -> None:
+        """Have the request read again without the offer to upgrade."""
+        version = self.scope.get("http_version", "1.1").encode()
+        lines = [b"%b %b HTTP/%b" % (self.scope["method"].encode(), self.url, version)]
+        for name, value in self.headers:
+            if name == b"connection":
+                kept = [token for token in value.split(b",") if token.strip().lower() != b"upgrade"]
+                lines.append(b"connection: " + b",".join(kept))
+            elif name != b"upgrade":
+                lines.append(b"%b: %b" % (name, value))
+        stopped = sys.exception()
+        assert stopped is not None
+        self._declined = b"\r\n".join(lines) + b"\r\n\r\n", stopped.args[0]
 
     def _start_asgi_task(self, cycle: RequestResponseCycle, app: ASGI3Application) -> None:
         extensions: dict[str, Any] = {DIRECT: ShortCuts(cycle)}

@@ -12,7 +12,7 @@ import pickle
 import signal
 import socket
 import traceback
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -154,11 +154,21 @@ def work(terms: Terms, asked: Asked) -> Document | Problem | Failed:
 
 
 def kept(document: Document, file: Path) -> Document:
-    """Return a document as it travels: a large one with its parts in the file."""
+    """Return a document as it travels: a large one with its parts in the file, or refuse it for want of room."""
     if all(not isinstance(part, np.ndarray) for part in document.parts) and sum(map(len, document.parts)) <= SMALL:
         return document
-    with file.open("xb") as out:
+    with _room(), file.open("xb") as out:
         return Document(document.numbers, tuple(_stored(part, out) for part in document.parts))
+
+
+@contextlib.contextmanager
+def _room() -> Iterator[None]:
+    """Refuse, where the file cannot be written or mapped: it is the machine that lacks something, not the service."""
+    try:
+        yield
+    except OSError as error:
+        detail = f"the answer could not be stored: {error.strerror}"
+        raise Refusal("no-room", detail, headers=(("Retry-After", "1"),)) from error
 
 
 def _stored(part: Part, out: BinaryIO) -> Any:
@@ -175,10 +185,11 @@ def _stored(part: Part, out: BinaryIO) -> Any:
 
 
 def restored(document: Document, file: Path) -> Document:
-    """Return a document whose stored parts are mapped from the file; the file may be removed after that."""
+    """Return a document whose stored parts are mapped from the file, which may be removed after that, or refuse it."""
     if not any(isinstance(part, Stored) for part in document.parts):
         return document
-    data = np.asarray(np.memmap(file, np.uint8, "r"))
+    with _room():
+        data = np.asarray(np.memmap(file, np.uint8, "r"))
     return Document(document.numbers, tuple(_restored(part, data) for part in document.parts))
 
 

@@ -1,5 +1,6 @@
 """Requests and responses beside what a question means: paths, methods, headers, streams, failures."""
 
+import asyncio
 import itertools
 import json
 import logging
@@ -339,11 +340,16 @@ def scope(method: str, path: str, headers: dict[str, str]) -> dict[str, Any]:
 
 
 def receiving(*parts: bytes) -> Any:
+    """Return what a client sends that waits for the answer, or leaves at once if it sends nothing."""
     messages = [{"type": "http.request", "body": part, "more_body": i < len(parts) - 1} for i, part in enumerate(parts)]
     remaining = iter(messages)
 
     async def receive() -> dict[str, Any]:
-        return next(remaining, {"type": "http.disconnect"})
+        for message in remaining:
+            return message
+        if parts:
+            await asyncio.Event().wait()
+        return {"type": "http.disconnect"}
 
     return receive
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from core.bodies.measured import PointMasses
+from core.decimal_rows import read_rows
 from service import large_arrays
 from service.large_arrays import take_out
 from service.problems import Refusal
@@ -108,6 +109,23 @@ def test_refusals_are_those_of_the_document_as_it_was_sent(name: str, monkeypatc
     without_this_path(monkeypatch)
     assert quick == refusal(BAD[name])
     assert large_arrays._TOKEN not in str(quick)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [b'"positions":[[1,2],' * 1000, b'{"positions":[[1,2],' * 60 + b"0" * 3000 + b"]}" * 60],
+    ids=["never closed", "one in another"],
+)
+def test_a_text_is_not_gone_through_once_for_each_array(text: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[int] = []
+
+    def looking(document: bytes, start: int, *, whole: bool) -> Any:
+        looked.append(start)
+        return read_rows(document, start, whole=whole)
+
+    monkeypatch.setattr(large_arrays, "read_rows", looking)
+    take_out(text, READER._arrays)
+    assert 1 <= len(looked) <= large_arrays.UNREADABLE
 
 
 def test_a_pointer_leads_to_the_entry() -> None:

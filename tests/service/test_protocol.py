@@ -4,7 +4,7 @@ import asyncio
 import json
 import re
 from collections import Counter
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -12,6 +12,7 @@ import pytest
 import uvicorn
 
 from service.app import Service
+from service.composing import Document
 from service.protocol import LONGEST, Protocol, ShortCuts
 from service.settings import Settings
 from tests.service.conftest import TOYS
@@ -128,6 +129,44 @@ async def test_the_wire_is_that_of_uvicorn(case: str, cached: int) -> None:
     assert found[0][0].startswith(b"HTTP/1.1 ")
 
 
+H2C = b"connection: Upgrade, HTTP2-Settings\r\nupgrade: h2c\r\nhttp2-settings: AAMAAABkAAQAAP__\r\n"
+WEBSOCKET = b"upgrade: websocket\r\nconnection: keep-alive, upgrade\r\nsec-websocket-version: 13\r\n"
+CLOSING = b"connection: close, upgrade\r\nupgrade: websocket\r\n"
+OFFERED = H2C, WEBSOCKET, CLOSING
+OFFERS: dict[str, tuple[bytes, ...]] = {
+    "http 2": (ask(more=H2C) + LAST,),
+    "websocket": (ask(more=WEBSOCKET) + LAST,),
+    "chunked": (chunked(BODY, H2C) + LAST,),
+    "again and again": (ask(more=H2C) + ask() + chunked(BODY, WEBSOCKET) + ask(more=H2C) + LAST,),
+    "in pieces": (ask(more=H2C)[:-30], ask(more=H2C)[-30:] + LAST),
+    "in the headers": (ask(more=H2C)[:90], ask(more=H2C)[90:], LAST),
+    "continue": (HEAD + H2C + b"expect: 100-continue\r\ncontent-length: %d\r\n\r\n" % len(BODY), BODY, LAST),
+    "the last": (ask(more=CLOSING),),
+    "no body": (LAST.replace(b"connection: close\r\n", CLOSING),),
+    "refused": (ask(b"{", H2C) + LAST,),
+    "garbage after": (ask(more=H2C) + b"GARBAGE\r\n\r\n",),
+    "two lengths": (ask(more=H2C + b"content-length: 1\r\n") + LAST,),
+}
+
+
+@pytest.mark.parametrize("case", OFFERS)
+async def test_who_offers_another_protocol_is_answered_in_this_one(case: str) -> None:
+    """Byte for byte as who does not."""
+    whole = b"".join(OFFERS[case])
+    for offer in OFFERED:
+        whole = whole.replace(offer, b"connection: close\r\n" if b"close" in offer else b"")
+    # Whoever sends all at once is not told to continue.
+    async with serving(Protocol, cached_answers=0) as server:
+        offered = plain(await told(server, *OFFERS[case])).removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")
+        assert offered == plain(await told(server, whole)).removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")
+    assert offered.startswith(b"HTTP/1.1 ")
+
+
+async def test_a_connection_to_somewhere_else_is_not_made() -> None:
+    async with serving(Protocol) as server:
+        assert (await told(server, b"CONNECT a:1 HTTP/1.1\r\nhost: x\r\n\r\n")).startswith(b"HTTP/1.1 400 ")
+
+
 async def test_origins_are_told_either_way() -> None:
     for http in ("httptools", Protocol):
         async with serving(http, cors_origins="https://a.example") as server:
@@ -181,6 +220,30 @@ async def test_a_client_that_leaves_harms_nobody() -> None:
         await asyncio.sleep(0.1)
         assert (await told(server, ask() + LAST)).count(b"HTTP/1.1 200") == 2
         assert not server.server_state.tasks
+
+
+async def test_nothing_more_is_written_for_a_client_that_has_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    pieces: Counter[str] = Counter()
+    written = Document.pieces
+
+    def counted(self: Document) -> Iterator[bytes]:
+        for piece in written(self):
+            pieces["taken"] += 1
+            yield piece
+
+    monkeypatch.setattr(Document, "pieces", counted)
+    endless = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 1_000_000}}).encode()
+    async with serving(Protocol) as server:
+        reader, writer = await connect(server)
+        writer.write(ask(endless))
+        assert (await reader.readline()) == b"HTTP/1.1 200 OK\r\n"
+        await asyncio.sleep(0.2)
+        unread = pieces["taken"]
+        writer.transport.abort()
+        async with asyncio.timeout(20):
+            while server.server_state.tasks:
+                await asyncio.sleep(0.01)
+    assert pieces["taken"] <= unread + 2
 
 
 async def test_an_idle_connection_is_closed_when_the_server_stops() -> None:
