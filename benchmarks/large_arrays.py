@@ -53,7 +53,7 @@ def posted(caller: Caller, text: bytes) -> None:
 
 def main(repeats: int = 9) -> None:
     """Measure and write the result."""
-    reader: Reader[Any] = Reader(MASS_PROPERTIES.question, Limits())
+    reader: Reader[Any] = Reader(MASS_PROPERTIES.question, Limits(arrays=10**6))
     before, found = os.getloadavg(), []
     with running() as port:
         caller = Caller(port)

@@ -36,13 +36,13 @@ class Service:
         The one table.
     documented : FastAPI
         The same table as FastAPI sees it: the OpenAPI document, and a second way in that answers the same bytes.
-    ready : bool
-        Whether every kernel is compiled and the compute processes are up.
+    warm : bool
+        Whether every kernel is compiled and the compute processes have been up.
     """
 
     def __init__(self, settings: Settings, table: str = TABLE) -> None:
         self.settings = settings
-        self.ready = False
+        self.warm = False
         self.metrics = Metrics()
         asked: tuple[Question, ...] = resolve_name(table)()
         self.compute = Compute(settings, self.metrics, table)
@@ -51,7 +51,7 @@ class Service:
         self.routes: tuple[Route, ...] = (
             *asked,
             *catalogues(),
-            *operations(ready=lambda: self.ready, metrics=self.metrics),
+            *operations(ready=lambda: self.warm and self.compute.processes.any_ready, metrics=self.metrics),
             *pages(self.openapi),
         )
         self.dispatcher = Dispatcher(
@@ -83,7 +83,7 @@ class Service:
         try:
             yield
         finally:
-            self.ready = False
+            self.warm = False
             warming.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await warming
@@ -98,7 +98,7 @@ class Service:
         # What has been built until now stays for good: the collector of garbage need not walk through it ever again.
         gc.collect()
         gc.freeze()
-        self.ready = True
+        self.warm = True
         LOG.info("ready", extra={"compute_processes": self.compute.size})
 
     def _prepare(self) -> None:

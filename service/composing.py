@@ -37,6 +37,11 @@ class Document:
     parts: tuple[Part, ...]
 
     @property
+    def memory(self) -> int:
+        """How many bytes its parts take."""
+        return sum(part.nbytes if isinstance(part, np.ndarray) else len(part) for part in self.parts)
+
+    @property
     def large(self) -> bool:
         """Whether it is better sent in pieces."""
         return self.numbers > ONE_PIECE or sum(map(len, self.parts)) > ONE_TEXT

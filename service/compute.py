@@ -7,10 +7,11 @@ of those that are accepted.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import pickle
 import tempfile
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from itertools import count
 from math import ceil
 from pathlib import Path
@@ -76,7 +77,7 @@ class Compute:
         self._numbers = count()
         self.pace = Pace()
         self._promised = 0.0
-        self._jobs = 0
+        self._jobs = self._held = 0
         self._up = self._stopping = False
 
     async def start(self) -> None:
@@ -98,6 +99,15 @@ class Compute:
     def backlog(self) -> float:
         """Predicted time until a question that is accepted now would have its turn (s)."""
         return self._promised * self.pace.ratio / self.size
+
+    @contextlib.contextmanager
+    def holding(self, memory: int) -> Iterator[None]:
+        """Count the memory (bytes) of an answer while its client reads it."""
+        self._held += memory
+        try:
+            yield
+        finally:
+            self._held -= memory
 
     async def answer(
         self, route: Question, body: bytes, price: float, media: str | None, gone: Callable[[], Awaitable[None]]
@@ -157,6 +167,10 @@ class Compute:
         raise RuntimeError(f"in a compute process:\n{result.traceback}")
 
     def _admit(self) -> None:
+        most = self._settings.max_held_bytes
+        if self._held > most:
+            detail = f"answers that are still being read take more than {most} bytes, the limit max_held_bytes"
+            raise Refusal("too-busy", detail, headers=(("Retry-After", "1"),), extra={"retry_after_seconds": 1.0})
         limit = self._settings.max_backlog_seconds
         wait = self.backlog - limit
         if wait > 0.0:

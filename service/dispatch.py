@@ -24,7 +24,7 @@ from service.logs import LOG
 from service.metrics import Metrics
 from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.records import Records
-from service.representation import Header, Representation, etag_of
+from service.representation import JSON, Header, Representation, etag_of
 from service.routing import Page, Question, Route
 from service.settings import Settings
 
@@ -115,20 +115,25 @@ class Dispatcher:
         else:
             document = await self._document(route, body, media, exchange)
             if media == archive.MEDIA_TYPE:
-                self._metrics.samples.inc(document.numbers)
-                await exchange.stream(document.pieces(), _etag_of_answer(route, body, media), _NPZ)
+                await self._stream(document, _etag_of_answer(route, body, media), exchange, _NPZ)
                 return
             if media is not None:
                 await exchange.represented(document.whole(), media.encode())
                 return
             if document.large:
-                self._metrics.samples.inc(document.numbers)
-                await exchange.stream(document.pieces(), _etag_of_answer(route, body))
+                await self._stream(document, _etag_of_answer(route, body), exchange)
                 return
             whole = Representation(document.whole())
             self._kept.put(route.path, body, whole)
         if not exchange.answer_at_once(whole):
             await exchange.answer(whole)
+
+    async def _stream(
+        self, document: Document, etag: bytes, exchange: Exchange, headers: Sequence[Header] = (JSON,)
+    ) -> None:
+        self._metrics.samples.inc(document.numbers)
+        with self._compute.holding(document.memory):
+            await exchange.stream(document.pieces(), etag, self._settings.stalled_seconds, headers)
 
     async def _document(self, route: Question, body: bytes, media: str | None, exchange: Exchange) -> Document:
         longest = self._settings.deadline_seconds

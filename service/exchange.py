@@ -12,7 +12,7 @@ from service.guards import ClientGone, Receive
 from service.keys import Key
 from service.problems import MEDIA_TYPE, Problem
 from service.records import Records
-from service.representation import JSON, NOSNIFF, Header, Representation, etag_of
+from service.representation import NOSNIFF, Header, Representation, etag_of
 
 Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
@@ -158,8 +158,14 @@ class Exchange:
         headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
         await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)
 
-    async def stream(self, pieces: Iterable[bytes], etag: bytes, headers: Sequence[Header] = (JSON,)) -> None:
-        """Send an answer piece by piece, letting other requests run in between, or raise `ClientGone`."""
+    async def stream(self, pieces: Iterable[bytes], etag: bytes, patience: float, headers: Sequence[Header]) -> None:
+        """Send an answer piece by piece, letting other requests run in between.
+
+        Raises
+        ------
+        ClientGone
+            If the client has left, or has taken nothing for longer than `patience` (s).
+        """
         if self._has(etag):
             kept = [header for header in headers if header[0] != b"content-type"]
             await self._respond(304, b"", [*kept, (b"etag", etag)])
@@ -171,8 +177,11 @@ class Exchange:
                 # A server takes what is sent to nobody without a word; all of it would be written for nothing.
                 if leaving.done():
                     raise ClientGone
-                await self._send({"type": "http.response.body", "body": piece, "more_body": True})
+                async with asyncio.timeout(patience):
+                    await self._send({"type": "http.response.body", "body": piece, "more_body": True})
                 await asyncio.sleep(0)
+        except TimeoutError:
+            raise ClientGone from None
         finally:
             leaving.cancel()
         await self._send({"type": "http.response.body", "body": b"", "more_body": False})

@@ -161,6 +161,11 @@ class Processes:
         """Whether all processes are there and ready."""
         return sum(process.ready and not process.killed for process in self._all) == self.size
 
+    @property
+    def any_ready(self) -> bool:
+        """Whether there is a process that works or waits for work."""
+        return any(process.ready and not process.killed for process in self._all)
+
     async def start(self) -> None:
         """Start all processes and return when each is ready."""
         for _ in range(self.size):

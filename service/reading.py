@@ -17,7 +17,7 @@ from pydantic_core import SchemaValidator
 
 from core.quantities import Rows
 from service.faults import Layout
-from service.guards import require_distinct_keys, require_simple
+from service.guards import Limits, require_distinct_keys, require_simple
 from service.large_arrays import Taken, take_out, taking
 from service.problems import Fault, Refusal
 
@@ -27,15 +27,6 @@ LARGE = 65_536
 """Bytes of a document from which on objects are made by the ten thousand."""
 WITHOUT, WITH = "<without>", "<with>"
 """Labels of the two questions that a `ByPresence` tells apart."""
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a document may have: levels of nesting, keys, arrays and objects beside the rows of large arrays."""
-
-    nesting: int = 32
-    keys: int = 4000
-    arrays: int = 50_000
 
 
 @dataclass(frozen=True)
@@ -127,7 +118,7 @@ class Reader(Generic[Q]):
         for mark, (without, having) in self._told_apart:
             having._layout = having._layout.told_from(mark.key, without._layout)
         self._advised = advised
-        self._deepest, self._most_keys, self._most_arrays = limits.nesting, limits.keys, limits.arrays
+        self._limits = limits
 
     def read(self, body: bytes) -> Q:
         """Return the question that a request's body asks.
@@ -148,7 +139,7 @@ class Reader(Generic[Q]):
     def _told(self, body: bytes, rest: bytes, taken: Taken) -> Q:
         """Return the question of a document, from which arrays may have been taken out."""
         for mark, (without, having) in self._told_apart:
-            require_simple(rest, self._deepest, self._most_keys, self._most_arrays)
+            require_simple(rest, self._limits)
             meant: Q = having._read(body) if mark.in_document(rest) else without._told(body, rest, taken)
             return meant
         if taken:
@@ -166,7 +157,7 @@ class Reader(Generic[Q]):
             raise self._refusal(error) from None
 
     def _validated(self, document: bytes, taken: Taken | None = None) -> Q:
-        require_simple(document, self._deepest, self._most_keys, self._most_arrays)
+        require_simple(document, self._limits)
         question: Q = self._validate(document, strict=True, context=taken)
         require_distinct_keys(document)
         return question

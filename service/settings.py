@@ -32,6 +32,11 @@ class Settings(BaseSettings):
         ge=1,
         description="Largest number of arrays and objects in a request body (400), points and faces not counted.",
     )
+    max_strings: int = Field(
+        default=100_000,
+        ge=1,
+        description="Largest number of strings, or of quotes and escapes for two of them, in a request body (400).",
+    )
     max_samples: int = Field(default=1_000_000, ge=1, description="Largest number of samples in one answer (422).")
     max_evaluations: int = Field(
         default=20_000_000,
@@ -56,6 +61,15 @@ class Settings(BaseSettings):
     )
     max_backlog_seconds: float = Field(
         default=5.0, gt=0, description="Predicted time in the queue above which new large questions are refused (429)."
+    )
+    max_held_bytes: int = Field(
+        default=512_000_000,
+        ge=1,
+        description="Memory of large answers that are being read by their clients above which new large questions are "
+        "refused (429).",
+    )
+    stalled_seconds: float = Field(
+        default=20.0, gt=0, description="Time in which a client must take some of its answer; otherwise it is let go."
     )
     scratch: Path | None = Field(
         default=None, description="Directory for large results on their way between processes; default: shared memory."

@@ -104,7 +104,7 @@ def terms_of(settings: Settings, table: str) -> Terms:
     return Terms(
         table,
         Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
-        Limits(settings.max_nesting, settings.max_keys, settings.max_arrays),
+        Limits(settings.max_nesting, settings.max_keys, settings.max_arrays, settings.max_strings),
     )
 
 

@@ -81,7 +81,7 @@ def planning(routes: Sequence[Question]) -> Question:
     @cache
     def reader(path: str) -> Reader[Any]:
         # The document that holds the request has been held against the service's own limits.
-        return Reader(table[path].question, Limits(10**4, 10**9, 10**9))
+        return Reader(table[path].question, Limits(10**4, 10**9, 10**9, 10**9))
 
     def plan(question: PlanRequest, budget: Budget) -> Answer:
         route = table.get(question.path)

@@ -94,6 +94,8 @@ def _too_complex() -> list[Case]:
         "keys": json.dumps({f"key{i}": i for i in range(50_000)}).encode(),
         "equal keys": b"{" + b'"a":1,' * 100_000 + b'"a":1}',
         "empty keys": b"{" + b'"" :1,' * 100_000 + b'"":1}',
+        "strings": json.dumps({**QUESTION, "times": ["1"] * 100_001}).encode(),
+        "escapes": json.dumps({**QUESTION, "name": "\u00e9" * 200_001}).encode(),
     }
     return [(f"too complex: {name}", content, 400, "too-complex", None) for name, content in texts.items()]
 

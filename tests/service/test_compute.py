@@ -37,7 +37,7 @@ async def service() -> AsyncIterator[Service]:
     running = toy_service(compute_workers=2, deadline_seconds=1.0, max_backlog_seconds=1.0)
     async with running.lifespan():
         async with asyncio.timeout(120):
-            while not running.ready:
+            while not running.warm:
                 await asyncio.sleep(0.02)
         yield running
 
@@ -221,7 +221,7 @@ async def test_every_process_killed_again_and_again_loses_nothing(service: Servi
 async def test_what_finds_no_process_in_time_is_told_so() -> None:
     running = toy_service(compute_workers=1, deadline_seconds=0.5, max_backlog_seconds=0.3)
     async with running.lifespan(), client_of(running) as client:
-        while not running.ready:
+        while not running.warm:
             await asyncio.sleep(0.02)
         await ready(running)
         # As if it were still being started.
@@ -329,7 +329,7 @@ async def test_stopping_answers_what_is_in_flight() -> None:
     running = toy_service(compute_workers=1)
     async with client_of(running) as client:
         async with running.lifespan():
-            while not running.ready:
+            while not running.warm:
                 await asyncio.sleep(0.02)
             waiting = asyncio.create_task(client.post("/v1/toy", json=sleeping(5.0)))
             await asyncio.sleep(0.2)

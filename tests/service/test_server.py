@@ -289,7 +289,7 @@ from service.settings import Settings
 async def main():
     service = create_app(Settings(cached_answers=0, compute_workers=1, inline_seconds=1e9))
     async with service.lifespan():
-        while not service.ready:
+        while not service.warm:
             await asyncio.sleep(0.02)
         transport = httpx.ASGITransport(service)
         async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
