@@ -110,7 +110,8 @@ def _curve(curve: list[tuple[float, float]], x: Scale, y: Scale, peer: str) -> l
     parts += [_mark(mark, px, py, colour) for px, py in places]
     if peer == OURS and places:
         px, py = places[0]
-        parts.append(f'<text x="{px + 13:.1f}" y="{py + 5:.1f}" font-weight="bold" fill="{colour}">Polhode</text>')
+        bold = f'text-anchor="middle" font-weight="bold" fill="{colour}"'
+        parts.append(f'<text x="{px:.1f}" y="{py - 14:.1f}" {bold}>Polhode</text>')
     return parts
 
 
