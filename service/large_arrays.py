@@ -71,8 +71,8 @@ class Taken:
         return len(self._placed) == len(self._arrays)
 
 
-def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken]:
-    """Return a JSON document with tokens in place of the large arrays of some fields, and these arrays.
+def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken | None]:
+    """Return a JSON document with tokens in place of the large arrays of some fields, and these arrays if it has any.
 
     A document that is not JSON stays so, as tokens are JSON strings and stand where an array stood.
 
@@ -81,10 +81,10 @@ def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken]
     fields : mapping
         By name, what the numbers are of the fields whose arrays are wanted.
     """
-    taken = Taken()
     # Where nothing is escaped, a name in quotes before a colon cannot be part of a string.
     if len(document) < LEAST_BYTES or not fields or b"\\" in document:
-        return document, taken
+        return document, None
+    taken = Taken()
     parts, done, unreadable = [], 0, 0
     for match in islice(_opening(tuple(fields)).finditer(document), MOST):
         start = match.end() - 1
@@ -108,7 +108,7 @@ def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken]
             array = b"[" + b",".join([array, *[rows.wrong] * max(1, mark.at_least - len(rows.values))]) + b"]"
         parts += [document[done:start], array]
         done = rows.end
-    return (b"".join([*parts, document[done:]]) if parts else document), taken
+    return (b"".join([*parts, document[done:]]), taken) if parts else (document, None)
 
 
 @cache

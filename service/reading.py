@@ -136,13 +136,13 @@ class Reader(Generic[Q]):
     def _read(self, body: bytes) -> Q:
         return self._told(body, *take_out(body, self._arrays))
 
-    def _told(self, body: bytes, rest: bytes, taken: Taken) -> Q:
+    def _told(self, body: bytes, rest: bytes, taken: Taken | None) -> Q:
         """Return the question of a document, from which arrays may have been taken out."""
         for mark, (without, having) in self._told_apart:
             require_simple(rest, self._limits)
             meant: Q = having._read(body) if mark.in_document(rest) else without._told(body, rest, taken)
             return meant
-        if taken:
+        if taken is not None:
             try:
                 question = self._validated(rest, taken)
                 if not taken.shortened:

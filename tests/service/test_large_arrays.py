@@ -32,6 +32,7 @@ def without_this_path(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_points_arrive_to_the_bit() -> None:
     _, taken = take_out(document(), READER._arrays)
+    assert taken is not None
     assert len(taken) == 2
     body = READER.read(document()).body
     assert isinstance(body, PointMasses)

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 import uvicorn
+from uvicorn.server import ServerState
 
 from service.app import Service
 from service.composing import Document
@@ -285,9 +286,63 @@ class Cycle:
         self.completed += 1
 
 
+class Transport:
+    """Notes what a protocol does to its transport."""
+
+    def __init__(self) -> None:
+        self.done: list[bytes] = []
+
+    def write(self, data: bytes) -> None:
+        self.done.append(data)
+
+    def close(self) -> None:
+        self.done.append(b"closed")
+
+    def is_closing(self) -> bool:
+        return b"closed" in self.done
+
+    def get_extra_info(self, name: str) -> Any:
+        return None
+
+
+def connected() -> tuple[Protocol, Transport]:
+    config = uvicorn.Config(Service(Settings(), TOYS), log_config=None, lifespan="off")
+    protocol, transport = Protocol(config, ServerState(), {}), Transport()
+    protocol.connection_made(transport)  # type: ignore[arg-type]
+    return protocol, transport
+
+
+async def test_responses_are_sent_behind_all_work_that_is_ready() -> None:
+    protocol, transport = connected()
+    found = []
+    protocol.send_soon(b"answer")
+    asyncio.get_running_loop().call_soon(lambda: found.append(list(transport.done)))
+    assert not transport.done
+    await asyncio.sleep(0)
+    assert (transport.done, found) == ([b"answer"], [[b"answer"]])
+
+
+@pytest.mark.parametrize(
+    ("event", "after"),
+    [
+        (lambda protocol: protocol.shutdown(), [b"closed"]),
+        (lambda protocol: protocol.data_received(b"GET"), []),
+        (lambda protocol: protocol.send_400_response("no"), [b"HTTP/1.1 400 Bad Request", b"closed"]),
+    ],
+    ids=["shutdown", "more", "no http"],
+)
+async def test_nothing_overtakes_a_response(event: Any, after: list[bytes]) -> None:
+    protocol, transport = connected()
+    protocol.send_soon(b"answer")
+    event(protocol)
+    assert [done.split(b"\r\n")[0] for done in transport.done] == [b"answer", *after]
+    await asyncio.sleep(0)
+    assert transport.done.count(b"answer") == 1
+
+
 def test_a_response_is_written_once() -> None:
     cycle: Any = Cycle()
-    cuts = ShortCuts(cycle)
+    cuts = ShortCuts(cycle, cycle.write)
     assert cuts.read(2) == b"{}"
     assert not cycle.message_event.is_set()
     assert cuts.write(b"c: d\r\n", b"body")
@@ -313,12 +368,13 @@ def test_a_response_is_written_once() -> None:
 )
 def test_a_response_that_is_no_plain_matter_is_left_alone(change: dict[str, Any]) -> None:
     cycle: Any = Cycle(**change)
-    assert not ShortCuts(cycle).write(b"c: d\r\n", b"body")
+    assert not ShortCuts(cycle, cycle.write).write(b"c: d\r\n", b"body")
     assert (cycle.written, cycle.completed, cycle.response_complete) == ([], 0, False)
 
 
 def test_a_long_body_is_not_copied() -> None:
-    assert not ShortCuts(Cycle()).write(b"", b"x" * (LONGEST + 1))  # type: ignore[arg-type]
+    cycle: Any = Cycle()
+    assert not ShortCuts(cycle, cycle.write).write(b"", b"x" * (LONGEST + 1))
 
 
 @pytest.mark.parametrize(
@@ -335,6 +391,6 @@ def test_a_long_body_is_not_copied() -> None:
 def test_a_request_that_is_no_plain_matter_is_left_alone(change: dict[str, Any]) -> None:
     cycle: Any = Cycle(**change)
     body = bytes(cycle.body)
-    assert ShortCuts(cycle).read(2) is None
+    assert ShortCuts(cycle, cycle.write).read(2) is None
     assert bytes(cycle.body) == body
     assert cycle.message_event.is_set()
