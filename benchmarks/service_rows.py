@@ -114,14 +114,16 @@ def _own() -> int:
 def serve() -> None:
     """Serve and print the port."""
     app = Watched()
-    config = uvicorn.Config(app, port=0, loop="uvloop", http="httptools", log_config=None, access_log=False)
+    config = uvicorn.Config(
+        app, port=0, loop="uvloop", http="service.protocol:Protocol", log_config=None, access_log=False
+    )
     server = uvicorn.Server(config)
 
     async def run() -> None:
         serving = asyncio.ensure_future(server.serve())
         watching = asyncio.ensure_future(app.watch())
         async with asyncio.timeout(120):
-            while not (server.started and app.service.ready):
+            while not (server.started and app.service.warm):
                 await asyncio.sleep(0.01)
         print(server.servers[0].sockets[0].getsockname()[1], flush=True)
         await serving

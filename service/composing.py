@@ -46,13 +46,14 @@ class Document:
         """Whether it is better sent in pieces."""
         return self.numbers > ONE_PIECE or sum(map(len, self.parts)) > ONE_TEXT
 
-    def pieces(self) -> Iterator[bytes]:
-        """Yield what is sent, in pieces of which none takes more than a moment to make."""
+    def pieces(self) -> Iterator[bytes | memoryview]:
+        """Yield what is sent, in pieces of which none takes more than a moment to make; some are a single character."""
         for part in self.parts:
             if isinstance(part, np.ndarray):
                 yield from rows(part)
             else:
-                yield from (bytes(part[start : start + SLICE]) for start in range(0, len(part), SLICE))
+                text = memoryview(part)
+                yield from (text[start : start + SLICE] for start in range(0, len(text), SLICE))
 
     def whole(self) -> bytes:
         """Return all of it."""
@@ -79,14 +80,14 @@ def composed(route: Question, answer: Answer, media: str | None) -> Document:
     return Document(numbers, tuple(_joined(parts(answer))))
 
 
-def _joined(found: Iterator[bytes | np.ndarray[Any, Any]]) -> Iterator[Part]:
+def _joined(found: Iterator[Part]) -> Iterator[Part]:
     """Yield parts of which no two texts stand side by side."""
-    texts: list[bytes] = []
+    texts: list[bytes | memoryview] = []
     for part in found:
-        if isinstance(part, bytes):
-            texts.append(part)
-        else:
+        if isinstance(part, np.ndarray):
             yield b"".join(texts)
             yield part
             texts.clear()
+        else:
+            texts.append(part)
     yield b"".join(texts)

@@ -22,6 +22,10 @@ DIRECT = "polhode.direct"
 """Name of the extension of a server whose value is a `Direct`."""
 
 
+SHORT = 1_024
+"""Bytes below which a piece of a stream is not worth being sent by itself."""
+
+
 class Direct(Protocol):
     """A server's short cuts for small requests and responses; each may decline, having done nothing."""
 
@@ -30,6 +34,9 @@ class Direct(Protocol):
 
     def write(self, headers: bytes, body: bytes) -> bool:
         """Send a response with status 200, of headers as they stand in it, each with its line end, and a body."""
+
+    async def write_piece(self, parts: Sequence[bytes | memoryview]) -> bool:
+        """Send a piece of a response that is under way and has no stated length, without joining its parts."""
 
 
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
@@ -158,8 +165,10 @@ class Exchange:
         headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
         await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)
 
-    async def stream(self, pieces: Iterable[bytes], etag: bytes, patience: float, headers: Sequence[Header]) -> None:
-        """Send an answer piece by piece, letting other requests run in between.
+    async def stream(
+        self, pieces: Iterable[bytes | memoryview], etag: bytes, patience: float, headers: Sequence[Header]
+    ) -> None:
+        """Send an answer piece by piece, short ones with the next, letting other requests run in between.
 
         Raises
         ------
@@ -172,19 +181,24 @@ class Exchange:
             return
         await self._start(200, [*headers, (b"etag", etag)])
         leaving = asyncio.ensure_future(self.gone())
+        gathered: list[bytes | memoryview] = []
         try:
             for piece in pieces:
                 # A server takes what is sent to nobody without a word; all of it would be written for nothing.
                 if leaving.done():
                     raise ClientGone
+                gathered.append(piece)
+                if len(piece) < SHORT:
+                    continue
                 async with asyncio.timeout(patience):
-                    await self._send({"type": "http.response.body", "body": piece, "more_body": True})
+                    await self._send_piece(gathered)
+                gathered = []
                 await asyncio.sleep(0)
         except TimeoutError:
             raise ClientGone from None
         finally:
             leaving.cancel()
-        await self._send({"type": "http.response.body", "body": b"", "more_body": False})
+        await self._send({"type": "http.response.body", "body": b"".join(gathered), "more_body": False})
         self.close(200)
 
     def close(self, status: int) -> None:
@@ -195,6 +209,10 @@ class Exchange:
     def _has(self, etag: bytes) -> bool:
         known = self.headers.get(b"if-none-match")
         return known is not None and (known == b"*" or etag in [tag.strip() for tag in known.split(b",")])
+
+    async def _send_piece(self, parts: Sequence[bytes | memoryview]) -> None:
+        if self._direct is None or not await self._direct.write_piece(parts):
+            await self._send({"type": "http.response.body", "body": b"".join(parts), "more_body": True})
 
     async def _respond(self, status: int, body: bytes, headers: list[Header]) -> None:
         await self._start(status, headers)

@@ -14,7 +14,7 @@ other protocol; clients that offer HTTP/2 with every request would never be hear
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from httptools import HttpRequestParser
@@ -158,4 +158,15 @@ class ShortCuts:
         self._send(b"".join(parts))
         cycle.message_event.set()
         cycle.on_response()
+        return True
+
+    async def write_piece(self, parts: Sequence[bytes | memoryview]) -> bool:
+        """Send a chunk as its parts are; large ones would be copied twice to be joined."""
+        cycle = self._cycle
+        if not cycle.chunked_encoding or cycle.response_complete or cycle.scope["method"] == "HEAD":
+            return False
+        if cycle.flow.write_paused and not cycle.disconnected:
+            await cycle.flow.drain()
+        if not cycle.disconnected:
+            cycle.transport.writelines((b"%x\r\n" % sum(map(len, parts)), *parts, b"\r\n"))
         return True

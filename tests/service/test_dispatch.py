@@ -17,6 +17,7 @@ from service import dispatch
 from service.app import Service
 from service.dispatch import Dispatcher
 from service.settings import Settings
+from service.writing import CHUNK
 from tests.service import hostile
 from tests.service.conftest import TOYS, client_of, toy_service
 from tests.service.toy_routes import GOOD
@@ -113,8 +114,8 @@ async def test_large_answers_are_streamed_and_complete(service: Service) -> None
     question = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 100_001}}).encode()
     await service(scope("POST", "/v1/toy", JSON), receiving(question), sending(messages))
     pieces = [message["body"] for message in messages[1:]]
-    assert len(pieces) > 30
-    assert max(map(len, pieces)) < 400_000
+    assert len(pieces) > 400_004 // CHUNK
+    assert max(map(len, pieces)) < 25 * CHUNK
     answer = json.loads(b"".join(pieces))
     np.testing.assert_array_equal(answer["time"], np.linspace(0, 1, 100_001))
     np.testing.assert_array_equal(np.array(answer["position"])[:, 1], np.linspace(0, 1, 100_001))
