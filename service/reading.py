@@ -9,7 +9,7 @@ import gc
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cache, partial
+from functools import partial
 from typing import Any, Generic, TypeVar, get_args
 
 from pydantic import TypeAdapter, ValidationError
@@ -62,24 +62,14 @@ class ByPresence:
         remedy = self.remedies.get(fault.detail if not having else self.key if name == self.key else "")
         return Fault(fault.pointer, fault.detail, remedy) if remedy else fault
 
-    def in_document(self, body: bytes) -> bool:
-        """Return whether the document has the key, building nothing but its value."""
-        # Most documents show at once that it is absent; it might also be written with escapes.
-        if self.key.encode() not in body and b"\\" not in body:
-            return False
-        try:
-            _having(self.key).validate_json(body)
-        except ValidationError:
-            return False
-        return True
+    def may_be_in(self, body: bytes) -> bool:
+        """Return whether the key may be in a document, which most show at once that it is not."""
+        # It might also be written with escapes.
+        return self.key.encode() in body or b"\\" in body
 
 
-@cache
-def _having(key: str) -> SchemaValidator:
-    """Return a validator of objects that have a key, whatever else they have."""
-    value: Any = {"type": "typed-dict-field", "schema": {"type": "any"}, "required": True}
-    schema: Any = {"type": "typed-dict", "fields": {key: value}, "extra_behavior": "ignore"}
-    return SchemaValidator(schema)
+class _Absent(Exception):
+    """A document has not the key by which a question is told from another."""
 
 
 class Reader(Generic[Q]):
@@ -115,8 +105,10 @@ class Reader(Generic[Q]):
             )
             for mark in marks
         ]
+        self._key = ""
         for mark, (without, having) in self._told_apart:
             having._layout = having._layout.told_from(mark.key, without._layout)
+            having._key = mark.key
         self._advised = advised
         self._limits = limits
 
@@ -140,7 +132,14 @@ class Reader(Generic[Q]):
         """Return the question of a document, from which arrays may have been taken out."""
         for mark, (without, having) in self._told_apart:
             require_simple(rest, self._limits)
-            meant: Q = having._read(body) if mark.in_document(rest) else without._told(body, rest, taken)
+            meant: Q
+            if mark.may_be_in(rest):
+                try:
+                    meant = having._read(body)
+                    return meant
+                except _Absent:
+                    pass
+            meant = without._told(body, rest, taken)
             return meant
         if taken is not None:
             try:
@@ -164,6 +163,8 @@ class Reader(Generic[Q]):
 
     def _refusal(self, error: ValidationError) -> Refusal:
         found = error.errors(include_url=False, include_input=False)
+        if self._key and any(fault["type"] == "missing" and fault["loc"] == (self._key,) for fault in found):
+            raise _Absent
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
             return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
