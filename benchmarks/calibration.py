@@ -49,6 +49,7 @@ from service.writing import written
 
 ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "service" / "calibration.json"
+PLAN = "/v1/plan"
 BODIES: list[dict[str, Any]] = [
     T_HANDLE,
     {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
@@ -294,7 +295,7 @@ def main(*operations: str) -> None:
 
 
 def compare(answering: Answering) -> None:
-    """Write and print predicted over measured cost of questions to which nothing was fitted."""
+    """Write and print what the plan foresees over what is measured, of questions to which nothing was fitted."""
     routes = {route.path: route for route in questions()}
     result = []
     for path, question in held_out():
@@ -302,15 +303,16 @@ def compare(answering: Answering) -> None:
         if route is None or not isinstance(route.price, pricing.Foreseen):
             continue
         try:
-            read = answering.read(route, orjson.dumps(question))
+            body = orjson.dumps({"path": path, "request": question})
+            foreseen = answering.answer(routes[PLAN], answering.read(routes[PLAN], body))["cost"]
             seconds, length, writing = measured_cost(answering, route, question)
         except Exception as refused:
             print(path, "refused:", type(refused).__name__)
             continue
-        price, size = route.price(read, Budget()), route.price.size(read, Budget())
-        price += size * pricing.calibration().writing
-        entry = {"path": path, "milliseconds": round(1e3 * (seconds + writing), 3), "bytes": length}
-        entry |= {"time_ratio": round(price / (seconds + writing), 3), "bytes_ratio": round(size / length, 3)}
+        milliseconds = 1e3 * (seconds + writing)
+        entry = {"path": path, "milliseconds": round(milliseconds, 3), "bytes": length}
+        entry["time_ratio"] = round(foreseen["milliseconds"] / milliseconds, 3)
+        entry["bytes_ratio"] = round(foreseen["bytes"] / length, 3)
         result.append(entry)
         print(entry)
     within = {name: sum(0.5 <= entry[f"{name}_ratio"] <= 2.0 for entry in result) for name in ("time", "bytes")}
