@@ -14,12 +14,12 @@ from core.double_double import PI, Scaled, dd_add, dd_div, dd_mul_d, sc_add, sc_
 from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats
-from core.rotation.attitude_sampling import phase_at_start, sample_attitude, sample_steady
-from core.rotation.circulation import PERIODIC, REST, SEPARATRIX, STEADY
+from core.rotation.attitude_frame import fill_at_rest, from_precession, from_steady
+from core.rotation.attitude_sampling import sample_attitude, sample_steady
+from core.rotation.circulation import PERIODIC, REST, STEADY
 from core.rotation.closed_form import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
 from core.rotation.inherited import WHOLE_TURN, lost_after
 from core.rotation.precession_constants import Precession, precession_constants
-from core.rotation.quaternions import Extended, left, quaternion_of, right, unit
 
 ATTITUDE_ERROR = 14.0 * UNIT_ROUNDOFF
 """Bound of the error of one attitude, as the largest change of a unit vector that it turns."""
@@ -82,17 +82,21 @@ class FreeAttitude:
         times = np.ascontiguousarray(times, dtype=np.float64)
         self._countable(self.rotation.horizon(times))
         motion = self.rotation.motion
-        start = unit(self.attitude.astype(np.longdouble))
+        start = np.ascontiguousarray(self.attitude, dtype=np.float64)
         out = np.empty((4, times.size))
         if motion.regime == REST:
-            out[:] = start.astype(np.float64)[:, None]
+            fill_at_rest(start, out)
         elif motion.regime == STEADY:
             v = np.ascontiguousarray(self.rotation.angular_velocity, dtype=np.float64)
             h, low, exponent = _spin(v)
-            axis = unit(v.astype(np.longdouble)).astype(np.float64)
-            sample_steady(h, low, axis, math.ldexp(1.0, int(exponent)), times, left(start).astype(np.float64), out)
+            turn, axis = from_steady(start, v)
+            sample_steady(h, low, axis, math.ldexp(1.0, int(exponent)), times, turn, out)
         else:
-            sample_attitude(motion, self.constants, times, self._onto(start), out)
+            inertia = self.rotation.inertia
+            onto = from_precession(
+                motion, self.constants, *self.rotation.resolved, inertia.axes, inertia.axes_tail, start
+            )
+            sample_attitude(motion, self.constants, times, onto, out)
         if not np.isfinite(out).all():
             raise self._beyond_doubles()
         return out.T
@@ -164,25 +168,3 @@ class FreeAttitude:
                 path=("times",),
                 remedy=f"ask for times up to {LARGEST_QUARTER / turns * horizon:.3g} s, or without the attitude",
             )
-
-    def _onto(self, start: Extended) -> Floats:
-        """Return what turns Rz(psi) P, which starts where it may, into the attitude, which starts at `start`."""
-        rotation, motion = self.rotation, self.rotation.motion
-        principal = rotation.inertia.axes.astype(np.longdouble) + rotation.inertia.axes_tail
-        i = rotation.resolved.moments.astype(np.longdouble) + rotation.resolved.moments_tail
-        w = rotation.resolved.angular_velocity.astype(np.longdouble) + rotation.resolved.angular_velocity_tail
-        c, d = (0, 2) if motion.circled == 2 else (2, 0)
-        towards_c = math.copysign(1.0, motion.A_c) if motion.regime == SEPARATRIX else 1.0
-        x, z = np.zeros(3, np.longdouble), np.zeros(3, np.longdouble)
-        x[c], z[d] = towards_c, math.copysign(1.0, motion.A_d)
-        y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]]
-        axes = np.array([x, y, z]).T
-        m = unit(axes.T @ (i / np.max(i) * (w / np.max(np.abs(w)))))
-        arc = unit(np.array([1 + m[2], m[1], -m[0], 0], np.longdouble))
-        tr, ti = phase_at_start(motion, self.constants)
-        first = left(unit(np.array([tr, 0, 0, ti], np.longdouble))) @ arc
-        q = quaternion_of(principal @ axes)
-        conjugate = np.array([1, -1, -1, -1], np.longdouble)
-        before = left(start) @ left(q) @ (first * conjugate)
-        onto: Floats = np.ascontiguousarray(left(before) @ right(q * conjugate), dtype=np.float64)
-        return onto
