@@ -89,8 +89,8 @@ class FreeRotation:
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
     moves : callable, optional
-        By how much each of the numbers that describe the body moves its tensor: `MassProperties.moves`. Without it the
-        principal moments are those numbers.
+        By how much each of the numbers that describe the body moves its tensor: `core.bodies.moves.moves_of_tensor`.
+        Without it the principal moments are those numbers.
     """
 
     inertia: PrincipalInertia
