@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from core.compiled import fma, kernel
 from core.double_double import dd_add, two_prod
 from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
-from core.rotation.constants_of_motion import Motion
+from core.elliptic.lattice import Lattice
+from core.rotation.constants_of_motion import Motion, Weights
 from core.rotation.precession_constants import CIRCULAR, LIMIT, Precession
-from core.rotation.sampling import quotient
+from core.rotation.sampling import about_quarter
 
 
 class _Term(NamedTuple):
@@ -78,6 +79,12 @@ class _Turning(NamedTuple):
     extra: float
 
 
+@kernel(inline="always")
+def _unweighted(lat: Lattice) -> Weights:
+    """Return the constants of the theta quotients by themselves."""
+    return Weights(lat.even_cn[0], lat.even_sn[0], lat.even_dn[0], lat.odd_cn[0], lat.odd_sn[0], lat.odd_dn[0])
+
+
 # Inlined before the loops are looked at: called, they would be too long to be taken into a loop of four samples.
 @kernel(inline="always")
 def _near_circular(motion: Motion, pre: Precession, t: float) -> _Turning:
@@ -86,16 +93,7 @@ def _near_circular(motion: Motion, pre: Precession, t: float) -> _Turning:
     odd, sign = half_parity(n + motion.start_quarter)
     s, c = sin_cos_quarter(r, r_tail)
     S, C, D3, D4 = theta_parts(True, lat.nome, 0.0, s, c)
-    # Taken out before they are chosen from, so that choosing is no branch.
-    sn_odd, cn_odd, dn_odd = lat.odd_sn[0], lat.odd_cn[0], lat.odd_dn[0]
-    sn_even, cn_even, dn_even = lat.even_sn[0], lat.even_cn[0], lat.even_dn[0]
-    below = D3 if odd else D4
-    over = 1.0 / below
-    lost = fma(-over, below, 1.0)
-    signed = sign * over
-    sn = quotient((sn_odd if odd else sn_even) * (C if odd else S), signed, lost)
-    cn = quotient((cn_odd if odd else cn_even) * (S if odd else C), signed, lost)
-    dn = quotient((dn_odd if odd else dn_even) * (D4 if odd else D3), over, lost)
+    cn, sn, dn = about_quarter(odd, sign, S, C, D3, D4, _unweighted(lat))
     # cos 2z and sin 2z of the whole argument
     parity = -1.0 if odd else 1.0
     c2, s2 = parity * fma(-2.0 * s, s, 1.0), parity * 2.0 * s * c
@@ -113,16 +111,7 @@ def _near_the_separatrix(motion: Motion, pre: Precession, t: float) -> _Turning:
     xl += fma(r, lat.scale_tail, r_tail * lat.scale)
     s1, c1 = sinh_cosh(0.5 * xh, 0.5 * xl)
     S, C, D3, D4 = theta_parts(False, lat.nome, lat.root_nome, 2.0 * s1 * c1, fma(2.0 * s1, s1, 1.0))
-    # Taken out before they are chosen from, so that choosing is no branch.
-    sn_odd, cn_odd, dn_odd = lat.odd_sn[0], lat.odd_cn[0], lat.odd_dn[0]
-    sn_even, cn_even, dn_even = lat.even_sn[0], lat.even_cn[0], lat.even_dn[0]
-    below = D3 if odd else C
-    over = 1.0 / below
-    lost = fma(-over, below, 1.0)
-    signed = sign * over
-    sn = quotient((sn_odd if odd else sn_even) * (D4 if odd else S), signed, lost)
-    cn = quotient((cn_odd if odd else cn_even) * (S if odd else D4), signed, lost)
-    dn = quotient((dn_odd if odd else dn_even) * (C if odd else D3), over, lost)
+    cn, sn, dn = about_quarter(odd, sign, S, D4, D3, C, _unweighted(lat))
     tr, ti = _theta_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
     return _Turning(sn, cn, dn, tr, ti, pre.eta * r * pre.eta_x * 0.6366197723675814)
 
