@@ -278,7 +278,6 @@ class FreeRotation:
         It is where `inherited` comes to state the whole motion, found by bisection to a thousandth and never later.
         None if that does not happen at any time that `sample` answers.
         """
-
         m, longest = self.motion, 1023.0
         if m.regime == PERIODIC:
             longest = min(longest, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
