@@ -19,10 +19,11 @@ LEDGER: dict[str, set[str]] = {
     "balls": set(),
     "notices": {"errors"},
     "quantities": {"errors"},
+    "rows": {"quantities", "errors"},
     "double_double": {"compiled"},
     "decimal_rows": {"double_double", "compiled"},
     "elliptic": {"double_double", "compiled", "errors"},
-    "bodies": {"double_double", "compiled", "quantities", "notices", "errors"},
+    "bodies": {"double_double", "compiled", "rows", "quantities", "notices", "errors"},
     "integration": {"double_double", "compiled", "quantities", "notices", "errors"},
 }
 LEDGER["rotation"] = {"integration", "bodies", "elliptic"} | LEDGER["bodies"] | LEDGER["elliptic"]
