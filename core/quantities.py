@@ -10,14 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cache
-from itertools import chain
 from math import inf, isfinite
 from numbers import Real
 from types import NoneType, UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
-
-import numpy as np
-from numpy.typing import NDArray
 
 from core.errors import InvalidParameter, Path
 
@@ -91,125 +87,6 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Rows:
-    """Rows of numbers kept as one array, checked without a Python object per number where they are an array already.
-
-    Parameters
-    ----------
-    width : int
-        Numbers in a row; 0 for a plain list of numbers.
-    quantity : Quantity
-        What each number is.
-    at_least, at_most : int
-        Admissible numbers of rows.
-    whole : bool
-        Whether the numbers are indices: whole, and kept as such.
-    """
-
-    width: int
-    quantity: Quantity
-    at_least: int = 1
-    at_most: int = 1_000_000
-    whole: bool = False
-
-    def read(self, path: Path, value: object) -> NDArray[Any]:
-        """Return `value` as an array that cannot be written, shape (n, width) or (n,).
-
-        Raises
-        ------
-        InvalidParameter
-            Naming the first entry that is no finite number of the right kind.
-        """
-        if isinstance(value, np.ndarray) and value.dtype.kind in ("iu" if self.whole else "fiu"):
-            return self._kept(path, value)
-        rows = value.tolist() if isinstance(value, np.ndarray) else value
-        if not isinstance(rows, (list, tuple)):
-            raise InvalidParameter(path, "be a list")
-        if not self.at_least <= len(rows) <= self.at_most:
-            raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(rows)}")
-        # Types and lengths are gathered as sets, which takes no Python code per row.
-        if self.width and not (set(map(type, rows)) <= {list, tuple} and set(map(len, rows)) <= {self.width}):
-            i = next(i for i, row in enumerate(rows) if type(row) not in (list, tuple) or len(row) != self.width)
-            raise InvalidParameter((*path, i), f"be a list of {self.width} numbers")
-        flat = list(chain.from_iterable(rows)) if self.width else rows
-        kinds = set(map(type, flat))
-        allowed = {int} if self.whole else {int, float}
-        if not kinds <= allowed:
-            i = next(i for i, entry in enumerate(flat) if type(entry) not in allowed)
-            raise InvalidParameter((*path, *self._place(i)), "be a whole number" if self.whole else "be a number")
-        try:
-            array = np.array(flat, dtype=np.int64 if self.whole else np.float64)
-        except OverflowError:
-            limit = 2**63 - 1 if self.whole else 10**308
-            i = next(i for i, entry in enumerate(flat) if type(entry) is int and abs(entry) > limit)
-            kind = "64-bit integers" if self.whole else "doubles"
-            raise InvalidParameter((*path, *self._place(i)), f"be within the range of {kind}") from None
-        if not self._inside(array):
-            for i, entry in enumerate(flat):
-                self.quantity.check((*path, *self._place(i)), entry)
-        array = array.reshape(-1, self.width) if self.width else array
-        array.setflags(write=False)
-        return array
-
-    def _kept(self, path: Path, value: NDArray[Any]) -> NDArray[Any]:
-        """Return a copy of an array of numbers that cannot be written, no number of it looked at by itself."""
-        if value.ndim == 0:
-            raise InvalidParameter(path, "be a list")
-        if not self.at_least <= len(value) <= self.at_most:
-            raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(value)}")
-        if value.shape[1:] != ((self.width,) if self.width else ()):
-            raise InvalidParameter((*path, 0), f"be a list of {self.width} numbers" if self.width else "be a number")
-        kind: type[np.generic] = np.int64 if self.whole else np.float64
-        if value.dtype.kind == "u" and self.whole and value.max(initial=0) > np.iinfo(np.int64).max:
-            at = int(np.argmax(value > np.iinfo(np.int64).max))
-            raise InvalidParameter((*path, *self._place(at)), "be within the range of 64-bit integers")
-        array = np.array(value, dtype=kind, order="C")
-        if not self._inside(array):
-            flat, q = array.reshape(-1), self.quantity
-            good = np.isfinite(flat) & (flat > q.above) & (flat >= q.at_least) & (flat <= q.at_most) & (flat < q.below)
-            at = int(np.argmin(good))
-            q.check((*path, *self._place(at)), flat[at].item())
-        array.setflags(write=False)
-        return array
-
-    def _place(self, i: int) -> Path:
-        return (i // self.width, i % self.width) if self.width else (i,)
-
-    def _inside(self, array: NDArray[Any]) -> bool:
-        if not array.size:
-            return True
-        q = self.quantity
-        low, high = float(array.min()), float(array.max())
-        return (
-            isfinite(low)
-            and isfinite(high)
-            and low > q.above
-            and low >= q.at_least
-            and high <= q.at_most
-            and high < q.below
-        )
-
-    def test(self, value: object) -> bool:
-        """Return whether `value` has been read already."""
-        return isinstance(value, np.ndarray)
-
-    def check(self, path: Path, value: object) -> None:
-        """Raise `InvalidParameter` unless `value` is such an array or can be read as one."""
-        if not isinstance(value, np.ndarray):
-            self.read(path, value)
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
-        return {"type": "any", "metadata": {"rows": self}}
-
-    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        number = {"type": "integer" if self.whole else "number", **self.quantity.limits, "x-unit": self.quantity.unit}
-        row = (
-            {"type": "array", "items": number, "minItems": self.width, "maxItems": self.width} if self.width else number
-        )
-        return {"type": "array", "items": row, "minItems": self.at_least, "maxItems": self.at_most}
-
-
-@dataclass(frozen=True)
 class TaggedBy:
     """A closed union of dataclasses told apart by the literal default of one field."""
 
@@ -228,16 +105,19 @@ def members_of(union: Any) -> tuple[type, ...]:
 
 
 PureNumber = Annotated[float, Quantity("1")]
-PositiveNumber = Annotated[float, Quantity("1", above=0)]
 Mass = Annotated[float, Quantity("kg", above=0)]
 SignedMass = Annotated[float, Quantity("kg")]
 Density = Annotated[float, Quantity("kg m^-3", above=0)]
+SignedDensity = Annotated[float, Quantity("kg m^-3")]
 Length = Annotated[float, Quantity("m", above=0)]
+LengthOrZero = Annotated[float, Quantity("m", at_least=0)]
 Coordinate = Annotated[float, Quantity("m")]
+InertiaFactor = Annotated[float, Quantity("1", at_least=0)]
 MomentOfInertia = Annotated[float, Quantity("kg m^2", above=0)]
 InertiaComponent = Annotated[float, Quantity("kg m^2")]
 AngularRate = Annotated[float, Quantity("rad s^-1")]
 Angle = Annotated[float, Quantity("rad")]
+Slope = Annotated[float, Quantity("rad", at_least=0, at_most=1.5707963267948966)]
 Time = Annotated[float, Quantity("s")]
 Duration = Annotated[float, Quantity("s", above=0)]
 Velocity = Annotated[float, Quantity("m s^-1")]
@@ -249,6 +129,18 @@ Uncertainty = Annotated[float, Quantity("1", at_least=0, below=1)]
 Position = tuple[Coordinate, Coordinate, Coordinate]
 AngularVelocity = tuple[AngularRate, AngularRate, AngularRate]
 Quaternion = tuple[PureNumber, PureNumber, PureNumber, PureNumber]
+
+
+def check_value(path: str | Path, hint: Any, value: object) -> None:
+    """Enforce the range of one quantity, `hint` being its annotation such as `Tolerance`, on a value that is no field.
+
+    Raises
+    ------
+    InvalidParameter
+        With the path given, and the rule it breaks.
+    """
+    for quantity in hint.__metadata__:
+        quantity.check((path,) if isinstance(path, str) else path, value)
 
 
 def check(instance: Any) -> None:
@@ -285,7 +177,7 @@ def _test(hint: Any) -> Test | None:
         marks = [mark for mark in hint.__metadata__ if hasattr(mark, "check")]
         if not marks:
             return None
-        return marks[0].test if len(marks) == 1 and isinstance(marks[0], (Quantity, Rows)) else _never
+        return marks[0].test if len(marks) == 1 and hasattr(marks[0], "test") else _never
     if origin is tuple:
         return _test_of_tuple(get_args(hint))
     if origin in (Union, UnionType) and NoneType in get_args(hint):

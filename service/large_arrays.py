@@ -2,7 +2,7 @@
 
 A cloud of points makes a document of a few hundred bytes and megabytes of numbers, for each of which the validator
 would build an object. Here those arrays are read at once; what is validated has a token in place of each, and the
-fields that keep their numbers as one array (`core.quantities.Rows`) take the array for the token.
+fields that keep their numbers as one array (`core.rows.Rows`) take the array for the token.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from core.decimal_rows import read_rows
-from core.quantities import Rows
+from core.rows import Rows
 
 LEAST_BYTES = 2048
 """Shorter arrays stay in the document."""

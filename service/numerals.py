@@ -23,7 +23,8 @@ from core.certified.exact_bodies import UNIFORM, exact_body
 from core.certified.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, exact, exact_numbers
 from core.certified.exact_mass import ExactMass
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
-from core.quantities import Quantity, Rows, TaggedBy, members_of
+from core.quantities import Quantity, TaggedBy, members_of
+from core.rows import Rows
 from service.schemas import ObjectOrArray, Request
 
 DigitCount = Annotated[

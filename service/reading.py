@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar, get_args
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
-from core.quantities import Rows
+from core.rows import Rows
 from service.faults import Layout
 from service.guards import Limits, require_distinct_keys, require_simple
 from service.large_arrays import Taken, take_out, taking

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -159,47 +158,6 @@ class MassProperties:
         if self.about == "origin" and self.principal_about_origin is not None:
             return self.principal_about_origin
         return self.principal
-
-    def moves(self, exponent: int) -> Floats:
-        """Return by how much each number of the description moves the tensor about the point of rotation.
-
-        To first order, for a relative uncertainty of one of that number alone.
-
-        Parameters
-        ----------
-        exponent : int
-            The result is in units of 2^exponent kg m^2.
-
-        Returns
-        -------
-        ndarray, shape (n, 3, 3)
-            For n numbers, in body axes.
-        """
-        if self.described_by is None or self.mass is None or self.center_of_mass is None:
-            return self._moves_of_components(exponent)
-        # Imported here, as it knows every kind of body.
-        from core.bodies.moves import Units, moves_of_moments
-
-        length = (exponent - math.frexp(self.mass)[1]) // 2
-        about = np.zeros(3)
-        if self.about == "center-of-mass":
-            about = np.ldexp(self.center_of_mass, -length)
-        second = moves_of_moments(self.described_by, about, Units(exponent - 2 * length, length))
-        # The tensor is the trace times the unit tensor less the moments.
-        moved, trace = -second, second[:, 0, 0] + second[:, 1, 1] + second[:, 2, 2]
-        for k in range(3):
-            moved[:, k, k] += trace
-        return moved
-
-    def _moves_of_components(self, exponent: int) -> Floats:
-        scaled = np.ldexp(self.inertia, -exponent)
-        rows = []
-        for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
-            if scaled[i, j]:
-                row = np.zeros((3, 3))
-                row[i, j] = row[j, i] = scaled[i, j]
-                rows.append(row)
-        return np.array(rows).reshape(-1, 3, 3)
 
     @property
     def symmetry(self) -> Symmetry:

@@ -15,7 +15,8 @@ from core.bodies.recentred import Recentred
 from core.bodies.validity import TOLERANCE
 from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
-from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Quantity, Rows, check
+from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Quantity, check
+from core.rows import Rows
 
 POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))

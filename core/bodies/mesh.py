@@ -18,7 +18,8 @@ from core.bodies.uniform import Shape, Uniform
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
-from core.quantities import Quantity, Rows
+from core.quantities import Quantity
+from core.rows import Rows
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

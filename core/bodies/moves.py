@@ -1,4 +1,4 @@
-"""By how much each number that describes a body moves its second moments of mass: first derivatives, vectorised.
+"""By how much each number that describes a body moves its tensor of inertia: first derivatives, vectorised.
 
 About a fixed point c the moments S = integral of d d^T dm, d = r - c, are linear in what is added to a body. About the
 centre of mass they are stationary in c (the first moment vanishes there), so that derivatives about the fixed point
@@ -9,6 +9,7 @@ the move for a relative uncertainty of one, and numbers that are zero, which no 
 from __future__ import annotations
 
 import copy
+import math
 from dataclasses import fields
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 from core.bodies.composite import Composite, moments_of
 from core.bodies.exact import rotation
+from core.bodies.mass_properties import MassProperties
 from core.bodies.measured import InertiaTensor, PointMasses
 from core.bodies.mesh import Mesh
 from core.bodies.uniform import Uniform
@@ -30,14 +32,54 @@ STEP = Fraction(1, 2**30)
 _UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
-class Units(NamedTuple):
+class _Units(NamedTuple):
     """Powers of two that bring masses and lengths near one."""
 
     mass: int
     length: int
 
 
-def moves_of_moments(body: Any, about: Floats, units: Units) -> Floats:
+def moves_of_tensor(properties: MassProperties, exponent: int) -> Floats:
+    """Return by how much each number of a body's description moves its tensor about the point of rotation.
+
+    To first order, for a relative uncertainty of one of that number alone.
+
+    Parameters
+    ----------
+    properties : MassProperties
+        Of the body; of one that is not described by other numbers, the components of the tensor are the numbers.
+    exponent : int
+        The result is in units of 2^exponent kg m^2.
+
+    Returns
+    -------
+    ndarray, shape (n, 3, 3)
+        For n numbers, in body axes.
+    """
+    body, mass, center = properties.described_by, properties.mass, properties.center_of_mass
+    if body is None or mass is None or center is None:
+        return _of_components(np.ldexp(properties.inertia, -exponent))
+    length = (exponent - math.frexp(mass)[1]) // 2
+    about = np.ldexp(center, -length) if properties.about == "center-of-mass" else np.zeros(3)
+    second = _of_moments(body, about, _Units(exponent - 2 * length, length))
+    # The tensor is the trace times the unit tensor less the moments.
+    moved, trace = -second, second[:, 0, 0] + second[:, 1, 1] + second[:, 2, 2]
+    for k in range(3):
+        moved[:, k, k] += trace
+    return moved
+
+
+def _of_components(tensor: Floats) -> Floats:
+    rows = []
+    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+        if tensor[i, j]:
+            row = np.zeros((3, 3))
+            row[i, j] = row[j, i] = tensor[i, j]
+            rows.append(row)
+    return np.array(rows).reshape(-1, 3, 3)
+
+
+def _of_moments(body: Any, about: Floats, units: _Units) -> Floats:
     """Return the moves of S about a point, shape (n, 3, 3), of a body that is described by n numbers.
 
     Parameters
@@ -66,7 +108,7 @@ def _pair(u: Floats, v: Floats) -> Floats:
     return product + np.swapaxes(product, -1, -2)
 
 
-def _of_points(body: PointMasses, about: Floats, units: Units) -> Floats:
+def _of_points(body: PointMasses, about: Floats, units: _Units) -> Floats:
     r = np.ldexp(body.positions, -units.length)
     d = r - about
     m = np.ldexp(np.broadcast_to(np.asarray(body.masses, dtype=np.float64), len(r)), -units.mass)
@@ -82,7 +124,7 @@ def _of_points(body: PointMasses, about: Floats, units: Units) -> Floats:
     return np.concatenate([by_mass, by_place.reshape(-1, 3, 3)])
 
 
-def _of_mesh(body: Mesh, about: Floats, units: Units) -> Floats:
+def _of_mesh(body: Mesh, about: Floats, units: _Units) -> Floats:
     r = np.ldexp(body.vertices, -units.length)
     corners = (r - about)[body.faces]
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
@@ -112,7 +154,7 @@ def _of_mesh(body: Mesh, about: Floats, units: Units) -> Floats:
     return np.concatenate([density * total[None], moved.reshape(-1, 3, 3)])
 
 
-def _of_solid(body: Uniform, about: Floats, units: Units) -> Floats:
+def _of_solid(body: Uniform, about: Floats, units: _Units) -> Floats:
     kilogram, metre = Fraction(2) ** units.mass, Fraction(2) ** units.length
     point = [Fraction(float(x)) for x in about]
 
@@ -145,7 +187,7 @@ def _symmetric(rows: list[list[float]]) -> Floats:
     return np.stack([np.stack(row, axis=-1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], axis=-2)
 
 
-def _of_tensor(body: InertiaTensor, about: Floats, units: Units) -> Floats:
+def _of_tensor(body: InertiaTensor, about: Floats, units: _Units) -> Floats:
     scale = -units.mass - 2 * units.length
     rows = []
     for i, j in _UPPER:
@@ -159,11 +201,11 @@ def _of_tensor(body: InertiaTensor, about: Floats, units: Units) -> Floats:
     return np.array(rows)
 
 
-def _of_part(part: Any, about: Floats, units: Units) -> Floats:
+def _of_part(part: Any, about: Floats, units: _Units) -> Floats:
     """Return the moves by a part's own numbers, its place and its attitude."""
     turn = np.array([[float(x) for x in row] for row in rotation(part.attitude)])
     place = np.ldexp(np.array(part.position), -units.length)
-    own = moves_of_moments(part.body, turn.T @ (about - place), units)
+    own = _of_moments(part.body, turn.T @ (about - place), units)
     moved = [turn @ own @ turn.T]
     sign = -1.0 if part.hole else 1.0
     mass, first, second = _placed(part, turn, units)
@@ -178,7 +220,7 @@ def _of_part(part: Any, about: Floats, units: Units) -> Floats:
     return sign * np.concatenate(moved)
 
 
-def _placed(part: Any, turn: Floats, units: Units) -> tuple[float, Floats, Floats]:
+def _placed(part: Any, turn: Floats, units: _Units) -> tuple[float, Floats, Floats]:
     """Return a part's mass, first and second moments about its own origin, along the composite's axes."""
     mass, first, second = moments_of(part.body).within(units.mass, units.length)
     return mass, turn @ first, turn @ second @ turn.T

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-from core.bodies.uniform import LengthOrZero, Shape, Uniform, principal, round_about_z
+from core.bodies.uniform import Shape, Uniform, principal, round_about_z
 from core.errors import InvalidParameter
-from core.quantities import Length
+from core.quantities import Length, LengthOrZero
 
 ORIGIN = (Fraction(0), Fraction(0), Fraction(0))
 

@@ -8,16 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Annotated, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from core.bodies.exact import PI, Matrix, Vector
 from core.bodies.mass_properties import MassProperties
 from core.errors import InvalidParameter
-from core.quantities import Quantity, check
-
-LengthOrZero = Annotated[float, Quantity("m", at_least=0)]
-SignedMass = Annotated[float, Quantity("kg")]
-SignedDensity = Annotated[float, Quantity("kg m^-3")]
+from core.quantities import SignedDensity, SignedMass, check
 
 
 class Shape(NamedTuple):

@@ -200,10 +200,6 @@ class CertifiedRotation:
         """Return the magnitude of the angular momentum (kg m^2/s)."""
         return self._number(lambda: enclosed(self.start.squared_momentum).sqrt(), digits)
 
-    def angular_momentum_in_body(self, digits: int) -> list[str]:
-        """Return the angular momentum at t = 0 in body axes (kg m^2/s)."""
-        return [decimal_of_fraction(m, check_digits(digits)) for m in self.start.momentum]
-
     def period(self, digits: int) -> str | None:
         """Return the period of the angular velocity in the body, 4K/p (s); None if it has none."""
         return self._number(lambda: _of(self.start).period, digits) if self.regime == "periodic" else None

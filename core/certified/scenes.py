@@ -112,7 +112,7 @@ def certified_scene(
     for i, instant in enumerate(instants or ()):
         if abs(instant) > LARGEST:
             raise InvalidParameter(("times", i), "have a magnitude of at most 1e300 s")
-    wanted = _wanted(scene, instants, outputs)
+    wanted = scene.wanted(outputs, timed=instants is not None)
     first = max(BITS, bits_for(digits))
     return determined(lambda: _Question(scene, digits, first, instants, wanted).answer(times), first)
 
@@ -184,19 +184,6 @@ class _Question:
             if working_bits() >= 2 * self.first_bits and ball.is_finite() and not (ball > 0 or ball < 0):
                 return f"0e{place_of(ball.abs_upper()) + 1}"
             raise
-
-
-def _wanted(
-    scene: ConstrainedSystem, instants: tuple[Fraction, ...] | None, outputs: frozenset[str] | None
-) -> frozenset[str]:
-    if outputs is None:
-        names = frozenset(scene.outputs) - (frozenset({"trajectory"}) if instants is None else frozenset())
-        return names if instants is not None or scene.moves else names - {*MOTION, *scene.of_motion}
-    for name in sorted(outputs - set(scene.outputs)):
-        raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {scene.outputs}")
-    if "trajectory" in outputs and instants is None:
-        raise InvalidParameter("times", "be given when a trajectory is asked for")
-    return outputs
 
 
 def _refuse_rounded(scene: ConstrainedSystem, motion: Any) -> None:

@@ -58,8 +58,9 @@ def rf_of_roots(ah: float, al: float, bh: float, bl: float, ch: float, cl: float
     xh, xl = dd_sqr(ah, al)
     yh, yl = dd_sqr(bh, bl)
     zh, zl = dd_sqr(ch, cl)
-    for _ in range(60):
-        if _ > 0:
+    for n in range(60):
+        # The roots were given for the first time.
+        if n > 0:
             ah, al = dd_sqrt(xh, xl)
             bh, bl = dd_sqrt(yh, yl)
             ch, cl = dd_sqrt(zh, zl)

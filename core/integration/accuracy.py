@@ -16,7 +16,7 @@ from typing import NamedTuple
 from core.errors import AccuracyUnreachable
 from core.integration.budget import Budget
 from core.integration.error_statements import Errors, estimated, rest_of
-from core.integration.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Radau
+from core.integration.methods import DormandPrince853, Lsoda, Radau
 from core.integration.methods.method import AbstractMethod
 from core.integration.system import Floats, System
 from core.integration.trajectory import Work
@@ -56,11 +56,6 @@ def record() -> tuple[RecordEntry, ...]:
     text = resources.files("core.integration").joinpath("record.json").read_text(encoding="utf-8")
     entries = (RecordEntry(**entry) for entry in json.loads(text)["entries"])
     return tuple(sorted(entries, key=lambda entry: entry.microseconds))
-
-
-def choose(system: System, accuracy: float) -> AbstractMethod:
-    """Return the cheapest method whose record meets `accuracy`: the closed form where there is one."""
-    return integrator(accuracy) if system.closed_form() is None else ClosedFormEvaluation()
 
 
 def integrator(accuracy: float) -> AbstractMethod:

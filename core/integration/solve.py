@@ -18,7 +18,7 @@ from core.integration.methods.method import AbstractMethod, Integration
 from core.integration.system import ClosedForm, Floats, System
 from core.integration.trajectory import Accuracy, Trajectory, Work
 from core.notices import Notice
-from core.quantities import Quantity
+from core.quantities import Tolerance, Uncertainty, check_value
 
 HALF_ULP = 2.0**-53
 
@@ -27,9 +27,6 @@ UNCONVERGED = 0.25
 
 JUDGE = 1e-4
 """Accuracy of the run that then does."""
-
-_tolerated = Quantity("1", above=0, below=1)
-_uncertainty = Quantity("1", at_least=0, below=1)
 
 
 def solve(
@@ -78,8 +75,8 @@ def solve(
         If the method does not exist for this system.
     """
     budget = budget or Budget()
-    _tolerated.check(("accuracy",), accuracy)
-    _uncertainty.check(("input_uncertainty",), input_uncertainty)
+    check_value("accuracy", Tolerance, accuracy)
+    check_value("input_uncertainty", Uncertainty, input_uncertainty)
     instants = checked_times(times, budget)
     exact = system.closed_form()
     if exact is not None and (method is None or isinstance(method, ClosedFormEvaluation)):

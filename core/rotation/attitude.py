@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.compiled import kernel
-from core.double_double import PI, Scaled, dd_add, dd_div, dd_mul_d, sc_add, sc_mul, sc_sqrt, scaled
+from core.double_double import PI, Scaled, dd_div, sc_add, sc_mul, sc_sqrt, scaled
 from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats
@@ -19,7 +19,7 @@ from core.rotation.attitude_sampling import sample_attitude, sample_steady
 from core.rotation.circulation import PERIODIC, REST, STEADY
 from core.rotation.closed_form import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
 from core.rotation.inherited import WHOLE_TURN, lost_after
-from core.rotation.precession_constants import Precession, precession_constants
+from core.rotation.precession_constants import PrecessionConstants, angle_per_period, precession_constants
 
 ATTITUDE_ERROR = 14.0 * UNIT_ROUNDOFF
 """Bound of the error of one attitude, as the largest change of a unit vector that it turns."""
@@ -58,11 +58,11 @@ class FreeAttitude:
             )
 
     @cached_property
-    def constants(self) -> Precession:
+    def constants(self) -> PrecessionConstants:
         """Constants of the precession about the angular momentum, where the angular velocity changes."""
         i, it, w, wt = self.rotation.resolved
-        constants: Precession = precession_constants(self.rotation.motion, i, it, w, wt)
-        if not all(map(math.isfinite, constants)):
+        constants: PrecessionConstants = precession_constants(self.rotation.motion, i, it, w, wt)
+        if not all(map(math.isfinite, (*constants[:-1], *constants.quarter))):
             raise self._beyond_doubles()
         return constants
 
@@ -71,11 +71,7 @@ class FreeAttitude:
         """Angle by which the circled axis turns about the angular momentum in one period, not reduced (rad)."""
         if self.rotation.motion.regime != PERIODIC:
             return None
-        # Rz(psi) turns by 8 quarters of psi/2; it differs from Euler's angle of the circled axis by the one turn that
-        # the shortest arc P makes with m.
-        c = self.constants
-        h, low = dd_mul_d(c.per_quarter, c.per_quarter_tail, 8.0)
-        return float(dd_add(h, low, 2.0 * c.eta * PI[0], 2.0 * c.eta * PI[1])[0])
+        return float(angle_per_period(self.constants.quarter, self.constants.eta)[0])
 
     def sample(self, times: Floats) -> Floats:
         """Return unit quaternions [w, x, y, z], shape (n, 4), continuous in time from the one at t = 0."""

@@ -12,7 +12,7 @@ from core.double_double import Pair, Scaled, dd_add_d, sc_mul, scaled
 from core.rotation.attitude_sampling import phase_at_start
 from core.rotation.circulation import SEPARATRIX
 from core.rotation.constants_of_motion import Motion
-from core.rotation.precession_constants import Precession
+from core.rotation.precession_constants import PrecessionConstants
 from core.rotation.quaternions import (
     IDENTITY,
     ZERO,
@@ -70,7 +70,7 @@ def _shifted(x: Scaled, exponent: int, sign: float) -> Pair:
 @kernel()
 def from_precession(
     motion: Motion,
-    pre: Precession,
+    pre: PrecessionConstants,
     i: NDArray[np.float64],
     it: NDArray[np.float64],
     w: NDArray[np.float64],

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from core.compiled import fma, kernel
 from core.double_double import dd_add, two_prod
 from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
-from core.rotation.constants_of_motion import Motion
-from core.rotation.precession_constants import CIRCULAR, LIMIT, Precession
-from core.rotation.sampling import quotient
+from core.elliptic.lattice import Lattice
+from core.rotation.constants_of_motion import Motion, Weights
+from core.rotation.precession_constants import CIRCULAR, LIMIT, PrecessionConstants, Quarter
+from core.rotation.sampling import about_quarter
 
 
 class _Term(NamedTuple):
@@ -35,14 +36,16 @@ def _next(t: _Term, zr: float, zi: float, step: float, back: float, weight: floa
 
 
 @kernel()
-def _theta_phase(pre: Precession, q: float, root: float, odd: bool, s1: float, c1: float) -> tuple[float, float]:
+def _theta23_phase(
+    pre: PrecessionConstants, q: float, root: float, odd: bool, s1: float, c1: float
+) -> tuple[float, float]:
     """Return a multiple of theta2 (near even quarters) or theta3 (odd) of eta_x + i y, given sinh y and cosh y.
 
     With w = eta_x + i y, Q = q^(1/2): theta3 ~ 1 + 2 sum b_n, b_n = Q^(n^2) cos 2nw, b_{n+1} = 2 Q^(2n+1) cos 2w b_n -
     Q^(4n) b_{n-1}; theta2 ~ sum b_n, b_n = Q^(n(n+1)) cos(2n+1)w, b_{n+1} = 2 Q^(2n+2) cos 2w b_n - Q^(4n+2) b_{n-1}
     with b_{-1} = b_0. Both go the same way from different starts, so that nothing branches.
     """
-    wr, wi = pre.cos_x * c1, -pre.sin_x * s1
+    wr, wi = pre.quarter.cos_x * c1, -pre.quarter.sin_x * s1
     # cos 2w
     zr, zi = 2.0 * (wr * wr - wi * wi) - 1.0, 4.0 * wr * wi
     weight = 2.0 if odd else 1.0
@@ -64,7 +67,17 @@ def _theta_phase(pre: Precession, q: float, root: float, odd: bool, s1: float, c
     return t.sum_r, t.sum_i
 
 
-class _Turning(NamedTuple):
+@kernel(inline="always")
+def _theta4_phase(quarter: Quarter, odd: bool, s: float, c: float) -> tuple[float, float]:
+    """Return theta4 of z - i xi and the nome q^2, s and c the sine and cosine of z less the nearest quarter period."""
+    # cos 2z and sin 2z of the whole argument
+    parity = -1.0 if odd else 1.0
+    c2, s2 = parity * fma(-2.0 * s, s, 1.0), parity * 2.0 * s * c
+    tr = 1.0 - quarter.theta_c1 * c2 + quarter.theta_c2 * (2.0 * c2 * c2 - 1.0)
+    return tr, quarter.theta_s2 * 2.0 * s2 * c2 - quarter.theta_s1 * s2
+
+
+class _Instant(NamedTuple):
     """What a quaternion Rz(psi) P is made of: the angular momentum m in the body, as a unit vector, and psi/2.
 
     psi/2 is a rate times time, plus `extra` quarters, plus the argument of `phase_r` + i `phase_i`.
@@ -78,34 +91,27 @@ class _Turning(NamedTuple):
     extra: float
 
 
+@kernel(inline="always")
+def _unweighted(lat: Lattice) -> Weights:
+    """Return the constants of the theta quotients by themselves."""
+    return Weights(lat.even_cn[0], lat.even_sn[0], lat.even_dn[0], lat.odd_cn[0], lat.odd_sn[0], lat.odd_dn[0])
+
+
 # Inlined before the loops are looked at: called, they would be too long to be taken into a loop of four samples.
 @kernel(inline="always")
-def _near_circular(motion: Motion, pre: Precession, t: float) -> _Turning:
+def _near_circular(motion: Motion, pre: PrecessionConstants, t: float) -> _Instant:
     lat = motion.lattice
     n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
     odd, sign = half_parity(n + motion.start_quarter)
     s, c = sin_cos_quarter(r, r_tail)
     S, C, D3, D4 = theta_parts(True, lat.nome, 0.0, s, c)
-    # Taken out before they are chosen from, so that choosing is no branch.
-    sn_odd, cn_odd, dn_odd = lat.odd_sn[0], lat.odd_cn[0], lat.odd_dn[0]
-    sn_even, cn_even, dn_even = lat.even_sn[0], lat.even_cn[0], lat.even_dn[0]
-    below = D3 if odd else D4
-    over = 1.0 / below
-    lost = fma(-over, below, 1.0)
-    signed = sign * over
-    sn = quotient((sn_odd if odd else sn_even) * (C if odd else S), signed, lost)
-    cn = quotient((cn_odd if odd else cn_even) * (S if odd else C), signed, lost)
-    dn = quotient((dn_odd if odd else dn_even) * (D4 if odd else D3), over, lost)
-    # cos 2z and sin 2z of the whole argument
-    parity = -1.0 if odd else 1.0
-    c2, s2 = parity * fma(-2.0 * s, s, 1.0), parity * 2.0 * s * c
-    tr = 1.0 - pre.theta_c1 * c2 + pre.theta_c2 * (2.0 * c2 * c2 - 1.0)
-    ti = -pre.theta_s1 * s2 + pre.theta_s2 * 2.0 * s2 * c2
-    return _Turning(sn, cn, dn, tr, ti, 0.0)
+    cn, sn, dn = about_quarter(odd, sign, S, C, D3, D4, _unweighted(lat))
+    tr, ti = _theta4_phase(pre.quarter, odd, s, c)
+    return _Instant(sn, cn, dn, tr, ti, 0.0)
 
 
 @kernel(inline="always")
-def _near_the_separatrix(motion: Motion, pre: Precession, t: float) -> _Turning:
+def _near_the_separatrix(motion: Motion, pre: PrecessionConstants, t: float) -> _Instant:
     lat = motion.lattice
     n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
     odd, sign = half_parity(n + motion.start_quarter)
@@ -113,31 +119,22 @@ def _near_the_separatrix(motion: Motion, pre: Precession, t: float) -> _Turning:
     xl += fma(r, lat.scale_tail, r_tail * lat.scale)
     s1, c1 = sinh_cosh(0.5 * xh, 0.5 * xl)
     S, C, D3, D4 = theta_parts(False, lat.nome, lat.root_nome, 2.0 * s1 * c1, fma(2.0 * s1, s1, 1.0))
-    # Taken out before they are chosen from, so that choosing is no branch.
-    sn_odd, cn_odd, dn_odd = lat.odd_sn[0], lat.odd_cn[0], lat.odd_dn[0]
-    sn_even, cn_even, dn_even = lat.even_sn[0], lat.even_cn[0], lat.even_dn[0]
-    below = D3 if odd else C
-    over = 1.0 / below
-    lost = fma(-over, below, 1.0)
-    signed = sign * over
-    sn = quotient((sn_odd if odd else sn_even) * (D4 if odd else S), signed, lost)
-    cn = quotient((cn_odd if odd else cn_even) * (S if odd else D4), signed, lost)
-    dn = quotient((dn_odd if odd else dn_even) * (C if odd else D3), over, lost)
-    tr, ti = _theta_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
-    return _Turning(sn, cn, dn, tr, ti, pre.eta * r * pre.eta_x * 0.6366197723675814)
+    cn, sn, dn = about_quarter(odd, sign, S, D4, D3, C, _unweighted(lat))
+    tr, ti = _theta23_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
+    return _Instant(sn, cn, dn, tr, ti, pre.eta * r * pre.quarter.eta_x * 0.6366197723675814)
 
 
 @kernel()
-def _on_the_separatrix(motion: Motion, pre: Precession, t: float) -> _Turning:
+def _on_the_separatrix(motion: Motion, pre: PrecessionConstants, t: float) -> _Instant:
     xh, xl = two_prod(motion.rate, t)
     yh, yl = dd_add(xh, xl + motion.rate_tail * t, motion.start, motion.start_tail)
     tanh, sech = separatrix_at(yh, yl)
     half, _ = separatrix_at(0.5 * yh, 0.5 * yl)
-    return _Turning(tanh, sech, sech, pre.cos_x, -pre.sin_x * half, 0.0)
+    return _Instant(tanh, sech, sech, pre.quarter.cos_x, -pre.quarter.sin_x * half, 0.0)
 
 
 @kernel(inline="always")
-def _quaternion(pre: Precession, t: float, at: _Turning) -> tuple[float, float, float, float]:
+def _quaternion(pre: PrecessionConstants, t: float, at: _Instant) -> tuple[float, float, float, float]:
     """Return Rz(psi) P."""
     n, r, r_tail = split_phase(pre.turn, pre.turn_tail, t, at.extra, 0.0)
     sine, cosine = sin_cos_quarter(r, r_tail)
@@ -152,24 +149,22 @@ def _quaternion(pre: Precession, t: float, at: _Turning) -> tuple[float, float, 
 
 
 @kernel()
-def phase_at_start(motion: Motion, pre: Precession) -> tuple[float, float]:
+def phase_at_start(motion: Motion, pre: PrecessionConstants) -> tuple[float, float]:
     """Return cosine and sine, times a positive factor, of the periodic part of psi/2 at t = 0."""
     if pre.branch == LIMIT:
         half, _ = separatrix_at(0.5 * motion.start, 0.5 * motion.start_tail)
-        return pre.cos_x, -pre.eta * pre.sin_x * half
+        return pre.quarter.cos_x, -pre.eta * pre.quarter.sin_x * half
     lat = motion.lattice
     odd, _ = half_parity(motion.start_quarter)
     if pre.branch == CIRCULAR:
         s, c = sin_cos_quarter(motion.start, motion.start_tail)
-        parity = -1.0 if odd else 1.0
-        c2, s2 = parity * fma(-2.0 * s, s, 1.0), parity * 2.0 * s * c
-        tr = 1.0 - pre.theta_c1 * c2 + pre.theta_c2 * (2.0 * c2 * c2 - 1.0)
-        return tr, pre.eta * (pre.theta_s2 * 2.0 * s2 * c2 - pre.theta_s1 * s2)
+        tr, ti = _theta4_phase(pre.quarter, odd, s, c)
+        return tr, pre.eta * ti
     xh, xl = two_prod(motion.start, 0.5 * lat.scale)
     s1, c1 = sinh_cosh(xh, xl + 0.5 * fma(motion.start, lat.scale_tail, motion.start_tail * lat.scale))
-    tr, ti = _theta_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
+    tr, ti = _theta23_phase(pre, lat.nome, lat.root_nome, odd, s1, c1)
     ti *= pre.eta
-    angle = pre.eta * motion.start * pre.eta_x
+    angle = pre.eta * motion.start * pre.quarter.eta_x
     s, c = math.sin(angle), math.cos(angle)
     return tr * c - ti * s, tr * s + ti * c
 
@@ -195,7 +190,11 @@ def _dot(row: _Row, q: tuple[float, float, float, float]) -> float:
 
 @kernel()
 def sample_attitude(
-    motion: Motion, pre: Precession, times: NDArray[np.float64], turn: NDArray[np.float64], out: NDArray[np.float64]
+    motion: Motion,
+    pre: PrecessionConstants,
+    times: NDArray[np.float64],
+    turn: NDArray[np.float64],
+    out: NDArray[np.float64],
 ) -> None:
     """Fill `out`, shape (4, n), with `turn`, shape (4, 4), applied to the quaternions Rz(psi) P."""
     # One array for each component and one loop for each branch, without branches of its own: four samples at a time.

@@ -89,8 +89,8 @@ class FreeRotation:
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
     moves : callable, optional
-        By how much each of the numbers that describe the body moves its tensor: `MassProperties.moves`. Without it the
-        principal moments are those numbers.
+        By how much each of the numbers that describe the body moves its tensor: `core.bodies.moves.moves_of_tensor`.
+        Without it the principal moments are those numbers.
     """
 
     inertia: PrincipalInertia
@@ -278,7 +278,6 @@ class FreeRotation:
         It is where `inherited` comes to state the whole motion, found by bisection to a thousandth and never later.
         None if that does not happen at any time that `sample` answers.
         """
-
         m, longest = self.motion, 1023.0
         if m.regime == PERIODIC:
             longest = min(longest, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)

@@ -157,7 +157,7 @@ def constants_of_motion(
     w, wt : ndarray, shape (3,)
         Angular velocity in right-handed principal axes, as sums w + wt (rad/s).
     decided : bool
-        Whether D_B / (2^k (scaled inputs)) is given by `exact`.
+        Whether D_B is given by `exact`, as it must be after an answer of regime UNDECIDED.
     exact : Scaled
         D_B in the units of the inputs, used if `decided`.
     """

@@ -52,7 +52,24 @@ from core.rotation.constants_of_motion import Motion
 CIRCULAR, HYPERBOLIC, LIMIT = range(3)
 
 
-class Precession(NamedTuple):
+class Quarter(NamedTuple):
+    """What psi/2 does in a quarter period, and the constants of its periodic part inside of one."""
+
+    per_quarter: float
+    per_quarter_tail: float
+    """Radians of psi/2 per quarter period, periodic part included (it closes over two quarters); 0 without a period."""
+    eta_x: float
+    cos_x: float
+    sin_x: float
+    """eta_x with its cosine and sine."""
+    theta_c1: float
+    theta_s1: float
+    theta_c2: float
+    theta_s2: float
+    """2 q^2 cosh 2xi, 2 q^2 sinh 2xi, 2 q^8 cosh 4xi, 2 q^8 sinh 4xi."""
+
+
+class PrecessionConstants(NamedTuple):
     """Constants of the angle psi about the angular momentum, and of P."""
 
     branch: int
@@ -64,18 +81,7 @@ class Precession(NamedTuple):
     turn: float
     turn_tail: float
     """Quarter turns of psi/2 per unit of scaled time, without the periodic part."""
-    per_quarter: float
-    per_quarter_tail: float
-    """Radians of psi/2 per quarter period, periodic part included (it closes over two quarters)."""
-    eta_x: float
-    cos_x: float
-    sin_x: float
-    """eta_x with its cosine and sine."""
-    theta_c1: float
-    theta_s1: float
-    theta_c2: float
-    theta_s2: float
-    """2 q^2 cosh 2xi, 2 q^2 sinh 2xi, 2 q^8 cosh 4xi, 2 q^8 sinh 4xi."""
+    quarter: Quarter
 
 
 @kernel()
@@ -203,23 +209,9 @@ def turning(c: Circulation, far_c: Scaled, far_d: Scaled) -> Turning:
     return Turning(L, M_c, M_d, 0.5 * kh, 0.5 * kl, sh, sl, ch, cl)
 
 
-class Quarter(NamedTuple):
-    """What psi/2 does in a quarter period, and constants for sampling as in `Precession`."""
-
-    per_quarter: float
-    per_quarter_tail: float
-    eta_x: float
-    cos_x: float
-    sin_x: float
-    theta_c1: float
-    theta_s1: float
-    theta_c2: float
-    theta_s2: float
-
-
 @kernel()
 def quarter_turn(c: Circulation, t: Turning, of: Periods) -> Quarter:
-    """Return the angle by which psi/2 grows in a quarter period, with its periodic part."""
+    """Return what psi/2 does in a quarter period of a motion that turns as `t` says at u = 0."""
     eta = 1.0 if c.circled == 2 else -1.0
     ah, al = dd_mul(t.kappa, t.kappa_tail, of.K, of.K_tail)
     kh, kl = sc_pair(c.k)
@@ -260,9 +252,18 @@ def quarter_turn(c: Circulation, t: Turning, of: Periods) -> Quarter:
 
 
 @kernel()
+def angle_per_period(quarter: Quarter, eta: float) -> Pair:
+    """Return the angle by which the circled axis turns about the angular momentum in a period, not reduced (rad)."""
+    # Rz(psi) turns by 8 quarters of psi/2; it differs from Euler's angle of the circled axis by the one turn that the
+    # shortest arc P makes with m.
+    h, low = dd_mul_d(quarter.per_quarter, quarter.per_quarter_tail, 8.0)
+    return dd_add(h, low, 2.0 * eta * PI[0], 2.0 * eta * PI[1])
+
+
+@kernel()
 def precession_constants(
     motion: Motion, i: NDArray[np.float64], it: NDArray[np.float64], w: NDArray[np.float64], wt: NDArray[np.float64]
-) -> Precession:
+) -> PrecessionConstants:
     """Return the constants of the attitude of a motion that turns (periodic or on the separatrix).
 
     Parameters
@@ -288,17 +289,15 @@ def precession_constants(
         # u per scaled time is the rate; quarter turns are pi/2.
         rh, rl = dd_mul(th, tl, motion.rate, motion.rate_tail)
         rh, rl = dd_div(rh, rl, 0.5 * PI[0], 0.5 * PI[1])
-        return Precession(LIMIT, eta, a_x, eta * a_y, a_z, rh, rl, 0.0, 0.0, xh, ch, sh, 0.0, 0.0, 0.0, 0.0)
+        quarter = Quarter(0.0, 0.0, xh, ch, sh, 0.0, 0.0, 0.0, 0.0)
+        return PrecessionConstants(LIMIT, eta, a_x, eta * a_y, a_z, rh, rl, quarter)
     mean = 0.0, 0.0
     kh, kl = sc_pair(c.k)
     if kh > 0.0:
         mean = agm_dd(kh, kl)
     of = Periods(lat.circular, lat.K, lat.K_tail, lat.scale, lat.scale_tail, mean[0], mean[1], 0.0, 0.0)
-    q = quarter_turn(c, t, of)
-    rh, rl = dd_mul(q.per_quarter, q.per_quarter_tail, motion.rate, motion.rate_tail)
+    quarter = quarter_turn(c, t, of)
+    rh, rl = dd_mul(quarter.per_quarter, quarter.per_quarter_tail, motion.rate, motion.rate_tail)
     rh, rl = dd_div(rh, rl, 0.5 * PI[0], 0.5 * PI[1])
     branch = CIRCULAR if lat.circular else HYPERBOLIC
-    return Precession(
-        branch, eta, a_x, eta * a_y, a_z, rh, rl, q.per_quarter, q.per_quarter_tail,
-        q.eta_x, q.cos_x, q.sin_x, q.theta_c1, q.theta_s1, q.theta_c2, q.theta_s2,
-    )  # fmt: skip
+    return PrecessionConstants(branch, eta, a_x, eta * a_y, a_z, rh, rl, quarter)

@@ -22,7 +22,6 @@ from core.double_double import (
     PI,
     Scaled,
     dd_add,
-    dd_mul_d,
     dd_sub,
     sc_abs,
     sc_add,
@@ -40,11 +39,12 @@ from core.rotation.circulation import (
     STEADY,
     UNREACHABLE,
     Circulation,
+    amplitudes,
     circulation,
     complement,
     decision,
 )
-from core.rotation.precession_constants import quarter_turn, turning
+from core.rotation.precession_constants import angle_per_period, quarter_turn, turning
 from core.rotation.principal_frame import resolve
 
 ABSENT = math.nan
@@ -139,17 +139,12 @@ def _regular(equal: Scaled, single: Scaled, gap: Scaled, along: Scaled, across: 
 @kernel()
 def _elliptic(c: Circulation, k1: Scaled) -> Figures:
     """Return the figures of a periodic motion with three distinct moments; k1 is the complementary modulus."""
-    far_c = sc_sqrt(sc_div(c.X, sc_mul(c.I_c, c.cd)))
-    far_d = sc_sqrt(sc_div(c.Y, sc_mul(c.I_d, c.cd)))
+    far = amplitudes(c)
     kh, kl = sc_pair(c.k)
     ch, cl = sc_pair(k1)
     of = periods(kh, kl, ch, cl)
-    q = quarter_turn(c, turning(c, far_c, far_d), of)
-    # Rz(psi) turns by 8 quarters of psi/2; it differs from Euler's angle of the circled axis by the one turn that
-    # the shortest arc P makes with m.
-    eta = 1.0 if c.circled == 2 else -1.0
-    h, low = dd_mul_d(q.per_quarter, q.per_quarter_tail, 8.0)
-    h, low = dd_add(h, low, 2.0 * eta * PI[0], 2.0 * eta * PI[1])
+    quarter = quarter_turn(c, turning(c, far.c, far.d), of)
+    h, low = angle_per_period(quarter, 1.0 if c.circled == 2 else -1.0)
     turned, resolved = scaled(h, low, 0), h >= SMALLEST_ANGLE
     half = sc_div(scaled(2.0 * of.K, 2.0 * of.K_tail, 0), c.p)
     period = Scaled(half.high, half.low, half.exponent + 1)

@@ -9,14 +9,35 @@ from core.compiled import fma, kernel
 from core.double_double import two_prod
 from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
 from core.rotation.circulation import PERIODIC
-from core.rotation.constants_of_motion import Motion
+from core.rotation.constants_of_motion import Motion, Weights
 
 
 @kernel()
-def quotient(above: float, over: float, lost: float) -> float:
+def _quotient(above: float, over: float, lost: float) -> float:
     """Return above * over (1 + lost): one reciprocal serves three quotients, each as if divided."""
     near = above * over
     return fma(near, lost, near)
+
+
+@kernel(inline="always")
+def about_quarter(
+    odd: bool, sign: float, S: float, C: float, D3: float, D4: float, weights: Weights
+) -> tuple[float, float, float]:
+    """Return the components along c, b, d near a quarter period, from the parts of the theta functions there.
+
+    Near the separatrix, where the theta functions are those of the complementary nome, `C` and `D4` change places.
+    """
+    # Taken out before they are chosen from, so that choosing is no branch.
+    c_even, b_even, d_even, c_odd, b_odd, d_odd = weights
+    below = D3 if odd else D4
+    over = 1.0 / below
+    lost = fma(-over, below, 1.0)
+    signed = sign * over
+    return (
+        _quotient((c_odd if odd else c_even) * (S if odd else C), signed, lost),
+        _quotient((b_odd if odd else b_even) * (C if odd else S), signed, lost),
+        _quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost),
+    )
 
 
 @kernel()
@@ -28,22 +49,13 @@ def _circular(
     od: NDArray[np.float64],
 ) -> None:
     lat = motion.lattice
-    rate, rate_tail, scale, first = motion.rate, motion.rate_tail, motion.time_scale, motion.start_quarter
-    start, start_tail, q = motion.start, motion.start_tail, lat.nome
-    k = motion.weights
-    c_even, b_even, d_even, c_odd, b_odd, d_odd = k.c_even, k.b_even, k.d_even, k.c_odd, k.b_odd, k.d_odd
     for i in range(times.size):
-        n, r, r_tail = split_phase(rate, rate_tail, scale * times[i], start, start_tail)
-        odd, sign = half_parity(n + first)
+        t = motion.time_scale * times[i]
+        n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
+        odd, sign = half_parity(n + motion.start_quarter)
         s, c = sin_cos_quarter(r, r_tail)
-        S, C, D3, D4 = theta_parts(True, q, 0.0, s, c)
-        below = D3 if odd else D4
-        over = 1.0 / below
-        lost = fma(-over, below, 1.0)
-        signed = sign * over
-        oc[i] = quotient((c_odd if odd else c_even) * (S if odd else C), signed, lost)
-        ob[i] = quotient((b_odd if odd else b_even) * (C if odd else S), signed, lost)
-        od[i] = quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost)
+        S, C, D3, D4 = theta_parts(True, lat.nome, 0.0, s, c)
+        oc[i], ob[i], od[i] = about_quarter(odd, sign, S, C, D3, D4, motion.weights)
 
 
 @kernel()
@@ -55,24 +67,14 @@ def _hyperbolic(
     od: NDArray[np.float64],
 ) -> None:
     lat = motion.lattice
-    rate, rate_tail, scale, first = motion.rate, motion.rate_tail, motion.time_scale, motion.start_quarter
-    start, start_tail, q, root = motion.start, motion.start_tail, lat.nome, lat.root_nome
-    quarter, quarter_tail = lat.scale, lat.scale_tail
-    k = motion.weights
-    c_even, b_even, d_even, c_odd, b_odd, d_odd = k.c_even, k.b_even, k.d_even, k.c_odd, k.b_odd, k.d_odd
     for i in range(times.size):
-        n, r, r_tail = split_phase(rate, rate_tail, scale * times[i], start, start_tail)
-        odd, sign = half_parity(n + first)
-        xh, xl = two_prod(r, quarter)
-        s, c = sinh_cosh(xh, xl + fma(r, quarter_tail, r_tail * quarter))
-        S, C, D3, D4 = theta_parts(False, q, root, s, c)
-        below = D3 if odd else C
-        over = 1.0 / below
-        lost = fma(-over, below, 1.0)
-        signed = sign * over
-        oc[i] = quotient((c_odd if odd else c_even) * (S if odd else D4), signed, lost)
-        ob[i] = quotient((b_odd if odd else b_even) * (D4 if odd else S), signed, lost)
-        od[i] = quotient((d_odd if odd else d_even) * (C if odd else D3), over, lost)
+        t = motion.time_scale * times[i]
+        n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
+        odd, sign = half_parity(n + motion.start_quarter)
+        xh, xl = two_prod(r, lat.scale)
+        s, c = sinh_cosh(xh, xl + fma(r, lat.scale_tail, r_tail * lat.scale))
+        S, C, D3, D4 = theta_parts(False, lat.nome, lat.root_nome, s, c)
+        oc[i], ob[i], od[i] = about_quarter(odd, sign, S, D4, D3, C, motion.weights)
 
 
 @kernel()

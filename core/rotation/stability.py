@@ -22,7 +22,7 @@ from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmet
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.integration.system import Floats
 from core.notices import Notice
-from core.quantities import AngularRate, Quantity
+from core.quantities import AngularRate, check_value
 from core.rotation.closed_form import FreeRotation
 from core.rotation.linearised import LinearRates, linear_rates
 from core.rotation.precession_figures import OUT_OF_RANGE, oriented
@@ -31,8 +31,6 @@ from core.rotation.torque_free import inherited_notices
 from core.rotation.verdict import REST, Attitude, Kind, verdict
 
 Eigenvalue = tuple[float, float]
-
-_finite_rate = Quantity("rad s^-1")
 
 
 class Equilibrium(NamedTuple):
@@ -141,7 +139,7 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
     AccuracyUnreachable
         If the disturbance is smaller than doubles resolve.
     """
-    _finite_rate.check(("rate",), rate)
+    check_value("rate", AngularRate, rate)
     inertia = body.principal_of_motion
     if not inertia.moments[0] > 0.0:
         rule = "have three moments of inertia greater than 0 to rotate freely"
@@ -241,7 +239,7 @@ def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tu
     if len(disturbance) != 2:
         raise InvalidParameter("disturbance", "be two rates, along the axes of smallest and largest moment")
     for n, x in enumerate(disturbance):
-        _finite_rate.check(("disturbance", n), x)
+        check_value(("disturbance", n), AngularRate, x)
     if distinct < 3:
         raise no_middle_axis()
     given = (float(disturbance[0]), float(disturbance[1]))

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.bodies.mass_properties import MassProperties
+from core.bodies.moves import moves_of_tensor
 from core.compiled import kernel
 from core.integration.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 from core.notices import Notice
@@ -235,7 +236,8 @@ class TorqueFree:
     @cached_property
     def _exact(self) -> FreeRotation:
         # Principal moments that were given as such are their own numbers; that spares the tensors of their moves.
-        moves = self.body.moves if self.body.mass is not None or not self._diagonal else None
+        described = self.body.mass is not None or not self._diagonal
+        moves = partial(moves_of_tensor, self.body) if described else None
         return FreeRotation(self.body.principal_of_motion, self.angular_velocity, moves)
 
     def ranges(self, states: Floats) -> Mapping[str, Range]:

@@ -196,14 +196,14 @@ class ConstrainedSystem(ABC):
         AccuracyUnreachable
             If the bound of the error is larger than `accuracy`.
         """
-        wanted = self._wanted(times, outputs)
-        instants = _checked(times)
+        wanted = self.wanted(outputs, timed=times is not None)
+        instants = None if times is None else _checked(times)
         with precision(BITS):
-            found, sharp = self._compute(instants if times is not None else None, wanted, accuracy)
+            found, sharp = self._compute(instants, wanted, accuracy)
         if not sharp:
             # What was computed so far is kept with the object, so a new one starts again.
             with precision(MORE_BITS):
-                found, _ = replace(self)._compute(instants if times is not None else None, wanted, accuracy)
+                found, _ = replace(self)._compute(instants, wanted, accuracy)
         if found.accuracy.error > accuracy:
             raise AccuracyUnreachable(
                 accuracy,
@@ -249,13 +249,27 @@ class ConstrainedSystem(ABC):
         """Return what the reader of the wanted outputs must know."""
         return ()
 
-    def _wanted(self, times: Floats | None, outputs: frozenset[str] | None) -> frozenset[str]:
+    def wanted(self, outputs: frozenset[str] | None, *, timed: bool) -> frozenset[str]:
+        """Return the outputs that a question is about.
+
+        Parameters
+        ----------
+        outputs : frozenset of str or None
+            Those asked for by name; None for all that can be given.
+        timed : bool
+            Whether the question has times, without which there is no trajectory.
+
+        Raises
+        ------
+        InvalidParameter
+            For an unknown output, or a trajectory without times.
+        """
         if outputs is None:
-            names = frozenset(self.outputs) - (frozenset({"trajectory"}) if times is None else frozenset())
-            return names if times is not None or self.moves else names - {*MOTION, *self.of_motion}
+            names = frozenset(self.outputs) - (frozenset() if timed else frozenset({"trajectory"}))
+            return names if timed or self.moves else names - {*MOTION, *self.of_motion}
         for name in sorted(outputs - set(self.outputs)):
             raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {self.outputs}")
-        if "trajectory" in outputs and times is None:
+        if "trajectory" in outputs and not timed:
             raise InvalidParameter("times", "be given when a trajectory is asked for")
         return outputs
 
@@ -282,8 +296,8 @@ def _existing(motion: Motion, instants: Floats) -> Floats:
     return instants if motion.end is None else instants[instants <= float(motion.end.time)]
 
 
-def _checked(times: Floats | None) -> Floats:
-    instants = np.zeros(0) if times is None else np.asarray(times, dtype=np.float64)
+def _checked(times: Floats) -> Floats:
+    instants = np.asarray(times, dtype=np.float64)
     if instants.ndim != 1:
         raise InvalidParameter("times", "be a list of numbers")
     if not np.all(np.isfinite(instants)):

@@ -9,15 +9,13 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from core.errors import InvalidParameter
 from core.integration.system import Model
-from core.quantities import Acceleration, Length, Quantity, Velocity, check
+from core.quantities import Acceleration, Length, LengthOrZero, Quantity, Slope, Velocity, check
 from core.scenes.answer import ConstrainedSystem, Motion
 from core.scenes.chain_motion import ChainMotion, Slide
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 
 EndMass = Annotated[float, Quantity("kg", at_least=0)]
 LinearDensity = Annotated[float, Quantity("kg m^-1", at_least=0)]
-Slope = Annotated[float, Quantity("rad", at_least=0, at_most=1.5707963267948966)]
-Distance = Annotated[float, Quantity("m", at_least=0)]
 
 
 @dataclass(frozen=True)
@@ -47,7 +45,7 @@ class ChainOnWedge(ConstrainedSystem):
     gravity: Acceleration
     length: Length
     linear_density: LinearDensity
-    position: Distance
+    position: LengthOrZero
     velocity: Velocity = 0.0
     kind: Literal["chain-on-wedge"] = "chain-on-wedge"
 

@@ -11,13 +11,12 @@ from typing import Annotated, Any, ClassVar, Literal
 from core.balls import precision
 from core.errors import InvalidParameter
 from core.integration.system import Model
-from core.quantities import Acceleration, AngularRate, Length, Mass, Quantity, check
+from core.quantities import Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, check
 from core.scenes.answer import ConstrainedSystem, Motion
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
 from core.scenes.pendulum import Pendulum
 from core.scenes.rod_motion import Rod, RodMotion, contact_limits
 
-InertiaFactor = Annotated[float, Quantity("1", at_least=0)]
 HalfTurn = Annotated[float, Quantity("rad", at_least=-math.pi, at_most=math.pi)]
 
 RIM_ROUNDING = 2.0**-50

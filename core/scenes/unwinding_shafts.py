@@ -10,7 +10,18 @@ from typing import Annotated, Any, ClassVar, Literal
 from core.errors import InvalidParameter, NotApplicable
 from core.integration.system import Model
 from core.notices import Notice
-from core.quantities import Acceleration, AngularRate, Length, Mass, Quantity, Velocity, check
+from core.quantities import (
+    Acceleration,
+    AngularRate,
+    InertiaFactor,
+    Length,
+    LengthOrZero,
+    Mass,
+    Quantity,
+    Slope,
+    Velocity,
+    check,
+)
 from core.scenes.answer import ConstrainedSystem, Motion
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.scenes.friction import Friction, with_friction
@@ -18,9 +29,6 @@ from core.scenes.string_phases import Law, Limit, follow, settled
 from core.scenes.string_samples import ShaftMotion
 from core.scenes.string_state import Constants, Drive, State, frictionless
 
-InertiaFactor = Annotated[float, Quantity("1", at_least=0)]
-Slope = Annotated[float, Quantity("rad", at_least=0, at_most=1.5707963267948966)]
-Distance = Annotated[float, Quantity("m", at_least=0)]
 Restitution = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
 
@@ -59,10 +67,10 @@ class UnwindingShafts(ConstrainedSystem):
     slopes: tuple[Slope, Slope]
     gravity: Acceleration
     inertia_factors: tuple[InertiaFactor, InertiaFactor] = (0.5, 0.5)
-    positions: tuple[Distance, Distance] | None = None
+    positions: tuple[LengthOrZero, LengthOrZero] | None = None
     velocities: tuple[Velocity, Velocity] = (0.0, 0.0)
     spins: tuple[AngularRate, AngularRate] = (0.0, 0.0)
-    wound: tuple[Distance, Distance] | None = None
+    wound: tuple[LengthOrZero, LengthOrZero] | None = None
     slope_lengths: tuple[Length, Length] | None = None
     restitution: Restitution = 0.0
     friction: Friction | None = None

@@ -15,7 +15,6 @@ from core.certified.exact_inputs import exact
 from core.certified.exact_mass import ExactMass
 from core.certified.raising import check_digits
 from core.integration.budget import Budget
-from core.integration.trajectory import Work
 from core.notices import Notice
 from service.numerals import SpanInNumerals, instants
 from service.pricing import Foreseen, Priced
@@ -56,11 +55,6 @@ class AccuracyInDigits(View):
 def accuracy(digits: int) -> Answer:
     """Return what is said of every number that was made with so many digits."""
     return {"requested": digits, "error": f"5.1e-{digits}", "how": "ball arithmetic"}
-
-
-def work(samples: int) -> Work:
-    """Return the cost of an answer."""
-    return Work(samples=samples)
 
 
 @dataclass(frozen=True)

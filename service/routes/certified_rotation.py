@@ -12,6 +12,7 @@ from core.certified.free_rotation import IDENTITY, CertifiedRotation
 from core.certified.precession import certified_precession
 from core.certified.stability import certified_stability
 from core.integration.budget import Budget
+from core.integration.trajectory import Work
 from service.numerals import (
     AngularVelocityInNumerals,
     BodyInNumerals,
@@ -34,7 +35,6 @@ from service.routes.certified import (
     notices,
     summing,
     times_written,
-    work,
 )
 from service.routes.rotation import T_HANDLE, ModelView, Output, WorkView
 from service.routing import Answer, Example
@@ -174,7 +174,7 @@ def answer_trajectory(question: TrajectoryInDigits, budget: Budget) -> Answer:
         "energy": motion.energy(digits),
         "angular_momentum": motion.angular_momentum(digits),
         "accuracy": accuracy(digits),
-        "work": work(samples),
+        "work": Work(samples),
         "ended": "horizon",
         "warnings": notices(body),
     }

@@ -11,6 +11,7 @@ from pydantic import ConfigDict, Field, create_model
 from core.certified.scenes import certified_scene, exact_scene
 from core.errors import InvalidParameter
 from core.integration.budget import Budget
+from core.integration.trajectory import Work
 from core.scenes.answer import ConstrainedSystem
 from service.numerals import DigitCount, TimesInNumerals, fields_in_numerals, given, instants
 from service.routes.certified import (
@@ -23,7 +24,6 @@ from service.routes.certified import (
     affordable,
     ends,
     times_written,
-    work,
 )
 from service.routes.rotation import ModelView, WorkView
 from service.routes.scenes import members, name_of
@@ -126,7 +126,7 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
         fields: Answer = {
             "model": found.model,
             "accuracy": accuracy(digits),
-            "work": work(0 if found.trajectory is None else len(found.trajectory["time"])),
+            "work": Work(0 if found.trajectory is None else len(found.trajectory["time"])),
             "requested_samples": samples,
             "ended": found.ended,
             **found.figures,

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from core.bodies.composite import Part
-from core.quantities import Quantity, Rows
+from core.quantities import Quantity
+from core.rows import Rows
 from tests.contracts.test_bodies import SPECIMENS
 
 POWERS = {"m": (1, 0), "kg": (0, 1), "kg m^-3": (-3, 1), "kg m^2": (2, 1), "1": (0, 0)}

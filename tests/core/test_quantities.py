@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 
 import core
 from core.errors import InvalidParameter
-from core.quantities import Quantity, Rows, check
+from core.quantities import Quantity, check
+from core.rows import Rows
 
 Fault = tuple[tuple[str | int, ...], str]
 

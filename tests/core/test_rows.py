@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from core.errors import InvalidParameter
-from core.quantities import Quantity, Rows
+from core.quantities import Quantity
+from core.rows import Rows
 
 PLACES = Rows(3, Quantity("m"), at_most=4)
 MASSES = Rows(0, Quantity("kg", above=0))

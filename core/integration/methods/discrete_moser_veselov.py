@@ -14,30 +14,17 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numba import types
 
 from core.compiled import kernel
+from core.double_double import two_sum
 from core.errors import NotApplicable
-from core.integration.methods.fixed_step import NO_CONVERGENCE, OVERFLOW, FixedStep, keep
+from core.integration.methods.fixed_step import NO_CONVERGENCE, OVERFLOW, FixedStep, keep, march_by
 from core.integration.methods.method import Family, Invariance
 from core.integration.system import DISCRETE_STEP, Floats, Integers, System
 from core.quantities import Duration, check
 
-_doubles = types.float64[::1]
-_integers = types.int64[::1]
-_STEP_MARCH = types.int64(
-    types.FunctionType(DISCRETE_STEP),
-    _doubles,
-    _doubles,
-    _integers,
-    _doubles,
-    _doubles,
-    types.float64[:, ::1],
-    _integers,
-)
 
-
-@kernel(_STEP_MARCH)
+@kernel(march_by(DISCRETE_STEP))
 def _march(
     advance: Any,
     begin: Floats,
@@ -55,12 +42,8 @@ def _march(
                 tally[1] = NO_CONVERGENCE
                 return i
             for k in range(state.size):
-                # Compensated: the rounding of the sum is carried on, which keeps the first integrals from drifting.
-                added = increment[k] + tail[k]
-                old = state[k]
-                state[k] = old + added
-                taken = state[k] - old
-                tail[k] = (old - (state[k] - taken)) + (added - taken)
+                # The rounding of the sum is carried on, which keeps the first integrals from drifting.
+                state[k], tail[k] = two_sum(state[k], increment[k] + tail[k])
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
@@ -92,13 +75,13 @@ class DiscreteMoserVeselov(FixedStep):
         check(self)
 
     def _evaluations_per_step(self, system: System) -> int:
-        self._vector_field(system)
+        self._law(system)
         return 1
 
-    def _compiled(self, system: System) -> Any:
+    def _compiled(self) -> Any:
         return _march
 
-    def _vector_field(self, system: System) -> Any:
+    def _law(self, system: System) -> Any:
         discrete = system.structure.discrete
         if discrete is None:
             raise NotApplicable(

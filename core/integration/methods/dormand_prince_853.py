@@ -31,9 +31,8 @@ from core.errors import InvalidParameter
 from core.integration.methods.dormand_prince_tableau import ERROR_3 as E3
 from core.integration.methods.dormand_prince_tableau import ERROR_5 as E5
 from core.integration.methods.dormand_prince_tableau import INTERPOLANT, STAGES, A, B, C
-from core.integration.methods.fixed_step import FIELD
 from core.integration.methods.method import Family, Leg, Marching, Units
-from core.integration.system import Floats, Integers, System
+from core.integration.system import VECTOR_FIELD, Floats, Integers, System
 from core.quantities import Quantity, check
 
 SMALLEST_TOLERANCE = 1e-16
@@ -41,6 +40,7 @@ SMALLEST_TOLERANCE = 1e-16
 
 DONE, OUT_OF_BUDGET, STEP_VANISHED = 0, 1, 2
 
+_field = types.FunctionType(VECTOR_FIELD)
 _row = types.float64[::1]
 _rows = types.float64[:, ::1]
 
@@ -56,7 +56,7 @@ def _largest(vector: Floats) -> float:
     return largest
 
 
-@kernel(types.float64(FIELD, _row, _row, types.float64, types.float64, _row, _row, _row))
+@kernel(types.float64(_field, _row, _row, types.float64, types.float64, _row, _row, _row))
 def _first_step(
     field: Any,
     state: Floats,
@@ -83,7 +83,7 @@ def _first_step(
     return math.copysign(min(own * (0.01 * tolerance / max(1.0, bend)) ** 0.125, most), horizon)
 
 
-@kernel(types.void(FIELD, types.float64, types.float64, _row, _row, _rows, types.int64, types.int64, _row, _row))
+@kernel(types.void(_field, types.float64, types.float64, _row, _row, _rows, types.int64, types.int64, _row, _row))
 def _fill_stages(
     field: Any,
     now: float,
@@ -146,7 +146,7 @@ def _fit(step: float, state: Floats, new: Floats, stages: Floats, fitted: Floats
 
 
 @kernel(
-    types.int64(FIELD, _row, types.float64, _row, _row, types.int64, _rows, types.int64[::1], _row),
+    types.int64(_field, _row, types.float64, _row, _row, types.int64, _rows, types.int64[::1], _row),
 )
 def _march(
     field: Any,

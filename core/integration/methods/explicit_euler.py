@@ -8,13 +8,13 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from core.compiled import kernel
-from core.integration.methods.fixed_step import MARCH, OVERFLOW, FixedStep, keep
+from core.integration.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by
 from core.integration.methods.method import Family
-from core.integration.system import Floats, Integers, System
+from core.integration.system import VECTOR_FIELD, Floats, Integers, System
 from core.quantities import Duration, check
 
 
-@kernel(MARCH)
+@kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
     begin: Floats,
@@ -64,5 +64,5 @@ class ExplicitEuler(FixedStep):
     def _evaluations_per_step(self, system: System) -> int:
         return 1
 
-    def _compiled(self, system: System) -> Any:
+    def _compiled(self) -> Any:
         return _march

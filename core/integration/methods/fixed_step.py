@@ -19,21 +19,28 @@ from core.compiled import kernel
 from core.double_double import dd_add, two_prod
 from core.errors import InvalidParameter
 from core.integration.methods.method import Leg, Marching, Units
-from core.integration.system import VECTOR_FIELD, Floats, Integers, System
+from core.integration.system import Floats, Integers, System
 from core.quantities import Duration
 
-FIELD = types.FunctionType(VECTOR_FIELD)
 _doubles = types.float64[::1]
 _integers = types.int64[::1]
 
-MARCH = types.int64(FIELD, _doubles, _doubles, _integers, _doubles, _doubles, types.float64[:, ::1], _integers)
-"""Signature of a compiled march: (equation, begin, step, count, state, parameters, samples to be filled in, tally).
 
-`begin`, `step` and `count` hold the start, the signed length and the number of the steps of each interval. The result
-is the number of samples that were reached. ``tally[0]`` holds the evaluations that are left beyond the declared ones,
-and is counted down by methods that need such; ``tally[1]`` says why a march stopped early; ``tally[2]`` holds the
-declared evaluations of each step.
-"""
+def march_by(law: Any) -> Any:
+    """Return the signature of a compiled march by a law of motion that is itself compiled with the signature `law`.
+
+    Its arguments are (law, begin, step, count, state, parameters, samples to be filled in, tally). `begin`, `step` and
+    `count` hold the start, the signed length and the number of the steps of each interval. The result is the number of
+    samples that were reached. ``tally[0]`` holds the evaluations that are left beyond the declared ones, and is counted
+    down by methods that need such; ``tally[1]`` says why a march stopped early; ``tally[2]`` holds the declared
+    evaluations of each step.
+
+    Every method has the two loops of its march to itself: handing a step and its arrays to a common march was measured
+    to cost 5 to 30 ns a step, where a step of forward Euler takes 9.
+    """
+    samples = types.float64[:, ::1]
+    return types.int64(types.FunctionType(law), _doubles, _doubles, _integers, _doubles, _doubles, samples, _integers)
+
 
 OVERFLOW, NO_CONVERGENCE, OUT_OF_BUDGET = 1, 2, 3
 
@@ -98,10 +105,17 @@ class FixedStep(Marching):
         """Return the evaluations that every step needs, as long as iterations need no more."""
 
     @abstractmethod
-    def _compiled(self, system: System) -> Any:
-        """Return the compiled march, to be called as `MARCH` says."""
+    def _compiled(self) -> Any:
+        """Return the compiled march, to be called as `march_by` says."""
 
-    def _vector_field(self, system: System) -> Any:
+    def _law(self, system: System) -> Any:
+        """Return what the march evaluates: the equation of motion, unless the method goes by another law.
+
+        Raises
+        ------
+        NotApplicable
+            If the system has no such law.
+        """
         return system.equation
 
     def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
@@ -122,10 +136,8 @@ class FixedStep(Marching):
         declared = int(steps) * each
         samples = np.empty((targets.size, start.size))
         tally = np.array([limit - declared, 0, each])
-        march = self._compiled(system)
-        reached = march(
-            self._vector_field(system), begin, length, count, start.copy(), system.parameters, samples, tally
-        )
+        march = self._compiled()
+        reached = march(self._law(system), begin, length, count, start.copy(), system.parameters, samples, tally)
         if tally[1]:
             time = units.given_time(float(targets[reached]))
             raise self._failure(int(tally[1]), time, int(count[:reached].sum()) / steps, limit)

@@ -16,15 +16,16 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from core.compiled import kernel
-from core.integration.methods.fixed_step import MARCH, NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep
+from core.double_double import two_sum
+from core.integration.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep, march_by
 from core.integration.methods.method import Family, Invariance
-from core.integration.system import Floats, Integers, System
+from core.integration.system import VECTOR_FIELD, Floats, Integers, System
 from core.quantities import Duration, check
 
 ITERATIONS = 100
 
 
-@kernel(MARCH)
+@kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
     begin: Floats,
@@ -37,14 +38,13 @@ def _march(
 ) -> int:
     slope, new, middle = np.empty_like(state), np.empty_like(state), np.empty_like(state)
     tail = np.zeros_like(state)
+    # The slope of the last step is the first guess; for the first step it is the one at the start.
+    field(begin[0], state, parameters, slope)
+    tally[0] -= 1
     for i in range(count.size):
         h = step[i]
         for j in range(count[i]):
             t = begin[i] + (j + 0.5) * h
-            # The slope of the last step is the first guess; at the very start there is none.
-            if i == 0 and j == 0:
-                field(begin[0], state, parameters, slope)
-                tally[0] -= 1
             last, spent = np.inf, 0
             while True:
                 for k in range(state.size):
@@ -68,12 +68,8 @@ def _march(
                 tally[1] = OUT_OF_BUDGET
                 return i
             for k in range(state.size):
-                # Compensated: the rounding of the sum is carried on, which keeps the invariants from drifting.
-                added = h * slope[k] + tail[k]
-                old = state[k]
-                state[k] = old + added
-                taken = state[k] - old
-                tail[k] = (old - (state[k] - taken)) + (added - taken)
+                # The rounding of the sum is carried on, which keeps the invariants from drifting.
+                state[k], tail[k] = two_sum(state[k], h * slope[k] + tail[k])
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
@@ -107,5 +103,5 @@ class ImplicitMidpoint(FixedStep):
     def _evaluations_per_step(self, system: System) -> int:
         return 1
 
-    def _compiled(self, system: System) -> Any:
+    def _compiled(self) -> Any:
         return _march

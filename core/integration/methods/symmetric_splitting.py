@@ -12,23 +12,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-from numba import types
-
 from core.compiled import kernel
 from core.errors import NotApplicable
-from core.integration.methods.fixed_step import OVERFLOW, FixedStep, keep
+from core.integration.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by
 from core.integration.methods.method import Family, Invariance
 from core.integration.system import PART_FLOW, Floats, Integers, Splitting, System
 from core.quantities import Duration, check
 
-_doubles = types.float64[::1]
-_integers = types.int64[::1]
-_FLOW_MARCH = types.int64(
-    types.FunctionType(PART_FLOW), _doubles, _doubles, _integers, _doubles, _doubles, types.float64[:, ::1], _integers
-)
 
-
-@kernel(_FLOW_MARCH)
+@kernel(march_by(PART_FLOW))
 def _march(
     flow: Any,
     begin: Floats,
@@ -82,10 +74,10 @@ class SymmetricSplitting(FixedStep):
     def _evaluations_per_step(self, system: System) -> int:
         return 2 * self._splitting(system).parts - 1
 
-    def _compiled(self, system: System) -> Any:
+    def _compiled(self) -> Any:
         return _march
 
-    def _vector_field(self, system: System) -> Any:
+    def _law(self, system: System) -> Any:
         return self._splitting(system).flow
 
     def _splitting(self, system: System) -> Splitting:
