@@ -14,9 +14,7 @@ from core.integration.methods import SymmetricSplitting
 from tests.core.integration.systems import elliptic_functions, oscillator, rigid_body
 
 U = 2.0**-53
-CROSS = np.array(
-    [[[0, 0, 0], [0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, 0, 0], [1, 0, 0]], [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]]
-)
+CROSS = np.array([np.cross(np.eye(3), axis).T for axis in np.eye(3)])
 """Turning a momentum backwards about each axis: M' = M x e_k."""
 
 
