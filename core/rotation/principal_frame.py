@@ -53,7 +53,8 @@ def resolve(
     if moments_tail[0] == 0.0 and moments_tail[1] == 0.0 and moments_tail[2] == 0.0 and _own_axes(axes, axes_tail):
         return
     for k in range(2):
-        if out[0, k + 1] - out[0, k] <= RESOLUTION * moments[2]:
+        # With the tails: over many turns a difference far below an ulp is seen.
+        if (out[0, k + 1] - out[0, k]) + (out[1, k + 1] - out[1, k]) <= RESOLUTION * moments[2]:
             out[0, k + 1], out[1, k + 1] = out[0, k], out[1, k]
     largest = max(abs(out[2, 0]), abs(out[2, 1]), abs(out[2, 2]))
     for k in range(3):

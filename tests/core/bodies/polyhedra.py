@@ -55,7 +55,7 @@ def icosphere(level: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 def integral(vertices: Iterable[Sequence[float]], faces: Iterable[Sequence[int]], powers: Sequence[int]) -> Fraction:
     """Return the integral of x^p y^q z^r over the inside, exactly."""
-    points = [[Fraction(float(x)) for x in vertex] for vertex in vertices]
+    points = [[Fraction(x) for x in vertex] for vertex in vertices]
     total = Fraction(0)
     for face in faces:
         a, b, c = (points[i] for i in face)

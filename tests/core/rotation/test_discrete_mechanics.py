@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, seed
+from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 from scipy.linalg import qr
 from scipy.optimize import minimize_scalar
@@ -14,6 +14,7 @@ from core.bodies.measured import InertiaTensor
 from core.integration.methods import DiscreteMoserVeselov
 from core.rotation.discrete_mechanics import moser_veselov
 from core.rotation.torque_free import TorqueFree
+from tests.core.integration.methods.test_discrete_moser_veselov import step_by_riccati
 
 UPRIGHT = np.eye(3).ravel()
 
@@ -52,6 +53,21 @@ def test_the_step_solves_the_matrix_equation(squares: np.ndarray, spin: np.ndarr
         assert np.abs(turn.T @ before - after).max() * h < 1e-12 * scale
     assert abs(np.linalg.norm(after) / np.linalg.norm(before) - 1) < 1e-13
     assert abs((after @ (after / moments)) / (before @ (before / moments)) - 1) < 1e-12
+
+
+@settings(deadline=None, derandomize=True, max_examples=60)
+@given(shapes, spins, st.floats(0.01, 0.4))
+def test_the_step_is_that_of_a_riccati_equation(squares: np.ndarray, spin: np.ndarray, h: float) -> None:
+    moments = squares.sum() - squares
+    # The positive solution is that near the identity while the body turns by less than a right angle.
+    if not 1e-3 < h * (moments * np.abs(spin)).max() / moments.min() < 0.5:
+        return
+    increment = np.empty(3)
+    assert moser_veselov(h, spin, np.concatenate([moments, UPRIGHT]), increment)
+    want = step_by_riccati(squares, moments * spin, h)
+    # The Schur form carries 1e-15 of the squares of D over their smallest, and divides by D once more.
+    few = 1e-14 * (squares.max() / squares.min()) ** 2
+    assert np.abs(moments * (spin + increment) - want).max() <= few * np.abs(moments * spin).max()
 
 
 def test_the_state_stays_on_the_true_polhode_at_another_time() -> None:
