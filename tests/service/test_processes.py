@@ -392,7 +392,7 @@ class TestKilled:
             processes.drop(dropped)
             assert dropped.reply.cancelled()
             # It is as good as gone at once: nothing is given to it, and nothing counts on it.
-            assert not processes.any_ready
+            assert (processes.ready, processes.any_ready) == (False, False)
             assert await following.reply == b"b"
             assert not running(pid)
             assert pid not in processes.pids
@@ -430,11 +430,13 @@ class TestKilled:
             given_up.reply.cancel()
             (place / "gate").touch()
             assert await ask(processes, b"echo b").reply == b"b"
-            for request in (b"die a", b"vanish a"):
+            for request in (b"die c", b"vanish d"):
                 (place / "vanish").touch()
                 ask(processes, request).reply.cancel()
-                assert await ask(processes, b"echo c").reply == b"c"
+                assert await ask(processes, b"echo e").reply == b"e"
             await until(lambda: len(lost) == 2)
+            # Nor is it begun again.
+            assert begun(place) == [*"abcee"]
 
     async def test_what_a_killed_process_still_says_is_not_heard(self, place: Path) -> None:
         async with warm(place) as (processes, _):
