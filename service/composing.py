@@ -73,6 +73,7 @@ def composed(route: Question, answer: Answer, media: str | None) -> Document:
     if media == archive.MEDIA_TYPE:
         return Document(numbers, tuple(archive.archive(answer)))
     if media is not None:
+        require_finite(answer)
         return Document(numbers, (route.representations[media](answer),))
     if numbers <= ONE_PIECE:
         return Document(numbers, (written(answer),))

@@ -208,7 +208,10 @@ class Exchange:
 
     def _has(self, etag: bytes) -> bool:
         known = self.headers.get(b"if-none-match")
-        return known is not None and (known == b"*" or etag in [tag.strip() for tag in known.split(b",")])
+        if known is None:
+            return False
+        # The comparison is weak (RFC 9110, 13.1.2): a proxy that compresses an answer marks its validator as weak.
+        return known == b"*" or etag in [tag.strip().removeprefix(b"W/") for tag in known.split(b",")]
 
     async def _send_piece(self, parts: Sequence[bytes | memoryview]) -> None:
         if self._direct is None or not await self._direct.write_piece(parts):

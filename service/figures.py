@@ -58,7 +58,11 @@ class Scale:
 
     def __call__(self, value: float) -> float:
         """Return the place of a value in pixels."""
-        return self.start + self.length * (log10(value) - self.low) / (self.high - self.low)
+        return self.at(log10(value))
+
+    def at(self, exponent: float) -> float:
+        """Return the place of a power of ten in pixels; the power itself need not be a double."""
+        return self.start + self.length * (exponent - self.low) / (self.high - self.low)
 
     @property
     def ticks(self) -> range:
@@ -94,11 +98,11 @@ def _frame(title: str, across: str, up: str, x: Scale, y: Scale) -> list[str]:
     bottom, right = TOP + HEIGHT, LEFT + WIDTH
     parts = [f'<text x="{LEFT:g}" y="24" font-weight="bold">{escape(title)}</text>']
     for exponent in x.ticks:
-        at = f"{x(10.0**exponent):.1f}"
+        at = f"{x.at(exponent):.1f}"
         parts.append(f'<line x1="{at}" y1="{TOP:g}" x2="{at}" y2="{bottom:g}" stroke="#eee"/>')
         parts.append(f'<text x="{at}" y="{bottom + 18:g}" text-anchor="middle" fill="#555">{_power(exponent)}</text>')
     for exponent in y.ticks:
-        at = f"{y(10.0**exponent):.1f}"
+        at = f"{y.at(exponent):.1f}"
         parts.append(f'<line x1="{LEFT:g}" y1="{at}" x2="{right:g}" y2="{at}" stroke="#eee"/>')
         parts.append(f'<text x="{LEFT - 8:g}" y="{at}" dy="4" text-anchor="end" fill="#555">{_power(exponent)}</text>')
     parts.append(f'<rect x="{LEFT:g}" y="{TOP:g}" width="{WIDTH:g}" height="{HEIGHT:g}" fill="none" stroke="#999"/>')

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import sys
 import time
+from typing import Any
 
 import orjson
 
@@ -27,7 +28,19 @@ class JsonLines(logging.Formatter):
         line |= {name: value for name, value in vars(record).items() if name not in _OWN}
         if record.exc_info:
             line["traceback"] = self.formatException(record.exc_info)
-        return orjson.dumps(line, default=str).decode()
+        try:
+            return orjson.dumps(line, default=str).decode()
+        except TypeError:
+            return orjson.dumps({name: _writable(value) for name, value in line.items()}).decode()
+
+
+def _writable(value: Any) -> Any:
+    """Return a member as it is, or as text where JSON has no form for it: a line that is lost tells nothing."""
+    try:
+        return orjson.Fragment(orjson.dumps(value, default=str))
+    except TypeError:
+        # Large integers, keys that are no texts, halves of surrogate pairs.
+        return str(value).encode(errors="backslashreplace").decode()
 
 
 def configure(level: str) -> None:

@@ -156,7 +156,8 @@ def steps(times: Any, step: float) -> float:
         gaps = [b - a for side in (ahead, behind) for a, b in zip([0.0, *side], side, strict=False)]
         return min(UNCOUNTABLE, sum(_whole(gap / step) for gap in gaps))
     gap: float = abs(times.stop - times.start) / max(1, times.count - 1)
-    outside: float = 0.0 if times.start * times.stop <= 0.0 else min(abs(times.start), abs(times.stop))
+    ends = _ends(times)
+    outside: float = 0.0 if min(ends) <= 0.0 <= max(ends) else min(map(abs, ends))
     intervals: int = times.count - 1
     return min(UNCOUNTABLE, intervals * _whole(gap / step) + (_whole(outside / step) if outside else 0.0))
 
@@ -182,7 +183,10 @@ def extreme(times: Any) -> float:
 
 
 def _ends(times: Any) -> list[float]:
-    return times if isinstance(times, list) else [times.start, times.stop]
+    if isinstance(times, list):
+        return times
+    # A single time is the start, wherever the stop is.
+    return [times.start, times.stop] if times.count > 1 else [times.start]
 
 
 def numbers(count: float, digits: Any) -> dict[str, float]:

@@ -15,8 +15,9 @@ import socket
 from collections import deque
 from collections.abc import Callable, Sequence
 from functools import partial
+from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerProcess
-from threading import Thread
+from threading import Lock, Thread
 from time import perf_counter
 from typing import Any, cast
 
@@ -27,6 +28,9 @@ HEADER = 8
 
 PAUSE = 0.5
 """Seconds before another attempt where a process could not be started, or did not live until it was ready."""
+
+_EXIT_CODES = Lock()
+"""Whoever starts a process asks after all others; of two who read an exit code at the same time one would find none."""
 
 
 class Died(Exception):
@@ -305,17 +309,17 @@ class Processes:
 
     async def _started(self) -> tuple[ForkServerProcess, socket.socket]:
         """Return a new process and our end of the connection to it."""
-        ours, theirs = socket.socketpair()
-        try:
-            # One at a time: all wait for the same fork server.
-            async with self._turn:
+        # One at a time: all wait for the same fork server.
+        async with self._turn:
+            ours, theirs = socket.socketpair()
+            try:
                 return await _aside(partial(self._spawn, theirs)), ours
-        except BaseException:
-            ours.close()
-            raise
+            except BaseException:
+                ours.close()
+                raise
 
     def _spawn(self, end: socket.socket) -> ForkServerProcess:
-        with end:
+        with end, _EXIT_CODES:
             handle = self._context.Process(target=self._main, args=(end, *self._arguments), daemon=True)
             handle.start()
             return handle
@@ -323,12 +327,12 @@ class Processes:
     def _bury(self, process: Process, loop: asyncio.AbstractEventLoop) -> None:
         handle, killed = process.handle, process.killed
         # The connection may have ended before the process.
-        handle.join(1.0)
-        if handle.is_alive():
+        if not wait([handle.sentinel], 1.0):
             handle.kill()
-            handle.join()
-        code = handle.exitcode or 0
-        handle.close()
+            wait([handle.sentinel])
+        with _EXIT_CODES:
+            code = handle.exitcode or 0
+            handle.close()
         if not (killed or self._stopping):
             _tell(loop, self._lost, code)
 

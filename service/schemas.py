@@ -94,7 +94,9 @@ class Span(Request):
 
     def values(self) -> NDArray[np.float64]:
         """Return the times, shape (count,)."""
-        return np.linspace(self.start, self.stop, self.count)
+        # Near the largest double the last product may overflow, in whose place the stop itself is put.
+        with np.errstate(over="ignore"):
+            return np.linspace(self.start, self.stop, self.count)
 
 
 class Counted(Protocol):

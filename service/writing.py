@@ -131,7 +131,16 @@ def parts(value: Any) -> Iterator[bytes | memoryview | np.ndarray[Any, Any]]:
 
 def rows(array: np.ndarray[Any, Any]) -> Iterator[bytes | memoryview]:
     """Yield an array as JSON in chunks; it has to be finite."""
-    return _blocks(array, max(1, CHUNK * len(array) // array.size))
+    if array.size > CHUNK * len(array):
+        # Few and long: a row alone would hold the event loop for as long as it takes to write all of it.
+        opening = b"["
+        for row in array:
+            yield opening
+            yield from rows(row)
+            opening = b","
+        yield b"]"
+    else:
+        yield from _blocks(array, CHUNK * len(array) // array.size)
 
 
 def _blocks(value: Any, rows: int) -> Iterator[bytes | memoryview]:

@@ -3,10 +3,8 @@
 import asyncio
 import os
 import signal
-import socket
 import time
 from collections.abc import AsyncIterator
-from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any
 
@@ -248,52 +246,6 @@ async def test_an_answer_without_room_is_refused_as_that(client: httpx.AsyncClie
     assert scratch.name not in response.text
     with pytest.raises(Refusal):
         restored(Document(1, (Stored(0, (1,), "<f8", text=False),)), Path(scratch.name, "none"))  # type: ignore[arg-type]
-
-
-async def test_a_process_that_cannot_be_started_is_tried_again(
-    service: Service, client: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Whatever was lacking: a pair of sockets or a thread."""
-    await ready(service)
-    failures = iter([OSError(24, "Too many open files"), RuntimeError("can't start new thread")])
-    pair = socket.socketpair
-
-    def lacking() -> tuple[socket.socket, socket.socket]:
-        for failure in failures:
-            raise failure
-        return pair()
-
-    monkeypatch.setattr("service.processes.socket.socketpair", lacking)
-    monkeypatch.setattr("service.processes.PAUSE", 0.01)
-    for pid in service.compute.processes.pids:
-        os.kill(pid, signal.SIGKILL)
-    await asyncio.sleep(0.1)
-    await ready(service)
-    assert next(failures, None) is None
-
-
-async def test_processes_are_stopped_and_replaced_though_the_fork_server_is_dead(
-    service: Service, client: httpx.AsyncClient
-) -> None:
-    await ready(service)
-    before = set(service.compute.processes.pids)
-    server = forkserver._forkserver._forkserver_pid  # type: ignore[attr-defined]
-    os.kill(server, signal.SIGKILL)
-    overdue = await asyncio.gather(*(client.post("/v1/toy", json=sleeping(1e3)) for _ in range(2)))
-    assert {response.json()["code"] for response in overdue} == {"deadline-exceeded"}
-    async with asyncio.timeout(3):
-        while any(running(pid) for pid in before):
-            await asyncio.sleep(0.01)
-    await ready(service)
-    assert (await client.post("/v1/toy", json=LARGE)).status_code == 200
-
-
-def running(pid: int) -> bool:
-    """Return whether a process goes on; nobody may be there to take leave of one that has ended."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
-    except FileNotFoundError:
-        return False
 
 
 async def test_all_kinds_of_documents_come_from_processes_as_from_here(client: httpx.AsyncClient) -> None:

@@ -10,10 +10,8 @@ import pytest
 
 from core.integration.methods import Method
 from service.app import create_app
-from service.pricing import Foreseen, Priced, calibration, steps
 from service.routes import questions
 from service.routing import Question
-from service.schemas import Span
 from service.settings import Settings
 from tests.service.conftest import client_of
 
@@ -139,21 +137,6 @@ async def test_plans_run_nothing() -> None:
     assert plan["cost"]["milliseconds"] > 100.0 * (await planned(PATH, FREE))["cost"]["milliseconds"]
 
 
-@pytest.mark.parametrize("route", ROUTES.values(), ids=ROUTES)
-def test_every_question_has_a_price_that_foresees(route: Question) -> None:
-    assert isinstance(route.price, Foreseen)
-
-
-def test_the_table_knows_every_operation_and_every_method() -> None:
-    priced = [getattr(route.price, "own", route.price) for route in ROUTES.values()]
-    operations = [price.operation for price in priced if isinstance(price, Priced)]
-    assert len(operations) >= 10
-    for operation in operations:
-        assert calibration().seconds[operation]
-        assert calibration().bytes[operation]
-    assert set(calibration().methods) == {method.kind for method in INTEGRATORS}
-
-
 @pytest.mark.parametrize("method", INTEGRATORS, ids=lambda method: method.kind)
 async def test_every_integrator_is_planned_and_run(method: Any) -> None:
     name = dataclasses.fields(method)[0].name
@@ -161,13 +144,6 @@ async def test_every_integrator_is_planned_and_run(method: Any) -> None:
     plan = await planned(PATH, request)
     assert plan["errors"] == []
     assert (await asked(PATH, request)).status_code == 200
-
-
-@pytest.mark.parametrize("stop", [10.0, -10.0])
-def test_steps_of_spans_and_lists_agree(stop: float) -> None:
-    span = Span(start=0.0, stop=stop, count=21)
-    assert steps(span, 0.03) == steps(span.values().tolist(), 0.03) == 20 * 17
-    assert steps([1.0, -1.0, 1.0], 0.5) == 4
 
 
 async def test_rows_that_do_not_change_are_foreseen_as_short_as_they_are() -> None:

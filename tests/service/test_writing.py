@@ -24,6 +24,7 @@ ANSWERS = {
     "nested": {"mesh": {"vertices": RNG.normal(size=(40000, 3)), "faces": RNG.integers(0, 9, (40000, 3))}, "x": 1},
     "several": {"polhodes": [{"points": RNG.normal(size=(n, 3))} for n in (1, 2000, 30000, 0)]},
     "cube": {"members": RNG.normal(size=(7, 5000, 3))},
+    "few and long": {"members": RNG.normal(size=(3, 2, 50_000)).transpose(1, 2, 0)},
     "extremes": {"v": np.array([5e-324, 1.7976931348623157e308, -0.0, 0.1] * 20000)},
     "numpy scalar": {"a": np.float64(0.1), "b": np.int64(3)},
 }
@@ -49,9 +50,10 @@ def test_both_ways_of_writing_give_the_same_document(name: str) -> None:
     assert list(json.loads(one)) == list(answer)
 
 
-def test_chunks_are_small() -> None:
-    pieces = list(chunks(ANSWERS["transposed"]))
-    assert len(pieces) > 210000 // CHUNK
+@pytest.mark.parametrize(("name", "numbers"), [("transposed", 210_000), ("cube", 105_000), ("few and long", 300_000)])
+def test_chunks_are_small(name: str, numbers: int) -> None:
+    pieces = list(chunks(ANSWERS[name]))
+    assert len(pieces) > numbers // CHUNK
     assert max(map(len, pieces)) < 25 * CHUNK
 
 
