@@ -6,7 +6,6 @@ import argparse
 import contextlib
 import os
 import sys
-import tempfile
 from collections.abc import Sequence
 
 import uvicorn
@@ -15,6 +14,7 @@ from service import VERSION
 from service.app import create_app
 from service.keys import new_key
 from service.logs import configure
+from service.scratch import Scratch
 from service.settings import Settings
 
 
@@ -61,8 +61,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with contextlib.ExitStack() as stack:
         # A single process is ended by the signal that stopped it and could not remove the directory any more.
         if settings.workers > 1:
-            directory = stack.enter_context(tempfile.TemporaryDirectory(prefix="polhode-metrics-"))
-            os.environ.setdefault("PROMETHEUS_MULTIPROC_DIR", directory)
+            counters = Scratch("polhode-counters-")
+            stack.callback(counters.remove)
+            os.environ.setdefault("PROMETHEUS_MULTIPROC_DIR", counters.name)
         uvicorn.run(
             "service.server:app",
             host=settings.host,

@@ -56,6 +56,7 @@ SERVICE_LAYERS = (
         "kept",
         "records",
         "processes",
+        "scratch",
     },
     {"guards", "large_arrays", "ellipsoid_figure"},
     {"faults"},
