@@ -309,7 +309,7 @@ class Processes:
         try:
             # One at a time: all wait for the same fork server.
             async with self._turn:
-                return await _aside(partial(self._spawn, theirs)), ours
+                return await aside(partial(self._spawn, theirs)), ours
         except BaseException:
             ours.close()
             raise
@@ -333,7 +333,7 @@ class Processes:
             _tell(loop, self._lost, code)
 
 
-async def _aside(work: Callable[[], Any]) -> Any:
+async def aside(work: Callable[[], Any]) -> Any:
     """Return what a function returns that may wait for long, in a thread that holds up nobody's exit."""
     loop = asyncio.get_running_loop()
     done: asyncio.Future[Any] = loop.create_future()
