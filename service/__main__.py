@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import os
 import sys
-import tempfile
 from collections.abc import Sequence
-
-import uvicorn
 
 from service import VERSION
 from service.app import create_app
 from service.keys import new_key
 from service.logs import configure
+from service.running import Config, run
 from service.settings import Settings
 
 
@@ -58,26 +55,22 @@ def main(arguments: Sequence[str] | None = None) -> None:
     configure(settings.log_level)
     # Server processes read their settings from the environment that they inherit.
     os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
-    with contextlib.ExitStack() as stack:
-        # A single process is ended by the signal that stopped it and could not remove the directory any more.
-        if settings.workers > 1:
-            directory = stack.enter_context(tempfile.TemporaryDirectory(prefix="polhode-metrics-"))
-            os.environ.setdefault("PROMETHEUS_MULTIPROC_DIR", directory)
-        uvicorn.run(
-            "service.server:app",
-            host=settings.host,
-            port=settings.port,
-            workers=settings.workers,
-            http="service.protocol:Protocol",
-            log_config=None,
-            access_log=False,
-            server_header=False,
-            # The address of the client is not used, so headers of proxies need not be read.
-            proxy_headers=False,
-            timeout_graceful_shutdown=settings.shutdown_seconds,
-            timeout_keep_alive=15,
-            h11_max_incomplete_event_size=65536,
-        )
+    config = Config(
+        "service.server:app",
+        host=settings.host,
+        port=settings.port,
+        workers=settings.workers,
+        http="service.protocol:Protocol",
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        # The address of the client is not used, so headers of proxies need not be read.
+        proxy_headers=False,
+        timeout_graceful_shutdown=settings.shutdown_seconds,
+        timeout_keep_alive=15,
+        h11_max_incomplete_event_size=65536,
+    )
+    run(config)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from service.exchange import Scope, Send
 from service.guards import Receive
 from service.logs import LOG
 from service.metrics import Metrics
+from service.processes import aside
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages
@@ -91,7 +92,7 @@ class Service:
 
     async def _warm(self) -> None:
         try:
-            await asyncio.gather(asyncio.to_thread(self._prepare), self.compute.start())
+            await asyncio.gather(aside(self._prepare), self.compute.start())
         except Exception:
             LOG.exception("the service could not get ready")
             raise

@@ -10,7 +10,6 @@ import asyncio
 import contextlib
 import os
 import pickle
-import tempfile
 from collections.abc import Awaitable, Callable, Iterator
 from itertools import count
 from math import ceil
@@ -24,6 +23,7 @@ from service.metrics import Metrics
 from service.problems import Problem, Refusal
 from service.processes import Died, Job, NoTurn, Overdue, Processes, Stopped
 from service.routing import Question
+from service.scratch import Scratch
 from service.settings import Settings
 from service.worker import Asked, Failed, restored, serve, terms_of
 
@@ -73,7 +73,7 @@ class Compute:
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
         self.processes = Processes(self.size, serve, (self.terms,), "service.prepared", self._lost)
-        self._scratch: tempfile.TemporaryDirectory[str] | None = None
+        self._scratch: Scratch | None = None
         self._numbers = count()
         self.pace = Pace()
         self._promised = 0.0
@@ -84,7 +84,7 @@ class Compute:
         """Start the processes and return when each is ready."""
         memory = Path("/dev/shm")
         directory = self._settings.scratch or (memory if os.access(memory, os.W_OK) else None)
-        self._scratch = tempfile.TemporaryDirectory(prefix="polhode-", dir=directory, ignore_cleanup_errors=True)
+        self._scratch = Scratch("polhode-results-", directory)
         await self.processes.start()
         self._up = True
 
@@ -93,7 +93,7 @@ class Compute:
         self._stopping = True
         await self.processes.stop()
         if self._scratch is not None:
-            self._scratch.cleanup()
+            self._scratch.remove()
 
     @property
     def backlog(self) -> float:

@@ -313,7 +313,7 @@ class Processes:
         async with self._turn:
             ours, theirs = socket.socketpair()
             try:
-                return await _aside(partial(self._spawn, theirs)), ours
+                return await aside(partial(self._spawn, theirs)), ours
             except BaseException:
                 ours.close()
                 raise
@@ -337,7 +337,7 @@ class Processes:
             _tell(loop, self._lost, code)
 
 
-async def _aside(work: Callable[[], Any]) -> Any:
+async def aside(work: Callable[[], Any]) -> Any:
     """Return what a function returns that may wait for long, in a thread that holds up nobody's exit."""
     loop = asyncio.get_running_loop()
     done: asyncio.Future[Any] = loop.create_future()

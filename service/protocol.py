@@ -6,19 +6,27 @@ a response whose headers are of known form is written, by one call each. Everyth
 keeping alive, pipelining, back-pressure, disconnection, continuation, shutdown. Where any of them has a say, the short
 cut declines, having done nothing, and the application goes the ordinary way of ASGI. See docs/decisions/0009.
 
-One thing is done otherwise: a request that offers to go on in another protocol is answered in this one, as RFC 9110,
-7.8, has it. The parser stops at the end of its headers and takes its body, and all that is pipelined behind it, for the
-other protocol; clients that offer HTTP/2 with every request would never be heard.
+Four things are done otherwise:
+
+- A request that offers to go on in another protocol is answered in this one, as RFC 9110, 7.8, has it. The parser stops
+  at the end of its headers and takes its body, and all that is pipelined behind it, for the other protocol; clients
+  that offer HTTP/2 with every request would never be heard.
+- Fields behind a chunked body are no headers (RFC 9110, 6.5.1): who looks at headers in front of the server, or limits
+  them, does not see these.
+- A client that leaves is missed by the request that is being answered, not only by the last it has sent: its
+  computation is stopped.
+- What is no HTTP is answered in its turn: what came before it was accepted, and may be answered by half.
 """
 
 from __future__ import annotations
 
 import sys
+from asyncio import Event
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from httptools import HttpRequestParser
-from uvicorn._types import ASGI3Application
+from uvicorn._types import ASGI3Application, ASGIReceiveCallable, ASGISendCallable, Scope
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol, RequestResponseCycle
 
 from service.exchange import DIRECT
@@ -27,6 +35,7 @@ LONGEST = 65_536
 """Bytes up to which copying a body behind its headers costs less than writing it by itself."""
 
 _OK = STATUS_LINE[200]
+_NO_HTTP = b"Invalid HTTP request received."
 
 
 class Protocol(HttpToolsProtocol):
@@ -37,6 +46,12 @@ class Protocol(HttpToolsProtocol):
 
     _unsent = b""
     """A response that is sent when everything that is ready to run has run."""
+
+    _answered: RequestResponseCycle | None = None
+    """The last request that has been begun to be answered, behind which others may wait."""
+
+    _senseless = False
+    """Whether something has arrived that is no HTTP, so that nothing behind it can be understood."""
 
     def send_soon(self, response: bytes) -> None:
         """Send a response behind all work that is ready, in one go with those of other connections.
@@ -56,13 +71,72 @@ class Protocol(HttpToolsProtocol):
         self._send()
         super().shutdown()
 
-    def send_400_response(self, msg: str) -> None:
-        """Answer what is no HTTP, after what was answered before it."""
+    def eof_received(self) -> None:
+        """Send what is answered, before the connection is closed because the client sends no more."""
         self._send()
-        super().send_400_response(msg)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Tell who answers that the client has gone."""
+        super().connection_lost(exc)
+        cycle = self._answered
+        if cycle is not None and not cycle.response_complete:
+            cycle.disconnected = True
+            cycle.message_event.set()
+
+    def send_400_response(self, msg: str) -> None:
+        """Answer what is no HTTP, after what came before it."""
+        self._senseless = True
+        self._send()
+        cycle, begun = self.cycle, self._begun and self.cycle.more_body
+        if begun and self.pipeline:
+            # It is the last that came, and nothing has been done about it.
+            self.pipeline[0] = cycle, not_understood
+        elif begun and cycle.response_complete:
+            self.transport.close()
+        elif begun and cycle.response_started:
+            cycle.keep_alive = False
+        elif begun or cycle is None or cycle.response_complete:
+            super().send_400_response(msg)
+        else:
+            self.cycle = RequestResponseCycle(
+                scope={**cycle.scope, "method": "GET"},
+                transport=self.transport,
+                flow=self.flow,
+                logger=self.logger,
+                access_logger=self.access_logger,
+                access_log=False,
+                default_headers=self.server_state.default_headers,
+                message_event=Event(),
+                expect_100_continue=False,
+                keep_alive=False,
+                on_response=self.on_response_complete,
+            )
+            self.pipeline.appendleft((self.cycle, not_understood))
+
+    def on_headers_complete(self) -> None:
+        """Begin to answer; fields that are read from now on until the next request are none of its headers."""
+        super().on_headers_complete()
+        if self._begun:
+            self.headers = []
+
+    def on_message_complete(self) -> None:
+        """Hand over the end of a body, and close the connection after the response if fields behind it say so."""
+        if self.headers and self._begun and not self.parser.should_keep_alive():
+            # The parser skips all that follows, which would wait for its answers.
+            self.cycle.keep_alive = False
+            if self.cycle.response_complete:
+                self.shutdown()
+        super().on_message_complete()
+
+    @property
+    def _begun(self) -> bool:
+        """Whether the last message of which something has been read is a request whose headers are complete."""
+        return self.cycle is not None and self.cycle.scope is self.scope
 
     def data_received(self, data: bytes) -> None:
         """Parse what has arrived."""
+        if self._senseless:
+            return
         self._send()
         super().data_received(data)
         rest: Any = memoryview(data) if self._declined else b""
@@ -97,7 +171,19 @@ class Protocol(HttpToolsProtocol):
     def _start_asgi_task(self, cycle: RequestResponseCycle, app: ASGI3Application) -> None:
         extensions: dict[str, Any] = {DIRECT: ShortCuts(cycle, self.send_soon)}
         cycle.scope["extensions"] = extensions
+        self._answered = cycle
         super()._start_asgi_task(cycle, app)
+
+
+async def not_understood(scope: Scope, receive: ASGIReceiveCallable, send: ASGISendCallable) -> None:
+    """Answer as uvicorn does what is no HTTP, where that is said in turn."""
+    headers = [
+        (b"content-type", b"text/plain; charset=utf-8"),
+        (b"content-length", b"%d" % len(_NO_HTTP)),
+        (b"connection", b"close"),
+    ]
+    await send({"type": "http.response.start", "status": 400, "headers": headers})
+    await send({"type": "http.response.body", "body": _NO_HTTP, "more_body": False})
 
 
 class ShortCuts:

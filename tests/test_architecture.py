@@ -57,6 +57,7 @@ SERVICE_LAYERS = (
         "kept",
         "records",
         "processes",
+        "scratch",
     },
     {"guards", "large_arrays", "ellipsoid_figure"},
     {"faults"},
@@ -69,7 +70,7 @@ SERVICE_LAYERS = (
     {"exchange"},
     {"dispatch"},
     {"app"},
-    {"server", "protocol", "__main__"},
+    {"server", "protocol", "running", "__main__"},
 )
 """The service's files from the ground upwards; each imports from its own storey or from below."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -72,8 +73,8 @@ class Server:
         except httpx.TransportError:
             return False
 
-    def stop(self) -> str:
-        self.process.terminate()
+    def stop(self, told: signal.Signals = signal.SIGTERM) -> str:
+        self.process.send_signal(told)
         _, rest = self.process.communicate(timeout=30)
         return "".join(self.log) + (rest or "")
 

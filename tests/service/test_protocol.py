@@ -113,7 +113,9 @@ CASES: dict[str, tuple[bytes, ...]] = {
     "an archive": (ask(more=b"accept: application/x-npz\r\n") + LAST,),
     "head": (b"HEAD /healthz HTTP/1.1\r\nhost: x\r\n\r\n" + LAST,),
     "nothing there": (b"GET /nothing HTTP/1.1\r\nhost: x\r\n\r\n" + LAST,),
-    "garbage after": (ask() + b"GARBAGE\r\n\r\n",),
+    "garbage": (b"GARBAGE\r\n\r\n",),
+    "garbage later": (ask(), b"GARBAGE\r\n\r\n"),
+    "garbage behind the last": (ask(more=b"connection: close\r\n") + b"GARBAGE\r\n\r\n",),
 }
 
 
@@ -161,6 +163,68 @@ async def test_who_offers_another_protocol_is_answered_in_this_one(case: str) ->
         offered = plain(await told(server, *OFFERS[case])).removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")
         assert offered == plain(await told(server, whole)).removeprefix(b"HTTP/1.1 100 Continue\r\n\r\n")
     assert offered.startswith(b"HTTP/1.1 ")
+
+
+OPEN = HEAD + b"transfer-encoding: chunked\r\n"
+BROKEN = b"\r\n1\r\n{\r\nno size\r\n"
+IN_TURN: dict[str, tuple[bytes, list[int]]] = {
+    "between requests": (ask() + ask(LARGE) + ask() + b"GARBAGE\r\n\r\n" + LAST, [200, 200, 200, 400]),
+    "in the headers": (ask(LARGE) + HEAD + b"no colon\r\n\r\n" + LAST, [200, 400]),
+    "in a body": (OPEN + BROKEN + LAST, [400]),
+    "in a body behind others": (ask() + ask(LARGE) + OPEN + BROKEN + LAST, [200, 200, 400]),
+    "behind an offer": (ask(LARGE) + ask(more=H2C) + b"\0\1\2" + LAST, [200, 200, 400]),
+    "after nothing is left to be answered": (ask(more=b"connection: close\r\n") + b"\0" + LAST, [200]),
+}
+
+
+@pytest.mark.parametrize("case", IN_TURN)
+async def test_what_is_no_http_is_answered_in_its_turn(case: str) -> None:
+    whole, expected = IN_TURN[case]
+    async with serving(Protocol) as server:
+        for pieces in ((whole,), (whole[:-200], whole[-200:])):
+            received = await told(server, *pieces)
+            # Nothing stands within an answer that does not belong to it.
+            found = [int(line[9:12]) for line in re.findall(rb"(?:^|(?<=[\n}\d.]))HTTP/1.1 \d+ ", received)]
+            assert found == expected
+            assert received.count(b"\r\n0\r\n\r\n") == whole.count(LARGE)
+            assert received.endswith(b"}" if expected[-1] == 200 else b"\r\n\r\nInvalid HTTP request received.")
+
+
+async def test_a_request_is_answered_once_though_its_body_breaks_off_into_nonsense() -> None:
+    async with serving(Protocol) as server:
+        head = OPEN.replace(b"application/json", b"text/plain")
+        received = await told(server, head + b"\r\n1\r\n{\r\n", b"no size\r\n" + LAST)
+    assert re.findall(rb"HTTP/1.1 \d+", received) == [b"HTTP/1.1 415"]
+
+
+@pytest.mark.parametrize(
+    "trailer",
+    [
+        b"content-type: text/plain\r\n",
+        b"x-request-id: another\r\n",
+        b"accept: text/csv\r\n",
+        b"if-none-match: *\r\n",
+        b"authorization: Bearer one\r\nexpect: 100-continue\r\n",
+        b"connection: upgrade\r\nupgrade: h2c\r\n",
+    ],
+)
+async def test_fields_behind_a_body_are_no_headers(trailer: bytes) -> None:
+    question = chunked(BODY)
+    async with serving(Protocol) as server:
+        for pieces in (1, 2):
+            asked = question[:-2] + trailer + b"\r\n"
+            parts = (asked + LAST,) if pieces == 1 else (asked[:-9], asked[-9:] + LAST)
+            assert plain(await told(server, *parts)) == plain(await told(server, question + LAST))
+
+
+async def test_a_connection_that_is_closed_behind_a_body_is_closed() -> None:
+    async with serving(Protocol) as server:
+        asked = chunked(BODY)[:-2] + b"connection: close\r\n\r\n"
+        received = await told(server, asked + LAST)
+        assert plain(received) == plain(await told(server, ask(more=b"connection: close\r\n")))
+        refused = asked.replace(b"application/json", b"text/plain")
+        received = await told(server, refused[:-30], refused[-30:] + LAST)
+    assert re.findall(rb"HTTP/1.1 \d+", received) == [b"HTTP/1.1 415"]
 
 
 async def test_a_connection_to_somewhere_else_is_not_made() -> None:
@@ -223,7 +287,10 @@ async def test_a_client_that_leaves_harms_nobody() -> None:
         assert not server.server_state.tasks
 
 
-async def test_nothing_more_is_written_for_a_client_that_has_left(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("behind", [b"", ask()], ids=["alone", "another waits behind it"])
+async def test_nothing_more_is_written_for_a_client_that_has_left(
+    monkeypatch: pytest.MonkeyPatch, behind: bytes
+) -> None:
     pieces: Counter[str] = Counter()
     written = Document.pieces
 
@@ -236,7 +303,7 @@ async def test_nothing_more_is_written_for_a_client_that_has_left(monkeypatch: p
     endless = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 1_000_000}}).encode()
     async with serving(Protocol) as server:
         reader, writer = await connect(server)
-        writer.write(ask(endless))
+        writer.write(ask(endless) + behind)
         assert (await reader.readline()) == b"HTTP/1.1 200 OK\r\n"
         await asyncio.sleep(0.2)
         unread = pieces["taken"]
@@ -328,8 +395,9 @@ async def test_responses_are_sent_behind_all_work_that_is_ready() -> None:
         (lambda protocol: protocol.shutdown(), [b"closed"]),
         (lambda protocol: protocol.data_received(b"GET"), []),
         (lambda protocol: protocol.send_400_response("no"), [b"HTTP/1.1 400 Bad Request", b"closed"]),
+        (lambda protocol: protocol.eof_received() or protocol.transport.close(), [b"closed"]),
     ],
-    ids=["shutdown", "more", "no http"],
+    ids=["shutdown", "more", "no http", "the end of requests"],
 )
 async def test_nothing_overtakes_a_response(event: Any, after: list[bytes]) -> None:
     protocol, transport = connected()
