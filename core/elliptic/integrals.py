@@ -1,4 +1,4 @@
-"""Elliptic integrals of the first kind by the arithmetic-geometric mean and by Carlson's duplication, compiled.
+"""Elliptic integrals by the arithmetic-geometric mean and by Carlson's duplication, compiled.
 
 The parameter m and its complement m1 = 1 - m are both arguments everywhere, because near m = 1 the complement carries
 all the information and cannot be had from m.
@@ -113,6 +113,22 @@ def moduli(m: float, m1: float) -> tuple[float, float, float, float]:
         h, low = two_sum(1.0, -m)
         ch, cl = dd_sqrt(h, low)
     return kh, kl, ch, cl
+
+
+@kernel()
+def one_less_e_over_k(m: float, k1: float) -> float:
+    """Return 1 - E(m)/K(m) to a few digits, k1 the complementary modulus.
+
+    Source: E = K (1 - sum 2^(n-1) c_n^2), c_n the differences of the arithmetic-geometric mean, DLMF 19.8.6.
+    """
+    a, g, c, factor, total = 1.0, k1, math.sqrt(m), 1.0, 0.5 * m
+    for _ in range(12):
+        a, g, c = 0.5 * (a + g), math.sqrt(a * g), 0.5 * (a - g)
+        total += factor * c * c
+        factor *= 2.0
+        if c < 1e-9:
+            break
+    return total
 
 
 @kernel()

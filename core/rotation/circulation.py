@@ -20,6 +20,7 @@ L. D. Landau, E. M. Lifshitz, "Mechanics", section 37.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,8 @@ from core.double_double import (
     sc_sqrt,
     scaled,
 )
+from core.errors import AccuracyUnreachable
+from core.rotation.principal_frame import Resolved
 
 REST, STEADY, PERIODIC, SEPARATRIX, UNDECIDED, UNREACHABLE = range(6)
 
@@ -179,3 +182,29 @@ def amplitudes(c: Circulation) -> Amplitudes:
 def complement(c: Circulation, D: Scaled) -> Scaled:
     """Return the complementary modulus k'; D is D_B."""
     return sc_sqrt(sc_div(sc_mul(c.cd, sc_abs(D)), c.bdY))
+
+
+def exact_difference(resolved: Resolved) -> Scaled:
+    """Return D_B = C (C - B) w_C^2 - A (B - A) w_A^2 from exact rational arithmetic, where `decision` left it open."""
+    i, it, w, wt = resolved
+    a, b, c = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(i, it, strict=True))
+    wa, _, wc = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(w, wt, strict=True))
+    exact = c * (c - b) * wc * wc - a * (b - a) * wa * wa
+    if exact == 0:
+        return Scaled(0.0, 0.0, 0)
+    exponent = exact.numerator.bit_length() - exact.denominator.bit_length()
+    mantissa = exact / Fraction(2) ** exponent
+    high = float(mantissa)
+    decided: Scaled = scaled(high, float(mantissa - Fraction(high)), exponent)
+    return decided
+
+
+def too_near_the_separatrix() -> AccuracyUnreachable:
+    """Return the refusal of a start whose distance from the separatrix doubles cannot hold."""
+    return AccuracyUnreachable(
+        None,
+        2.0,
+        "the start differs from a rotation about the middle axis by less than the range of doubles resolves",
+        path=("angular_velocity",),
+        remedy="start on the axis itself, or further from it",
+    )

@@ -5,22 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from core.bodies.mass_properties import PrincipalInertia
-from core.double_double import Scaled, dd_div, scaled
+from core.double_double import Scaled, dd_div
 from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.integration.system import Floats, Model
-from core.rotation.circulation import PERIODIC, REST, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
+from core.rotation.circulation import (
+    PERIODIC,
+    REST,
+    SEPARATRIX,
+    STEADY,
+    UNDECIDED,
+    UNREACHABLE,
+    exact_difference,
+    too_near_the_separatrix,
+)
 from core.rotation.constants_of_motion import Motion, constants_of_motion
 from core.rotation.inherited import WHOLE_MOTION, Inherited, lost_after
 from core.rotation.moves import Moves
-from core.rotation.principal_frame import PrincipalFrame, resolve
+from core.rotation.principal_frame import PrincipalFrame, Resolved
 from core.rotation.sampling import largest_magnitude, sample_components, turn_into_body
 
 UNIT_ROUNDOFF = 2.0**-53
@@ -41,41 +48,6 @@ SET_UP_ROUNDING = 2.0**-103
 
 DERIVED_ROUNDING = 2.0**-100
 """Error of moments and components that were themselves derived, relative to the largest moment and component."""
-
-
-class Resolved(NamedTuple):
-    """Principal moments, ascending, and angular velocity along their axes, each with its tail, shape (3,)."""
-
-    moments: Floats
-    moments_tail: Floats
-    angular_velocity: Floats
-    angular_velocity_tail: Floats
-
-
-def exact_difference(resolved: Resolved) -> Scaled:
-    """Return D_B = C (C - B) w_C^2 - A (B - A) w_A^2 from exact rational arithmetic."""
-    i, it, w, wt = resolved
-    a, b, c = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(i, it, strict=True))
-    wa, _, wc = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(w, wt, strict=True))
-    exact = c * (c - b) * wc * wc - a * (b - a) * wa * wa
-    if exact == 0:
-        return Scaled(0.0, 0.0, 0)
-    exponent = exact.numerator.bit_length() - exact.denominator.bit_length()
-    mantissa = exact / Fraction(2) ** exponent
-    high = float(mantissa)
-    decided: Scaled = scaled(high, float(mantissa - Fraction(high)), exponent)
-    return decided
-
-
-def too_near_the_separatrix() -> AccuracyUnreachable:
-    """Return the refusal of a start whose distance from the separatrix doubles cannot hold."""
-    return AccuracyUnreachable(
-        None,
-        2.0,
-        "the start differs from a rotation about the middle axis by less than the range of doubles resolves",
-        path=("angular_velocity",),
-        remedy="start on the axis itself, or further from it",
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,15 +88,7 @@ class FreeRotation:
     @cached_property
     def resolved(self) -> Resolved:
         """Moments and start along ascending principal axes, as the motion takes them."""
-        found, inertia = np.empty((4, 3)), self.inertia
-        x, y, z = map(float, self.angular_velocity)
-        resolve(inertia.axes, inertia.axes_tail, inertia.moments, inertia.moments_tail, x, y, z, found)
-        return Resolved(found[0], found[1], found[2], found[3])
-
-    @property
-    def start(self) -> tuple[Floats, Floats]:
-        """Angular velocity at t = 0 along ascending principal axes, and its tail, each of shape (3,)."""
-        return self.resolved.angular_velocity, self.resolved.angular_velocity_tail
+        return Resolved.of(self.inertia, self.angular_velocity)
 
     @cached_property
     def motion(self) -> Motion:
@@ -278,10 +242,15 @@ class FreeRotation:
         It is where `inherited` comes to state the whole motion, found by bisection to a thousandth and never later.
         None if that does not happen at any time that `sample` answers.
         """
-        m, longest = self.motion, 1023.0
-        if m.regime == PERIODIC:
-            longest = min(longest, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
-        return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, longest)
+        return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, self.longest_exponent)
+
+    @property
+    def longest_exponent(self) -> float:
+        """Binary logarithm of the longest time that `sample` answers, and that powers of two reach (s)."""
+        m, most = self.motion, 1023.0
+        if m.regime != PERIODIC:
+            return most
+        return min(most, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
 
     @cached_property
     def grading(self) -> tuple[float, float]:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.compiled import kernel
+from core.elliptic.integrals import one_less_e_over_k
 
 Floats = NDArray[np.float64]
 
@@ -156,11 +157,4 @@ def slope_of_quarter(m: float, k1: float, K: float) -> float:
         return 0.125 * math.pi * (1.0 + 1.125 * m) * k1
     if k1 < 1e-6:
         return 0.5 / k1
-    a, g, c, factor, total = 1.0, k1, math.sqrt(m), 1.0, 0.5 * m
-    for _ in range(12):
-        a, g, c = 0.5 * (a + g), math.sqrt(a * g), 0.5 * (a - g)
-        total += factor * c * c
-        factor *= 2.0
-        if c < 1e-9:
-            break
-    return 0.5 * (K * (1.0 - total) - k1 * k1 * K) / (m * k1)
+    return 0.5 * (K * (1.0 - one_less_e_over_k(m, k1)) - k1 * k1 * K) / (m * k1)

@@ -36,9 +36,18 @@ from core.errors import InvalidParameter
 from core.integration.system import Floats
 from core.notices import Notice
 from core.rotation import absence
-from core.rotation.circulation import PERIODIC, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
-from core.rotation.closed_form import FreeRotation, exact_difference, too_near_the_separatrix
+from core.rotation.circulation import (
+    PERIODIC,
+    SEPARATRIX,
+    STEADY,
+    UNDECIDED,
+    UNREACHABLE,
+    exact_difference,
+    too_near_the_separatrix,
+)
+from core.rotation.closed_form import FreeRotation
 from core.rotation.precession_figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
+from core.rotation.principal_frame import Resolved
 from core.rotation.torque_free import inherited_notices
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
@@ -157,7 +166,7 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
     parts = inertia.moments, inertia.moments_tail, inertia.axes, inertia.axes_tail
     regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, False, 0.0, 0.0, 0)
     if regime == UNDECIDED:
-        exact = exact_difference(FreeRotation(inertia, given).resolved)
+        exact = exact_difference(Resolved.of(inertia, given))
         regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, True, *exact)
     if regime == UNREACHABLE:
         raise too_near_the_separatrix()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.bodies.principal_inertia import PrincipalInertia
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.integration.system import Floats
@@ -60,6 +62,23 @@ def resolve(
     for k in range(3):
         if abs(out[2, k]) <= RESOLUTION * largest:
             out[2, k], out[3, k] = 0.0, 0.0
+
+
+class Resolved(NamedTuple):
+    """Principal moments, ascending, and angular velocity along their axes, each with its tail, shape (3,)."""
+
+    moments: Floats
+    moments_tail: Floats
+    angular_velocity: Floats
+    angular_velocity_tail: Floats
+
+    @classmethod
+    def of(cls, inertia: PrincipalInertia, angular_velocity: Floats) -> Resolved:
+        """Return what `resolve` makes of a body and its angular velocity in body axes, shape (3,)."""
+        found = np.empty((4, 3))
+        x, y, z = map(float, angular_velocity)
+        resolve(inertia.axes, inertia.axes_tail, inertia.moments, inertia.moments_tail, x, y, z, found)
+        return cls(found[0], found[1], found[2], found[3])
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ import math
 from typing import NamedTuple
 
 from core.compiled import kernel
+from core.elliptic.integrals import one_less_e_over_k
 
 
 class Sensitivity(NamedTuple):
@@ -100,14 +101,7 @@ def _e_minus_m1_k(m: float, m1: float, K: float) -> float:
         return 0.25 * math.pi * (1.0 + 0.125 * m)
     if m1 < 1e-12:
         return 1.0
-    a, g, c, factor, total = 1.0, math.sqrt(m1), math.sqrt(m), 1.0, 0.5 * m
-    for _ in range(12):
-        a, g, c = 0.5 * (a + g), math.sqrt(a * g), 0.5 * (a - g)
-        total += factor * c * c
-        factor *= 2.0
-        if c < 1e-9:
-            break
-    return (K * (1.0 - total) - m1 * K) / m
+    return (K * (1.0 - one_less_e_over_k(m, math.sqrt(m1))) - m1 * K) / m
 
 
 @kernel()

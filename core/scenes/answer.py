@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -109,6 +110,35 @@ class Motion(ABC):
     @abstractmethod
     def sample(self, times: Floats) -> Columns:
         """Return the motion at `times`, shape (n,), all between the beginning and the end."""
+
+
+class UnbrokenMotion(Motion):
+    """A motion in one piece: nothing happens but its end.
+
+    Parameters
+    ----------
+    end : Event or None
+    end_of_reversed : callable
+        Returns what would end the motion backwards in time, only called if somebody asks when the model began to hold.
+    """
+
+    def __init__(self, end: Event | None, end_of_reversed: Callable[[], Event | None]) -> None:
+        self._end, self._end_of_reversed = end, end_of_reversed
+
+    @cached_property
+    def began(self) -> float:
+        """When the reversed motion would end."""
+        first = self._end_of_reversed()
+        return -math.inf if first is None else -float(first.time)
+
+    @property
+    def end(self) -> Event | None:
+        """The only event."""
+        return self._end
+
+    def events(self) -> tuple[Event, ...]:
+        """Return the end, if there is one."""
+        return () if self._end is None else (self._end,)
 
 
 @dataclass(frozen=True, eq=False)

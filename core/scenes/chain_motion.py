@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from core.integration.system import Floats, Model
-from core.scenes.answer import Columns, Event, Motion, finite
+from core.scenes.answer import Columns, Event, UnbrokenMotion, finite
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, sign, square_root
 from core.scenes.quadratics import real_roots
 
@@ -163,13 +163,12 @@ class Slide:
         return sign(self.acceleration) * way < 0 and self._barrier() < 0
 
 
-class ChainMotion(Motion):
-    """A hyperbola in time, or a parabola where the chain has no mass."""
+class ChainMotion(UnbrokenMotion):
+    """A hyperbola in time, or a parabola where the chain has no mass, until an end is at the apex or it lifts off."""
 
     def __init__(self, slide: Slide) -> None:
+        super().__init__(slide.leaves(), lambda: slide.reversed().leaves())
         self.slide = slide
-        self._end = slide.leaves()
-        self._past: float | None = None
 
     @property
     def model(self) -> Model:
@@ -180,23 +179,6 @@ class ChainMotion(Motion):
         if sign(self.slide.acceleration) == 0 and sign(self.slide.velocity) == 0:
             return Model("heavy chain on a wedge", "rest", "the chain balances", 0)
         return Model("heavy chain on a wedge", "hyperbolic", "the pull grows in proportion to the deviation", 1)
-
-    @property
-    def began(self) -> float:
-        """When the reversed motion would end."""
-        if self._past is None:
-            first = self.slide.reversed().leaves()
-            self._past = -np.inf if first is None else -float(first.time)
-        return self._past
-
-    @property
-    def end(self) -> Event | None:
-        """An end of the chain at the apex, or the chain lifting off it."""
-        return self._end
-
-    def events(self) -> tuple[Event, ...]:
-        """Only the end."""
-        return () if self._end is None else (self._end,)
 
     def sample(self, times: Floats) -> Columns:
         """Evaluate by the form of the solution that cancels less at these times, column by column."""

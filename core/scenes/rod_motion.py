@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from core.integration.system import Floats, Model
-from core.scenes.answer import Columns, Event, Motion, finite
+from core.scenes.answer import Columns, Event, UnbrokenMotion, finite
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, angle_of, exact, sign
 from core.scenes.pendulum import Pendulum
 
@@ -78,8 +78,8 @@ def contact_limits(rod: Rod) -> Balls:
     return limit, (rod.gravity / rod.depth * (q + ((1 + q) ** 2 + p**2).sqrt())).sqrt()
 
 
-class RodMotion(Motion):
-    """A pendulum, as long as both ends are on the wall.
+class RodMotion(UnbrokenMotion):
+    """A pendulum, as long as both ends are on the wall and none passes the rim.
 
     Parameters
     ----------
@@ -89,31 +89,13 @@ class RodMotion(Motion):
 
     def __init__(self, rod: Rod, pendulum: Pendulum, rim: Balls | None) -> None:
         self.rod, self.pendulum, self._rim = rod, pendulum, rim
-        self._end = self._leaves(pendulum)
-        self._past: float | None = None
+        super().__init__(self._leaves(pendulum), lambda: self._leaves(replace(pendulum, rate=-pendulum.rate)))
 
     @property
     def model(self) -> Model:
         """The branch of the pendulum."""
         regime = self.pendulum.regime
         return Model("rod in a cylindrical hole", regime, WHY[regime], 0 if regime == "rest" else 1)
-
-    @property
-    def began(self) -> float:
-        """When the reversed motion would end."""
-        if self._past is None:
-            first = self._leaves(replace(self.pendulum, rate=-self.pendulum.rate))
-            self._past = -np.inf if first is None else -float(first.time)
-        return self._past
-
-    @property
-    def end(self) -> Event | None:
-        """An end passing the rim, or leaving the wall."""
-        return self._end
-
-    def events(self) -> tuple[Event, ...]:
-        """Only the end."""
-        return () if self._end is None else (self._end,)
 
     def rate_at_horizontal(self) -> Ball | None:
         """Return psi' when the rod is horizontal for the first time, None if it never is."""
@@ -125,7 +107,7 @@ class RodMotion(Motion):
         if not arrivals:
             return None
         time, way = min(arrivals, key=lambda arrival: float(arrival[0]))
-        if self._end is not None and time > self._end.time:
+        if self.end is not None and time > self.end.time:
             return None
         return way * 2 * swing.frequency * swing.m.sqrt()
 

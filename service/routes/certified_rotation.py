@@ -36,7 +36,8 @@ from service.routes.certified import (
     summing,
     times_written,
 )
-from service.routes.rotation import T_HANDLE, ModelView, Output, WorkView
+from service.routes.precession import DISTURBANCE, RATE
+from service.routes.rotation import ANGULAR_VELOCITY, ATTITUDE, OUTPUTS, T_HANDLE, TIMES, ModelView, Output, WorkView
 from service.routing import Answer, Example
 from service.schemas import Envelope, Request, View, fields_of
 
@@ -50,19 +51,11 @@ class TrajectoryInDigits(Request):
     """A body, how it turns at t = 0, and the times at which its motion is wanted to a number of digits."""
 
     body: BodyInNumerals
-    angular_velocity: AngularVelocityInNumerals = Field(description="At t = 0, in body axes (rad/s).")
-    attitude: QuaternionInNumerals | None = Field(
-        default=None,
-        description="Body to space at t = 0, [w, x, y, z]; of any length but zero. If it is given, the attitude at "
-        "every time is answered.",
-    )
-    times: TimesInNumerals = Field(description="Measured from the given state, of either sign, in any order (s).")
+    angular_velocity: AngularVelocityInNumerals = ANGULAR_VELOCITY
+    attitude: QuaternionInNumerals | None = ATTITUDE
+    times: TimesInNumerals = TIMES
     digits: DigitCount
-    outputs: list[Output] | None = Field(
-        default=None,
-        min_length=1,
-        description="What to answer; default: time, angular_velocity, and attitude if one was given.",
-    )
+    outputs: list[Output] | None = OUTPUTS
 
 
 class TrajectoryAnswerInDigits(Envelope):
@@ -88,7 +81,7 @@ class PrecessionInDigits(Request):
     """A body and how it turns at t = 0, the answer wanted to a number of digits."""
 
     body: BodyInNumerals
-    angular_velocity: AngularVelocityInNumerals = Field(description="At t = 0, in body axes (rad/s).")
+    angular_velocity: AngularVelocityInNumerals = ANGULAR_VELOCITY
     digits: DigitCount
 
 
@@ -116,12 +109,8 @@ class StabilityInDigits(Request):
     """A body, and how fast it turns about its principal axes, the answer wanted to a number of digits."""
 
     body: BodyInNumerals
-    rate: RateInNumerals = Field(default=1.0, description="About each principal axis in turn (rad/s).")
-    disturbance: tuple[RateInNumerals, RateInNumerals] | None = Field(
-        default=None,
-        description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
-        "the interval of its flips is then answered (rad/s).",
-    )
+    rate: RateInNumerals = RATE
+    disturbance: tuple[RateInNumerals, RateInNumerals] | None = DISTURBANCE
     digits: DigitCount
 
 

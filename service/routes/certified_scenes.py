@@ -26,7 +26,7 @@ from service.routes.certified import (
     times_written,
 )
 from service.routes.rotation import ModelView, WorkView
-from service.routes.scenes import members, name_of
+from service.routes.scenes import OUTPUTS, TIMES, members, name_of
 from service.routing import Answer, Example
 from service.schemas import Envelope, Request
 
@@ -95,11 +95,11 @@ def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
     outputs: Any = list.__class_getitem__(Literal.__getitem__(tuple(scene.outputs)))
     own["times"] = (
         TimesInNumerals | None,
-        Field(default=None, description="Measured from the given state, of either sign, in any order (s)."),
+        TIMES,
     )
     own["outputs"] = (
         outputs | None,
-        Field(default=None, min_length=1, description="What to compute; by default everything."),
+        OUTPUTS,
     )
     own["digits"] = (DigitCount, ...)
     title = "".join(part.capitalize() for part in name_of(scene).split("-")) + "InDigits"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -17,7 +17,7 @@ from core.rotation.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
 from service.pricing import Priced, effort, speed_of
 from service.routes.bodies import counts, properties_of
-from service.routes.rotation import T_HANDLE
+from service.routes.rotation import ANGULAR_VELOCITY, T_HANDLE
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Span, Vector, View
 
@@ -26,7 +26,7 @@ class PrecessionRequest(Request):
     """A body and how it turns at t = 0."""
 
     body: Body
-    angular_velocity: AngularVelocity = Field(description="At t = 0, in body axes (rad/s).")
+    angular_velocity: AngularVelocity = ANGULAR_VELOCITY
     measure: Measure | None = Field(
         default=None, description="Measure the period by an integrator, as the first return within a tolerance."
     )
@@ -52,16 +52,20 @@ class PrecessionAnswer(Envelope):
     measured: MeasuredPeriod | None = None
 
 
+RATE: Any = Field(default=1.0, description="About each principal axis in turn (rad/s).")
+DISTURBANCE: Any = Field(
+    default=None,
+    description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
+    "the interval of its flips is then answered (rad/s).",
+)
+
+
 class StabilityRequest(Request):
     """A body, and how fast it turns about its principal axes."""
 
     body: Body
-    rate: AngularRate = Field(default=1.0, description="About each principal axis in turn (rad/s).")
-    disturbance: tuple[AngularRate, AngularRate] | None = Field(
-        default=None,
-        description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
-        "the interval of its flips is then answered (rad/s).",
-    )
+    rate: AngularRate = RATE
+    disturbance: tuple[AngularRate, AngularRate] | None = DISTURBANCE
 
 
 class EquilibriumView(View):

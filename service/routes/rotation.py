@@ -27,18 +27,28 @@ from service.schemas import Envelope, QuaternionRow, Request, Times, Vector, Vie
 
 Output = Literal["time", "angular_velocity", "attitude"]
 
+# Fields that a question has in doubles and in digits alike, each in the types of its own.
+ANGULAR_VELOCITY: Any = Field(description="At t = 0, in body axes (rad/s).")
+ATTITUDE: Any = Field(
+    default=None,
+    description="Body to space at t = 0, [w, x, y, z]; of any length but zero. If it is given, the attitude at "
+    "every time is answered.",
+)
+TIMES: Any = Field(description="Measured from the given state, of either sign, in any order (s).")
+OUTPUTS: Any = Field(
+    default=None,
+    min_length=1,
+    description="What to answer; default: time, angular_velocity, and attitude if one was given.",
+)
+
 
 class TrajectoryRequest(Request):
     """A body, how it turns at t = 0, and the times at which its motion is wanted."""
 
     body: Body
-    angular_velocity: AngularVelocity = Field(description="At t = 0, in body axes (rad/s).")
-    attitude: Quaternion | None = Field(
-        default=None,
-        description="Body to space at t = 0, [w, x, y, z]; of any length but zero. If it is given, the attitude at "
-        "every time is answered.",
-    )
-    times: Times = Field(description="Measured from the given state, of either sign, in any order (s).")
+    angular_velocity: AngularVelocity = ANGULAR_VELOCITY
+    attitude: Quaternion | None = ATTITUDE
+    times: Times = TIMES
     accuracy: Tolerance = Field(
         default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the motion."
     )
@@ -51,11 +61,7 @@ class TrajectoryRequest(Request):
         "accuracy.horizon says for how long the phase is known.",
     )
     round: Digits | None = DIGITS
-    outputs: list[Output] | None = Field(
-        default=None,
-        min_length=1,
-        description="What to answer; default: time, angular_velocity, and attitude if one was given.",
-    )
+    outputs: list[Output] | None = OUTPUTS
 
 
 class ModelView(View):

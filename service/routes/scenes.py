@@ -21,6 +21,9 @@ from service.routes.rotation import AccuracyView, ModelView, WorkView
 from service.routing import Answer, Example, Page, Question, Reply
 from service.schemas import SIGNATURE, Envelope, Request, Times, View, sample_count, sample_times
 
+TIMES: Any = Field(default=None, description="Measured from the given state, of either sign, in any order (s).")
+OUTPUTS: Any = Field(default=None, min_length=1, description="What to compute; by default everything.")
+
 
 class SceneAnswer(Envelope):
     """What was asked for of a scene, each figure under its own name."""
@@ -146,11 +149,11 @@ def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
     listed: Any = list.__class_getitem__(outputs)
     own["times"] = (
         Times | None,
-        Field(default=None, description="Measured from the given state, of either sign, in any order (s)."),
+        TIMES,
     )
     own["outputs"] = (
         listed | None,
-        Field(default=None, min_length=1, description="What to compute; by default everything."),
+        OUTPUTS,
     )
     own["round"] = (Digits | None, DIGITS)
     own["accuracy"] = (Tolerance, Field(default=1e-9, description="Largest tolerated relative error."))

@@ -17,7 +17,7 @@ from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
 from service.figures import SVG, Curve, Level, log_log
 from service.pricing import Priced, effort, extreme, speed_of
 from service.routes.bodies import counts, properties_of
-from service.routes.rotation import T_HANDLE
+from service.routes.rotation import ANGULAR_VELOCITY, T_HANDLE, TIMES
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
 
@@ -26,8 +26,8 @@ class WorkPrecisionRequest(Request):
     """A free rotation, and the methods to be compared on it."""
 
     body: Body
-    angular_velocity: AngularVelocity = Field(description="At t = 0, in body axes (rad/s).")
-    times: Times = Field(description="Measured from the given state, of either sign, in any order (s).")
+    angular_velocity: AngularVelocity = ANGULAR_VELOCITY
+    times: Times = TIMES
     methods: Annotated[list[Method], Field(min_length=1, max_length=100)] | None = Field(
         default=None, description="With their settings, a method as often as wanted; default: a ladder of every method."
     )
