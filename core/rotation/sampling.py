@@ -13,7 +13,7 @@ from core.rotation.constants_of_motion import Motion, Weights
 
 
 @kernel()
-def _quotient(above: float, over: float, lost: float) -> float:
+def quotient(above: float, over: float, lost: float) -> float:
     """Return above * over (1 + lost): one reciprocal serves three quotients, each as if divided."""
     near = above * over
     return fma(near, lost, near)
@@ -34,9 +34,9 @@ def about_quarter(
     lost = fma(-over, below, 1.0)
     signed = sign * over
     return (
-        _quotient((c_odd if odd else c_even) * (S if odd else C), signed, lost),
-        _quotient((b_odd if odd else b_even) * (C if odd else S), signed, lost),
-        _quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost),
+        quotient((c_odd if odd else c_even) * (S if odd else C), signed, lost),
+        quotient((b_odd if odd else b_even) * (C if odd else S), signed, lost),
+        quotient((d_odd if odd else d_even) * (D4 if odd else D3), over, lost),
     )
 
 

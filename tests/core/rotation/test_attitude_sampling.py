@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from core.double_double import Scaled
 from core.rotation.attitude_sampling import phase_at_start, sample_attitude, sample_steady
 from core.rotation.constants_of_motion import constants_of_motion
-from core.rotation.precession_constants import CIRCULAR, HYPERBOLIC, LIMIT, Precession, precession_constants
+from core.rotation.precession_constants import CIRCULAR, HYPERBOLIC, LIMIT, PrecessionConstants, precession_constants
 from core.rotation.sampling import sample_components
 from tests.core.rotation.test_constants_of_motion import motion
 from tests.oracles.polhode import Polhode
@@ -41,7 +41,7 @@ def built(moments, rates):
     return found, precession_constants(found, np.array(moments), ZERO, np.array(rates), ZERO)
 
 
-def sampled(found, pre: Precession, times) -> np.ndarray:
+def sampled(found, pre: PrecessionConstants, times) -> np.ndarray:
     out = np.empty((4, len(times)))
     sample_attitude(found, pre, np.array(times), SAME, out)
     return out.T
