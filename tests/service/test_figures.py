@@ -98,6 +98,9 @@ class TestFigure:
         for x, y in (*dots, *(point for line in lines(found) for point in line)):
             assert LEFT - 0.05 <= x <= LEFT + WIDTH + 0.05
             assert TOP - 0.05 <= y <= TOP + HEIGHT + 0.05
+        across = [line for line in found.iter(f"{NAMESPACE}line") if line.get("stroke-dasharray")]
+        assert len(across) == sum(level.value > 0.0 for level in levels)
+        assert all(TOP - 0.05 <= float(line.get("y1", "")) <= TOP + HEIGHT + 0.05 for line in across)
         told = texts(found)
         assert told[0] == title
         assert {level.label for level in levels if level.value > 0.0} <= set(told)
