@@ -84,6 +84,7 @@ class TestFigure:
     @example("", [Curve("", [(5e-324, LARGEST), (LARGEST, 5e-324)])], [])
     @example("", [Curve("", [(1.0, 1.0)])], [Level("", 5e-324)])
     @example("", [], [])
+    @example("", [Curve(str(k), [(1.0, 1.0)]) for k in range(len(COLOURS) + 1)], [])
     @settings(deadline=None, derandomize=True)
     def test_whatever_is_drawn_lies_within_the_frame_and_nothing_is_missing(
         self, title: str, curves: list[Curve], levels: list[Level]
