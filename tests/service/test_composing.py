@@ -59,7 +59,7 @@ PARTS = st.lists(TEXTS | TEXTS.map(memoryview) | arrays(), min_size=1, max_size=
 
 class TestDocument:
     @given(PARTS)
-    @settings(deadline=None, derandomize=True, max_examples=60)
+    @settings(deadline=None, derandomize=True, max_examples=40)
     def test_pieces_are_the_whole_for_any_mix_of_parts(self, parts: list[Any]) -> None:
         document = Document(sum(part.size for part in parts if isinstance(part, np.ndarray)), tuple(parts))
         pieces = list(document.pieces())
@@ -80,7 +80,7 @@ class TestDocument:
         assert rest == b""
 
     @given(PARTS)
-    @settings(deadline=None, derandomize=True, max_examples=30)
+    @settings(deadline=None, derandomize=True, max_examples=20)
     def test_memory_is_that_of_its_parts(self, parts: list[Any]) -> None:
         assert Document(0, tuple(parts)).memory == sum(len(memoryview(part).tobytes()) for part in parts)
 

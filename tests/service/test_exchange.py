@@ -361,18 +361,18 @@ class TestStream:
         assert len([*pieces]) == 2
         assert wire.counted() == {}
 
-    async def test_patience_is_for_each_piece(self) -> None:
+    async def test_patience_is_for_each_piece(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """A slow reader that goes on reading is served to the end."""
-        wire = Wire()
-        send = wire.exchange._send
+        allowed: list[float | None] = []
+        timeout = asyncio.timeout
 
-        async def slow(message: Any) -> None:
-            await asyncio.sleep(0.02)
-            await send(message)
+        def noted(seconds: float | None) -> asyncio.Timeout:
+            allowed.append(seconds)
+            return timeout(seconds)
 
-        wire.exchange._send = slow
-        await wire.exchange.stream([b"x" * SHORT] * 12, b'"x"', 0.2, [JSON])
-        assert len(wire.body) == 12 * SHORT
+        monkeypatch.setattr("service.exchange.asyncio.timeout", noted)
+        await Wire().exchange.stream([b"x" * SHORT, b"short"] * 4, b'"x"', 7.0, [JSON])
+        assert allowed == [7.0] * 4
 
     async def test_a_failure_in_the_middle_leaves_nobody_waiting(self) -> None:
         wire = Wire()

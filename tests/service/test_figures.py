@@ -84,6 +84,7 @@ class TestFigure:
     @example("", [Curve("", [(5e-324, LARGEST), (LARGEST, 5e-324)])], [])
     @example("", [Curve("", [(1.0, 1.0)])], [Level("", 5e-324)])
     @example("", [], [])
+    @example("", [Curve(str(k), [(1.0, 1.0)]) for k in range(len(COLOURS) + 1)], [])
     @settings(deadline=None, derandomize=True)
     def test_whatever_is_drawn_lies_within_the_frame_and_nothing_is_missing(
         self, title: str, curves: list[Curve], levels: list[Level]
@@ -98,6 +99,9 @@ class TestFigure:
         for x, y in (*dots, *(point for line in lines(found) for point in line)):
             assert LEFT - 0.05 <= x <= LEFT + WIDTH + 0.05
             assert TOP - 0.05 <= y <= TOP + HEIGHT + 0.05
+        across = [line for line in found.iter(f"{NAMESPACE}line") if line.get("stroke-dasharray")]
+        assert len(across) == sum(level.value > 0.0 for level in levels)
+        assert all(TOP - 0.05 <= float(line.get("y1", "")) <= TOP + HEIGHT + 0.05 for line in across)
         told = texts(found)
         assert told[0] == title
         assert {level.label for level in levels if level.value > 0.0} <= set(told)

@@ -7,6 +7,8 @@ import logging
 import re
 import subprocess
 import sys
+import time
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -35,6 +37,17 @@ def read(line: str) -> dict[str, Any]:
     return found
 
 
+@pytest.fixture
+def elsewhere(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Where clocks show another time than that of Greenwich."""
+    monkeypatch.setenv("TZ", "UTC-5:30")
+    time.tzset()
+    yield
+    monkeypatch.undo()
+    time.tzset()
+
+
+@pytest.mark.usefixtures("elsewhere")
 def test_a_line_tells_when_how_grave_who_and_what() -> None:
     made = record("%s of %d", "one", 2)
     made.created, made.msecs = 1_700_000_000.0625, 62.5

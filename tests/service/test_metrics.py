@@ -45,7 +45,7 @@ def kinds(text: bytes) -> dict[str, tuple[str, str]]:
 
 
 @given(OBSERVED)
-@settings(deadline=None, derandomize=True)
+@settings(deadline=None, derandomize=True, max_examples=60)
 def test_timings_are_the_librarys_histogram(observed: list[tuple[str, int, float]]) -> None:
     ours, theirs = CollectorRegistry(), CollectorRegistry()
     timings = Timings("x_seconds", "How long.")

@@ -226,9 +226,9 @@ class TestQueue:
         async with warm(place) as (processes, _):
             # It waits for longer than it may work, and works for longer than it may wait.
             ahead = ask(processes, b"wait a", patience=0.05)
-            behind = ask(processes, b"echo b", longest=0.1)
+            behind = ask(processes, b"echo b", longest=1.0)
             await until(lambda: ahead.begun)
-            await asyncio.sleep(0.2)
+            await asyncio.sleep(1.1)
             assert not ahead.reply.done()
             (place / "gate").touch()
             assert [await ahead.reply, await behind.reply] == [b"a", b"b"]
