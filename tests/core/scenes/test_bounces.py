@@ -1,8 +1,8 @@
 """Infinitely many jerks in closed form against one jerk after the other in rational arithmetic.
 
-A jerk is worked out here from its impulse J along the string: it takes J/M_i from the velocity of a shaft down its slope
-and adds J R^2/I_i = J/(M_i c_i) to the rate of its string; J follows from Newton's hypothesis that the string opens at e
-times the velocity with which it closed.
+A jerk is worked out here from its impulse J along the string: it takes J/M_i from the velocity of a shaft down its
+slope and adds J R^2/I_i = J/(M_i c_i) to the rate of its string; J follows from Newton's hypothesis that the string
+opens at e times the velocity with which it closed.
 """
 
 from __future__ import annotations
@@ -134,7 +134,11 @@ def test_jerks_accumulate_where_two_hundred_of_them_have_led(arc: Arc) -> None:
 
 def test_jerks_that_lose_nothing_never_accumulate() -> None:
     one = Fraction(1)
-    arc = Arc((one, one), (one, one), (one, one), (0 * one, 0 * one), one, 0 * one, (one, one), (0 * one, 0 * one), (one, one), (one / 2, one / 2))  # fmt: skip
+    none = 0 * one
+    arc = Arc(
+        (one, one), (one, one), (one, one), (none, none), one, none, (one, one), (none, none), (one, one),
+        (one / 2, one / 2),
+    )  # fmt: skip
     with precision(BITS):
         sequence = arc.sequence()
         assert sequence.limit is None

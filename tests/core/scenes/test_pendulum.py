@@ -36,7 +36,7 @@ def number(ball) -> mp.mpf:
     return mp.mpf(high) + mp.mpf(low)
 
 
-@settings(deadline=None, derandomize=True, max_examples=25)
+@settings(deadline=None, derandomize=True, max_examples=15)
 @given(frequency, angle, rate, st.lists(time, min_size=1, max_size=1))
 def test_every_regime_against_taylor_series(w0, psi, spin, times) -> None:
     with precision(BITS):
