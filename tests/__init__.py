@@ -1,1 +1,1 @@
-"""Tests; they mirror the code file for file."""
+"""Tests; they mirror the code file for file, but for what `test_architecture` lists."""

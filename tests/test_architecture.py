@@ -168,3 +168,38 @@ def test_the_page_about_the_house_names_every_room_and_what_it_may_import() -> N
         else:
             direct = set() if cell == "nothing" else set(cell.split(", "))
             assert direct.union(*(LEDGER[other] for other in direct)) == LEDGER[own], own
+
+
+PROVED_THROUGH = {
+    "core/compiled.py": "core/test_double_double.py",
+    "core/bodies/uniform.py": "core/bodies/test_solids.py",
+    "core/certified/scene_samples.py": "core/certified/test_scenes.py",
+    "core/integration/budget.py": "core/integration/methods/test_fixed_step.py",
+    "core/integration/methods/closed_form.py": "core/integration/test_solve.py",
+    "core/integration/methods/lsoda.py": "core/integration/methods/test_from_scipy.py",
+    "core/integration/methods/method.py": "contracts/test_methods.py",
+    "core/integration/methods/radau.py": "core/integration/methods/test_from_scipy.py",
+    "core/integration/system.py": "core/integration/test_solve.py",
+    "core/integration/trajectory.py": "core/integration/test_solve.py",
+    "core/rotation/absence.py": "core/rotation/test_precession.py",
+    "core/rotation/moves.py": "core/rotation/test_inherited.py",
+    "core/rotation/precession_figures.py": "core/rotation/test_precession.py",
+    "core/rotation/sensitivity.py": "core/rotation/test_inherited.py",
+    "core/scenes/chain_motion.py": "core/scenes/test_chain_on_wedge.py",
+    "core/scenes/rod_motion.py": "core/scenes/test_rod_in_hole.py",
+    "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
+    "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
+}
+"""Modules of core without a test file of their own name, and the one that proves them through what they serve."""
+
+
+@pytest.mark.parametrize("path", [path for path in CORE if path.name != "__init__.py"], ids=name)
+def test_tests_mirror_the_code(path: Path) -> None:
+    own = ROOT / "tests" / path.parent.relative_to(ROOT) / f"test_{path.name}"
+    through = PROVED_THROUGH.get(name(path))
+    assert own.exists() != (through is not None), f"{name(path)} has {'two' if through else 'no'} places for its tests"
+    assert through is None or (ROOT / "tests" / through).exists()
+
+
+def test_no_test_is_said_to_prove_what_there_is_not() -> None:
+    assert set(PROVED_THROUGH) <= {name(path) for path in CORE}

@@ -25,7 +25,7 @@ def rows(data: st.DataObject) -> np.ndarray:
     return np.array(columns).T.copy()
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=80)
 @given(st.data())
 def test_no_point_moves_by_anything(data: st.DataObject) -> None:
     points = rows(data)

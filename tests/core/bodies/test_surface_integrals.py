@@ -28,7 +28,7 @@ closed = st.one_of(
 POWERS = ((2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1))
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=30)
 @given(closed, part)
 def test_integrals_over_the_inside(surface, share) -> None:
     corners, faces = surface
@@ -82,7 +82,7 @@ def area_squared(corners: np.ndarray) -> Fraction:
     return sum(((p[i - 2] * q[i - 1] - p[i - 1] * q[i - 2]) ** 2 for i in range(3)), Fraction(0))
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=150)
 @given(st.data())
 def test_surfaces_are_told_apart_by_their_vertices(data: st.DataObject) -> None:
     n = data.draw(st.integers(3, 14))

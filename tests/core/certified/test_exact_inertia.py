@@ -12,26 +12,6 @@ from core.errors import InvalidParameter
 small = st.integers(-9, 9)
 
 
-def test_point_masses_give_their_tensor_exactly():
-    # Source: sum of m (r.r 1 - r r^T) about the centre of mass, worked by hand for three masses.
-    inertia = ExactMass.of_point_masses(["0.1", "0.2", "0.1"], [(0, 0, 0), (1, 0, 0), (0, 2, "0.5")]).of_motion
-    center = [Fraction(1, 2), Fraction(1, 2), Fraction(1, 8)]
-    points = [(Fraction(1, 10), (0, 0, 0)), (Fraction(1, 5), (1, 0, 0)), (Fraction(1, 10), (0, 2, Fraction(1, 2)))]
-    for i in range(3):
-        for j in range(3):
-            expected = Fraction(0)
-            for m, p in points:
-                d = [Fraction(x) - c for x, c in zip(p, center, strict=True)]
-                expected += m * ((sum(x * x for x in d) if i == j else 0) - d[i] * d[j])
-            assert inertia.tensor[i][j] == expected
-
-
-def test_point_masses_about_the_origin_keep_their_offset():
-    points = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
-    assert ExactMass.of_point_masses(1, points, "origin").of_motion.tensor[0] == (2, 0, 0)
-    assert ExactMass.of_point_masses("1", points).inertia[0] == (Fraction(4, 3), Fraction(1, 3), Fraction(1, 3))
-
-
 @settings(deadline=None, derandomize=True)
 @given(st.lists(st.tuples(small, small, small), min_size=4, max_size=6, unique=True))
 def test_moments_are_roots_of_the_cubic(points):

@@ -71,7 +71,7 @@ near = st.builds(
 """Two nearly equal moments, and no farther from the separatrix than doubles cancel."""
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=150)
 @given(states | near)
 def test_the_sign_that_decides_is_exact_or_left_open(state: State) -> None:
     assume(len(set(state.moments)) == 3)
@@ -90,7 +90,7 @@ def test_the_sign_that_decides_is_exact_or_left_open(state: State) -> None:
         assert abs(Fraction(found.cancellation) * abs(difference) - whole) <= Fraction(2) ** -52 * whole
 
 
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(deadline=None, derandomize=True, max_examples=150)
 @given(states | near)
 def test_amplitudes_rate_and_modulus_are_those_of_the_polhode(state: State) -> None:
     assume(len(set(state.moments)) == 3)

@@ -50,7 +50,7 @@ def motion(moments, rates) -> Motion:
     return constants_of_motion(np.array(moments), ZERO, np.array(rates), ZERO, True, difference(moments, rates))
 
 
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(deadline=None, derandomize=True, max_examples=120)
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate), decades, decades)
 def test_the_start_lies_at_its_phase(moments, rates, heavy, fast) -> None:
     moments = sorted(heavy * x for x in moments)

@@ -55,7 +55,7 @@ def test_the_step_solves_the_matrix_equation(squares: np.ndarray, spin: np.ndarr
     assert abs((after @ (after / moments)) / (before @ (before / moments)) - 1) < 1e-12
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=25)
 @given(shapes, spins, st.floats(0.01, 0.4))
 def test_the_step_is_that_of_a_riccati_equation(squares: np.ndarray, spin: np.ndarray, h: float) -> None:
     moments = squares.sum() - squares

@@ -1,19 +1,15 @@
-"""What all scenes share: numbers that no double holds, more digits where they cancel, refusals, roots."""
+"""What all scenes share: numbers that no double holds, more digits where they cancel, refusals."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import mpmath as mp
 import numpy as np
 import pytest
 
-from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.scenes.chain_on_wedge import ChainOnWedge
-from core.scenes.enclosure import BITS, exact
-from core.scenes.quadratics import exit_time, real_roots
 from core.scenes.rod_in_hole import RodInHole
 from core.scenes.unwinding_shafts import UnwindingShafts
 from tests.core.scenes.oracles import relative
@@ -60,49 +56,6 @@ def test_an_accuracy_that_cannot_be_had_is_refused_with_what_can() -> None:
         SHAFTS.answer(np.array([1.0]), accuracy=1e-18)
     assert 0 < refusal.value.achievable < 1e-13
     assert SHAFTS.answer(np.array([1.0]), accuracy=refusal.value.achievable).accuracy.how == "closed form"
-
-
-@pytest.mark.parametrize(
-    "coefficients",
-    [(1, -3, 2), (1e-200, 1, -1), (1, 1e200, 1), (0, 2, -8), (1, 0, -4), (1e100, -2e100, 1e100), (3, 5, 0)],
-)
-def test_roots_of_quadratics(coefficients: tuple[float, float, float]) -> None:
-    with precision(BITS), mp.workdps(500):
-        found = sorted(float(root) for root in real_roots(*map(exact, coefficients)))
-        a, b, c = (mp.mpf(v) for v in coefficients)
-        if a == 0:
-            true = [-c / b]
-        else:
-            root = mp.sqrt(b * b - 4 * a * c)
-            true = sorted([(-b - root) / (2 * a), (-b + root) / (2 * a)])
-        assert len(found) == len(true)
-        for value, exactly in zip(found, true, strict=True):
-            assert relative(value, exactly) < 2e-16
-        assert real_roots(exact(1), exact(0), exact(1)) == []
-
-
-@pytest.mark.parametrize(
-    ("value", "rate", "acceleration", "time"),
-    [
-        (1.0, -1.0, 0.0, 1.0),
-        (1.0, 1.0, 1.0, None),
-        (1.0, -1.0, 1.0, None),
-        (1.0, -2.0, 2.0, None),
-        (1.5, -2.0, 1.0, 1.0),
-        (0.0, 1.0, -2.0, 1.0),
-        (0.0, -1.0, 5.0, 0.0),
-        (0.0, 0.0, -1.0, 0.0),
-        (0.0, 0.0, 1.0, None),
-        (0.0, 1.0, 1.0, None),
-        (2.0, 0.0, -1.0, 2.0),
-        (2.0, 3.0, -1.0, 3 + math.sqrt(13)),
-        (1e-300, -1.0, 1e-300, 1e-300),
-    ],
-)
-def test_when_a_margin_is_left(value: float, rate: float, acceleration: float, time: float | None) -> None:
-    with precision(BITS):
-        found = exit_time(exact(value), exact(rate), exact(acceleration))
-        assert (None if found is None else float(found)) == (time if time is None else pytest.approx(time, rel=1e-15))
 
 
 def test_an_unsampled_chain_costs_no_samples() -> None:

@@ -18,7 +18,7 @@ CROSS = np.array([np.cross(np.eye(3), axis).T for axis in np.eye(3)])
 """Turning a momentum backwards about each axis: M' = M x e_k."""
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=25)
 @given(st.tuples(*3 * [st.floats(0.5, 4.0)]), st.tuples(*3 * [st.floats(-2.0, 2.0)]), st.floats(1e-3, 0.5))
 def test_a_step_turns_the_momentum_about_the_axes_there_and_back(moments, rates, h) -> None:
     inertia = np.array(moments)
@@ -31,7 +31,7 @@ def test_a_step_turns_the_momentum_about_the_axes_there_and_back(moments, rates,
     assert np.abs(inertia * got - momentum).max() <= 5 * 16 * U * 2 * size
 
 
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=25)
 @given(st.floats(0.01, 1.5), st.integers(1, 50))
 def test_an_oscillator_is_kicked_and_drifts(h, n) -> None:
     """exp(hA/2) exp(hB) exp(hA/2) with nilpotent parts: shears, of determinant one."""

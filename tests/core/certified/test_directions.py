@@ -1,0 +1,51 @@
+"""The sense of an axis that has none of its own."""
+
+from __future__ import annotations
+
+import pytest
+from flint import arb
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from core.balls import precision
+from core.certified.decimals import FLOOR_IN_DIGITS, Undetermined
+from core.certified.directions import TIE_BITS, floor_of_directions, oriented
+
+component = st.integers(-5, 5)
+
+
+def balls(vector) -> tuple[arb, arb, arb]:
+    return tuple(arb(x) for x in vector)
+
+
+@settings(deadline=None, derandomize=True, max_examples=300)
+@given(st.tuples(component, component, component))
+def test_the_nearest_body_axis_decides_and_of_equal_ones_the_first(vector) -> None:
+    assume(any(vector))
+    with precision(TIE_BITS):
+        found = [int(float(x)) for x in oriented(balls(vector))]
+        opposite = [int(float(x)) for x in oriented(balls([-x for x in vector]))]
+    assert found == opposite
+    assert found in (list(vector), [-x for x in vector])
+    sizes = [abs(x) for x in vector]
+    assert found[sizes.index(max(sizes))] > 0
+
+
+def test_a_tie_is_told_from_a_difference_by_more_bits() -> None:
+    tie = arb("0.5 +/- 1e-30"), arb("-0.5 +/- 1e-30"), arb(0)
+    with precision(64), pytest.raises(Undetermined):
+        oriented(tie)
+    # With all the bits that there are, what does not differ is taken as equal, and the first axis counts.
+    with precision(TIE_BITS):
+        assert float(oriented(tie)[0]) == 0.5
+    with precision(64):
+        assert float(oriented((arb("0.5 +/- 1e-30"), arb("-0.6 +/- 1e-30"), arb(0)))[1]) == pytest.approx(0.6)
+
+
+def test_a_sign_in_doubt_is_left_open() -> None:
+    with precision(TIE_BITS), pytest.raises(Undetermined):
+        oriented((arb("0 +/- 1"), arb(0), arb(0)))
+
+
+def test_the_last_place_lies_as_many_digits_below_one_as_are_carried() -> None:
+    assert floor_of_directions(16) == -16 * FLOOR_IN_DIGITS
