@@ -7,6 +7,8 @@ import os
 import sys
 from collections.abc import Sequence
 
+from pydantic import ValidationError
+
 from service import VERSION
 from service.app import create_app
 from service.keys import new_key
@@ -48,7 +50,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.stdout.write(f"key, shown only now: {key}\nline for keys_file:  {line}\n")
         return
     given = {name: value for name in ("host", "port", "workers") if (value := getattr(options, name)) is not None}
-    settings = Settings(**given)
+    try:
+        settings = Settings(**given)
+    except ValidationError as error:
+        faults = [f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}" for fault in error.errors()]
+        sys.exit("\n".join(faults))
     if options.openapi:
         sys.stdout.buffer.write(create_app(settings).openapi() + b"\n")
         return

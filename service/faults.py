@@ -81,7 +81,8 @@ class Layout:
     lengths : mapping of str to int
         For each name of a field that holds an array of fixed length, that length.
     elsewhere : mapping of str to str
-        Keys of the document that only another question has, and the key that makes it this one.
+        Keys of the document that only another question has, and tags of members that only it admits, each with the key
+        that makes it this one.
     """
 
     tags: Mapping[str, Names]
@@ -101,8 +102,11 @@ class Layout:
 
     def told_from(self, key: str, other: Layout) -> Layout:
         """Return this layout of questions that have a key, told from those that do not."""
-        own = self.names.get("", ())
-        return replace(self, elsewhere={name: key for name in other.names.get("", ()) if name not in own})
+        keys = set(other.names.get("", ())) - set(self.names.get("", ()))
+        tags = {tag for name, tags in other.tags.items() if name in self.tags for tag in tags} - set(
+            tag for tags in self.tags.values() for tag in tags
+        )
+        return replace(self, elsewhere=dict.fromkeys(keys | tags, key))
 
     def faults(self, found: Sequence[Any]) -> tuple[list[Fault], set[str]]:
         """Return the validator's findings as faults, no more than a problem lists, and the codes that they have."""
@@ -157,9 +161,12 @@ class Layout:
         detail = rule.format_map(context) if rule else str(entry["msg"]).removeprefix("Value error, ")
         named = steps[-1] if steps and isinstance(steps[-1], str) else ""
         if kind == "union_tag_invalid":
-            near = _nearest(str(context["tag"]), self.tags.get(named, ()))
-            discriminator = str(context["discriminator"]).strip("'")
-            return Fault(pointer_of((*steps, discriminator)), detail, near and f"did you mean '{near}'?")
+            tag, discriminator = str(context["tag"]), str(context["discriminator"]).strip("'")
+            near = _nearest(tag, self.tags.get(named, ()))
+            remedy = near and f"did you mean '{near}'?"
+            if tag in self.elsewhere:
+                remedy = f"'{tag}' does not go with {self.elsewhere[tag]}; leave {self.elsewhere[tag]} out for it"
+            return Fault(pointer_of((*steps, discriminator)), detail, remedy)
         if kind == "union_tag_not_found":
             return Fault(pointer_of(steps), detail, f"its values here: {', '.join(self.tags.get(named, ()))}")
         if kind in _OBJECTS and named in self.tags:

@@ -14,6 +14,7 @@ import hmac
 import os
 import re
 import secrets
+import stat
 from collections.abc import Mapping, Sequence
 from math import ceil, inf
 from pathlib import Path
@@ -143,6 +144,9 @@ class Keys:
 
     def _stamped(self) -> tuple[int, int, int]:
         state = os.stat(self._path)
+        if not stat.S_ISREG(state.st_mode):
+            # Reading a pipe would wait for its writer, and everybody with it.
+            raise ValueError(f"{self._path} is no file")
         return state.st_mtime_ns, state.st_size, state.st_ino
 
     def _read(self, known: Mapping[bytes, Key]) -> Sequence[Key]:

@@ -163,11 +163,15 @@ class Reader(Generic[Q]):
 
     def _refusal(self, error: ValidationError) -> Refusal:
         found = error.errors(include_url=False, include_input=False)
-        if self._key and any(fault["type"] == "missing" and fault["loc"] == (self._key,) for fault in found):
-            raise _Absent
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
             return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
+        if self._key and any(
+            # What is no object has no key either.
+            not fault["loc"] or (fault["type"] == "missing" and fault["loc"] == (self._key,))
+            for fault in found
+        ):
+            raise _Absent
         found_faults, codes = self._layout.faults(found)
         faults = [self._advised(fault) for fault in found_faults]
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, DirectoryPath, Field, FilePath
 from pydantic_settings import BaseSettings, SettingsConfigDict
+
+LONGEST = 1_000_000
+"""Seconds, about twelve days: beyond, timers of the system overflow; an infinite time is no setting."""
+
+
+def _named(value: object) -> object:
+    """Refuse a path that is empty: it would be the working directory, where none at all may have been meant."""
+    if value == "":
+        raise ValueError("is empty; leave it out for the default")
+    return value
 
 
 class Settings(BaseSettings):
@@ -57,10 +66,13 @@ class Settings(BaseSettings):
         default=65_536, ge=0, description="Request bodies longer than this are parsed in a compute process."
     )
     deadline_seconds: float = Field(
-        default=30.0, gt=0, description="Longest computation; a longer one is killed (503)."
+        default=30.0, gt=0, le=LONGEST, description="Longest computation; a longer one is killed (503)."
     )
     max_backlog_seconds: float = Field(
-        default=5.0, gt=0, description="Predicted time in the queue above which new large questions are refused (429)."
+        default=5.0,
+        gt=0,
+        le=LONGEST,
+        description="Predicted time in the queue above which new large questions are refused (429).",
     )
     max_held_bytes: int = Field(
         default=512_000_000,
@@ -69,9 +81,12 @@ class Settings(BaseSettings):
         "refused (429).",
     )
     stalled_seconds: float = Field(
-        default=20.0, gt=0, description="Time in which a client must take some of its answer; otherwise it is let go."
+        default=20.0,
+        gt=0,
+        le=LONGEST,
+        description="Time in which a client must take some of its answer; otherwise it is let go.",
     )
-    scratch: Path | None = Field(
+    scratch: Annotated[DirectoryPath, BeforeValidator(_named)] | None = Field(
         default=None, description="Directory for large results on their way between processes; default: shared memory."
     )
     cached_answers: int = Field(
@@ -81,7 +96,7 @@ class Settings(BaseSettings):
         default=8_000_000, ge=0, description="Memory that kept answers may take; those unused for longest go first."
     )
 
-    keys_file: Path | None = Field(
+    keys_file: Annotated[FilePath, BeforeValidator(_named)] | None = Field(
         default=None,
         description="File of the keys that may ask, one per line: name, SHA-256, requests per second, seconds of work "
         "per minute; read again when it changes. Default: everybody may ask.",
@@ -99,5 +114,5 @@ class Settings(BaseSettings):
         description="Which requests are logged, one JSON line each; failures are answers from 500 upwards.",
     )
     shutdown_seconds: int = Field(
-        default=10, ge=0, description="Time that answers in flight are given when the service is stopped."
+        default=10, ge=0, le=LONGEST, description="Time that answers in flight are given when the service is stopped."
     )

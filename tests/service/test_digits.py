@@ -381,6 +381,27 @@ async def test_a_document_that_is_no_object_is_refused_as_one(body: bytes) -> No
     [fault] = response.json()["errors"]
     assert (fault["pointer"], fault["detail"]) == ("", "must be an object")
     assert fault["remedy"].startswith("its keys: body, angular_velocity, ")
+    # Those of the question that is asked by default, even where the word is in it.
+    assert "accuracy" in fault["remedy"]
+
+
+async def test_a_kind_that_does_not_go_with_digits_is_told_from_one_that_is_none() -> None:
+    for kind, remedy in (
+        ("mesh", "'mesh' does not go with digits; leave digits out for it"),
+        ("cubiod", "did you mean 'cuboid'?"),
+    ):
+        [fault] = (await asked(TRAJECTORY, QUESTION | {"body": {"kind": kind}})).json()["errors"]
+        assert (fault["pointer"], fault["remedy"]) == ("/body/kind", remedy)
+
+
+@pytest.mark.parametrize("twice", [b'"digits": 20, "digits": 21', b'"digits": 20, "\\u0064igits": 20'])
+async def test_digits_given_twice_are_refused_as_that(twice: bytes) -> None:
+    body = orjson.dumps(QUESTION).replace(b'"digits":50', twice)
+    async with client_of(SERVICE) as client:
+        response = await client.post(TRAJECTORY, content=body, headers={"content-type": "application/json"})
+    problem = response.json()
+    assert (response.status_code, problem["code"]) == (400, "duplicate-key")
+    assert [fault["pointer"] for fault in problem["errors"]] == ["/digits"]
 
 
 async def test_the_key_may_be_written_with_escapes() -> None:

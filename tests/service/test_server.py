@@ -2,6 +2,7 @@
 
 import http.client
 import json
+import os
 import signal
 import socket
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -240,6 +242,38 @@ def test_several_server_processes_count_together_whatever_is_killed(start_server
     text = httpx.get(server.url + "/metrics").text
     assert f"polhode_job_seconds_count {statuses.count(200)}.0" in text
     assert "polhode_backlog_seconds 0.0" in text
+
+
+def server_processes(server: Server) -> list[int]:
+    """Return the ids of the processes that the first has started to serve."""
+    first = server.process.pid
+    started = map(int, Path(f"/proc/{first}/task/{first}/children").read_text().split())
+    return [one for one in started if b"spawn_main" in Path(f"/proc/{one}/cmdline").read_bytes()]
+
+
+def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_ever(
+    start_server: Callable[..., Server],
+) -> None:
+    server = start_server(POLHODE_WORKERS="2", POLHODE_COMPUTE_WORKERS="1")
+    server.wait_until_ready()
+    steps = {"kind": "runge-kutta-4", "step": 1e-4}
+    heavy = json.dumps(hostile.QUESTION | {"times": {"start": 0.0, "stop": 400.0, "count": 11}, "method": steps})
+    with ThreadPoolExecutor(4) as threads:
+        flying = [threads.submit(post, server, heavy.encode()) for _ in range(4)]
+        # Both wait for the answer to a question by then, and the gauge says so.
+        until = time.monotonic() + 30
+        while "polhode_backlog_seconds 0.0" in httpx.get(server.url + "/metrics").text:
+            assert time.monotonic() < until
+        for process in server_processes(server):
+            os.kill(process, signal.SIGKILL)
+        cut = [one.exception() is not None for one in flying]
+    assert any(cut)
+    while True:
+        with suppress(httpx.TransportError):
+            if "polhode_backlog_seconds 0.0" in httpx.get(server.url + "/metrics").text:
+                break
+        assert time.monotonic() < until + 60
+        time.sleep(0.1)
 
 
 def test_a_large_question_in_flight_is_finished_when_the_server_is_told_to_stop(

@@ -1,8 +1,10 @@
+import signal
+
 import pytest
 from pydantic import ValidationError
 
 from service.__main__ import main, parser
-from service.settings import Settings
+from service.settings import LONGEST, Settings
 
 
 @pytest.mark.parametrize("name", Settings.model_fields)
@@ -28,6 +30,31 @@ def test_settings_out_of_range_stop_the_start(monkeypatch: pytest.MonkeyPatch, n
     monkeypatch.setenv(f"POLHODE_{name}", value)
     with pytest.raises(ValidationError):
         Settings()
+
+
+@pytest.mark.parametrize("name", ["DEADLINE_SECONDS", "MAX_BACKLOG_SECONDS", "STALLED_SECONDS", "SHUTDOWN_SECONDS"])
+@pytest.mark.parametrize("value", ["inf", "nan", "-1", "1e400", "9" * 30, ""])
+def test_times_are_those_that_a_timer_can_keep(monkeypatch: pytest.MonkeyPatch, name: str, value: str) -> None:
+    monkeypatch.setenv(f"POLHODE_{name}", value)
+    with pytest.raises(ValidationError):
+        Settings()
+    monkeypatch.setenv(f"POLHODE_{name}", str(LONGEST))
+    signal.setitimer(signal.ITIMER_REAL, getattr(Settings(), name.lower()) + 1e3)
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("SCRATCH", ""), ("SCRATCH", "/none/such"), ("KEYS_FILE", ""), ("KEYS_FILE", "/none/such"), ("KEYS_FILE", "/")],
+)
+def test_paths_lead_somewhere_or_stop_the_start(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, value: str
+) -> None:
+    """An empty name of the file of keys must not let everybody in."""
+    monkeypatch.setenv(f"POLHODE_{name}", value)
+    with pytest.raises(SystemExit) as stop:
+        main([])
+    assert str(stop.value.code).startswith(f"POLHODE_{name}: ")
 
 
 def test_defaults_are_those_of_the_house() -> None:
