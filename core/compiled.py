@@ -2,7 +2,7 @@
 
 Compiled code is kept on disk, so only the first process after an installation compiles. The compiler by itself would
 notice a change of a function's own file only, and go on calling what it had compiled from another file before that
-changed; so what is kept is kept under a digest of every file that holds compiled functions.
+changed; so what is kept is kept under a digest of every file that holds compiled functions or constants of theirs.
 Floating-point semantics stay strict (no reassociation, no contraction): the error bounds rest on it.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -22,13 +23,18 @@ from numba.extending import intrinsic
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+_IMPORTED = re.compile(rb"^from core\.([\w.]+) import", re.MULTILINE)
+
+
 def _digest() -> str:
-    """Return a digest of every source file that compiles something."""
-    found = hashlib.sha256(numba.__version__.encode())
-    for path in sorted(Path(__file__).parent.rglob("*.py")):
-        text = path.read_bytes()
-        if b"core.compiled" in text or path.name == "compiled.py":
-            found.update(text)
+    """Return a digest of every source file that compiles something, and of those that it takes constants from."""
+    found, core = hashlib.sha256(numba.__version__.encode()), Path(__file__).parent
+    texts = {path: path.read_bytes() for path in core.rglob("*.py")}
+    compiling = {path for path, text in texts.items() if b"core.compiled" in text or path.name == "compiled.py"}
+    imported = {name.decode().replace(".", "/") for path in compiling for name in _IMPORTED.findall(texts[path])}
+    taken_from = {core / f"{name}.py" for name in imported} & set(texts)
+    for path in sorted(compiling | taken_from):
+        found.update(texts[path])
     return found.hexdigest()[:16]
 
 

@@ -182,6 +182,7 @@ PROVED_THROUGH = {
     "core/integration/system.py": "core/integration/test_solve.py",
     "core/integration/trajectory.py": "core/integration/test_solve.py",
     "core/rotation/absence.py": "core/rotation/test_precession.py",
+    "core/rotation/attitude_frame.py": "core/rotation/test_attitude.py",
     "core/rotation/moves.py": "core/rotation/test_inherited.py",
     "core/rotation/precession_figures.py": "core/rotation/test_precession.py",
     "core/rotation/sensitivity.py": "core/rotation/test_inherited.py",
