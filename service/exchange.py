@@ -32,8 +32,11 @@ class Direct(Protocol):
     def read(self, limit: int) -> bytes | None:
         """Return the request's body if it is here and no longer than the limit."""
 
-    def write(self, headers: bytes, body: bytes) -> bool:
-        """Send a response with status 200, of headers as they stand in it, each with its line end, and a body."""
+    def write(self, headers: bytes, body: bytes, took: float) -> bool:
+        """Send a response with status 200, of headers as they stand in it, each with its line end, and a body.
+
+        It may be sent with others that are ready, if it `took` (s) so little time that this delays nobody.
+        """
 
     async def write_piece(self, parts: Sequence[bytes | memoryview]) -> bool:
         """Send a piece of a response that is under way and has no stated length, without joining its parts."""
@@ -114,9 +117,9 @@ class Exchange:
         """Send an answer in one piece without waiting for anything, or return False and do nothing."""
         if self._direct is None or self._also or b"if-none-match" in self.headers:
             return False
-        milliseconds = 1e3 * (perf_counter() - self._since)
-        own = b"x-request-id: %b\r\nserver-timing: total;dur=%.3f\r\n" % (self.identity, milliseconds)
-        if not self._direct.write(answer.section + own, answer.text):
+        took = perf_counter() - self._since
+        own = b"x-request-id: %b\r\nserver-timing: total;dur=%.3f\r\n" % (self.identity, 1e3 * took)
+        if not self._direct.write(answer.section + own, answer.text, took):
             return False
         self.started = True
         self.close(200)

@@ -37,7 +37,7 @@ class ShortCuts:
     def read(self, limit: int) -> bytes | None:
         return self.body if self.body is not None and len(self.body) <= limit else None
 
-    def write(self, headers: bytes, body: bytes) -> bool:
+    def write(self, headers: bytes, body: bytes, took: float) -> bool:
         if self.writes:
             self.written.append((headers, body))
         return self.writes

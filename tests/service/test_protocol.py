@@ -14,7 +14,7 @@ from uvicorn.server import ServerState
 
 from service.app import Service
 from service.composing import Document
-from service.protocol import LONGEST, Protocol, ShortCuts
+from service.protocol import LONG, LONGEST, Protocol, ShortCuts
 from service.settings import Settings
 from tests.service.conftest import TOYS
 from tests.service.toy_routes import GOOD
@@ -245,8 +245,8 @@ def writes(monkeypatch: pytest.MonkeyPatch) -> Counter[bool]:
     found: Counter[bool] = Counter()
     write = ShortCuts.write
 
-    def counted(self: ShortCuts, headers: bytes, body: bytes) -> bool:
-        taken = write(self, headers, body)
+    def counted(self: ShortCuts, headers: bytes, body: bytes, took: float) -> bool:
+        taken = write(self, headers, body, took)
         found[taken] += 1
         return taken
 
@@ -408,15 +408,23 @@ async def test_nothing_overtakes_a_response(event: Any, after: list[bytes]) -> N
     assert transport.done.count(b"answer") == 1
 
 
+@pytest.mark.parametrize(("took", "soon"), [(0.0, True), (LONG / 2, True), (LONG, False), (0.1, False)])
+def test_what_took_long_waits_for_nothing_else(took: float, soon: bool) -> None:
+    cycle: Any = Cycle()
+    kept: list[bytes] = []
+    assert ShortCuts(cycle, kept.append).write(b"c: d\r\n", b"body", took)
+    assert (len(kept), len(cycle.written)) == (int(soon), int(not soon))
+
+
 def test_a_response_is_written_once() -> None:
     cycle: Any = Cycle()
     cuts = ShortCuts(cycle, cycle.write)
     assert cuts.read(2) == b"{}"
     assert not cycle.message_event.is_set()
-    assert cuts.write(b"c: d\r\n", b"body")
+    assert cuts.write(b"c: d\r\n", b"body", 0.0)
     assert cycle.written == [b"HTTP/1.1 200 OK\r\na: b\r\nc: d\r\n\r\nbody"]
     assert (cycle.response_complete, cycle.completed, cycle.message_event.is_set()) == (True, 1, True)
-    assert not cuts.write(b"c: d\r\n", b"body")
+    assert not cuts.write(b"c: d\r\n", b"body", 0.0)
     assert len(cycle.written) == 1
 
 
@@ -436,13 +444,13 @@ def test_a_response_is_written_once() -> None:
 )
 def test_a_response_that_is_no_plain_matter_is_left_alone(change: dict[str, Any]) -> None:
     cycle: Any = Cycle(**change)
-    assert not ShortCuts(cycle, cycle.write).write(b"c: d\r\n", b"body")
+    assert not ShortCuts(cycle, cycle.write).write(b"c: d\r\n", b"body", 0.0)
     assert (cycle.written, cycle.completed, cycle.response_complete) == ([], 0, False)
 
 
 def test_a_long_body_is_not_copied() -> None:
     cycle: Any = Cycle()
-    assert not ShortCuts(cycle, cycle.write).write(b"", b"x" * (LONGEST + 1))
+    assert not ShortCuts(cycle, cycle.write).write(b"", b"x" * (LONGEST + 1), 0.0)
 
 
 @pytest.mark.parametrize(
