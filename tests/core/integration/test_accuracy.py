@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from core.errors import AccuracyUnreachable, BudgetExceeded
-from core.integration.accuracy import CANDIDATES, choose, integrator, record, run_to_accuracy
+from core.integration.accuracy import CANDIDATES, integrator, record, run_to_accuracy
 from core.integration.budget import Budget
-from core.integration.methods import ClosedFormEvaluation
 from tests.core.integration.systems import elliptic_functions, oscillator
 
 ACCURACIES = [10.0**-n for n in range(1, 16)]
@@ -34,11 +33,6 @@ def test_nothing_cheaper_in_the_record_reaches_the_accuracy(accuracy: float) -> 
         assert mine.microseconds == min(e.microseconds for e in reach)
     else:
         assert mine.error == min(e.error for e in record())
-
-
-def test_a_closed_form_is_chosen_wherever_there_is_one() -> None:
-    assert isinstance(choose(oscillator(), 1e-3), ClosedFormEvaluation)
-    assert choose(oscillator(exact=False), 1e-3) == integrator(1e-3)
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-6, 1e-9, 1e-12])
