@@ -60,10 +60,10 @@ class Rows:
             i = next(i for i, row in enumerate(rows) if type(row) not in (list, tuple) or len(row) != self.width)
             raise InvalidParameter((*path, i), f"be a list of {self.width} numbers")
         flat = list(chain.from_iterable(rows)) if self.width else rows
-        kinds = set(map(type, flat))
-        allowed = {int} if self.whole else {int, float}
-        if not kinds <= allowed:
-            i = next(i for i, entry in enumerate(flat) if type(entry) not in allowed)
+        kinds = list(map(type, flat))
+        wrong = set(kinds) - ({int} if self.whole else {int, float})
+        if wrong:
+            i = min(map(kinds.index, wrong))
             raise InvalidParameter((*path, *self._place(i)), "be a whole number" if self.whole else "be a number")
         try:
             array = np.array(flat, dtype=np.int64 if self.whole else np.float64)
