@@ -13,6 +13,7 @@ import orjson
 from fastapi import FastAPI
 
 from service.answering import Answering
+from service.aside import aside
 from service.compute import Compute
 from service.dispatch import Dispatcher
 from service.documentation import documented, openapi
@@ -20,7 +21,6 @@ from service.exchange import Scope, Send
 from service.guards import Receive
 from service.logs import LOG
 from service.metrics import Metrics
-from service.processes import aside
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages

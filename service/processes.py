@@ -21,6 +21,7 @@ from threading import Lock, Thread
 from time import perf_counter
 from typing import Any, cast
 
+from service.aside import aside, tell
 from service.logs import LOG
 
 HEADER = 8
@@ -334,34 +335,4 @@ class Processes:
             code = handle.exitcode or 0
             handle.close()
         if not (killed or self._stopping):
-            _tell(loop, self._lost, code)
-
-
-async def aside(work: Callable[[], Any]) -> Any:
-    """Return what a function returns that may wait for long, in a thread that holds up nobody's exit."""
-    loop = asyncio.get_running_loop()
-    done: asyncio.Future[Any] = loop.create_future()
-
-    def settle(result: Any, error: BaseException | None) -> None:
-        if done.cancelled():
-            return
-        if error is None:
-            done.set_result(result)
-        else:
-            done.set_exception(error)
-
-    def run() -> None:
-        try:
-            outcome, error = work(), None
-        except BaseException as raised:
-            outcome, error = None, raised
-        _tell(loop, settle, outcome, error)
-
-    Thread(target=run, daemon=True).start()
-    return await done
-
-
-def _tell(loop: asyncio.AbstractEventLoop, call: Callable[..., None], *arguments: Any) -> None:
-    # Nobody is told any more once the loop is closed.
-    with contextlib.suppress(RuntimeError):
-        loop.call_soon_threadsafe(call, *arguments)
+            tell(loop, self._lost, code)

@@ -56,6 +56,7 @@ SERVICE_LAYERS = (
         "representation",
         "kept",
         "records",
+        "aside",
         "processes",
         "scratch",
     },

@@ -1,0 +1,39 @@
+"""What may wait for long, done in a thread of its own, and the event loop told of it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable
+from threading import Thread
+from typing import Any
+
+
+async def aside(work: Callable[[], Any]) -> Any:
+    """Return what a function returns that may wait for long, in a thread that holds up nobody's exit."""
+    loop = asyncio.get_running_loop()
+    done: asyncio.Future[Any] = loop.create_future()
+
+    def settle(result: Any, error: BaseException | None) -> None:
+        if done.cancelled():
+            return
+        if error is None:
+            done.set_result(result)
+        else:
+            done.set_exception(error)
+
+    def run() -> None:
+        try:
+            outcome, error = work(), None
+        except BaseException as raised:
+            outcome, error = None, raised
+        tell(loop, settle, outcome, error)
+
+    Thread(target=run, daemon=True).start()
+    return await done
+
+
+def tell(loop: asyncio.AbstractEventLoop, call: Callable[..., None], *arguments: Any) -> None:
+    """Call something in the event loop from another thread; nobody is told any more once the loop is closed."""
+    with contextlib.suppress(RuntimeError):
+        loop.call_soon_threadsafe(call, *arguments)
