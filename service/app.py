@@ -21,6 +21,7 @@ from service.exchange import Scope, Send
 from service.guards import Receive
 from service.logs import LOG
 from service.metrics import Metrics
+from service.rounds import ROUNDS
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages
@@ -78,11 +79,11 @@ class Service:
         return self._openapi
 
     @contextlib.asynccontextmanager
-    async def lifespan(self, app: Any = None) -> AsyncIterator[None]:
+    async def lifespan(self, app: Any = None) -> AsyncIterator[dict[str, Any]]:
         """Get ready in the background, while health is already answered; stop the compute processes at the end."""
         warming = asyncio.create_task(self._warm())
         try:
-            yield
+            yield {ROUNDS: self.dispatcher.rounds}
         finally:
             self.warm = False
             warming.cancel()

@@ -18,6 +18,7 @@ from service.compute import Compute
 from service.cors import Cors
 from service.exchange import VARY, Exchange, Scope, Send
 from service.guards import ClientGone, Receive, negotiated, read_body, require_acceptable, require_json
+from service.heads import Heads
 from service.kept import KeptAnswers
 from service.keys import Keys
 from service.logs import LOG
@@ -25,6 +26,7 @@ from service.metrics import Metrics
 from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.records import Records
 from service.representation import JSON, Header, Representation, etag_of
+from service.rounds import Rounds
 from service.routing import Page, Question, Route
 from service.settings import Settings
 
@@ -60,6 +62,15 @@ class Dispatcher:
         self._cors = Cors(settings.cors_origins) or None
         self._kept = KeptAnswers(settings.cached_answers, settings.cached_bytes)
         self._records = Records(metrics, settings.log_requests)
+        self.rounds = self._made_rounds()
+
+    def _made_rounds(self) -> Rounds | None:
+        """Return the rounds in which plain small questions are answered, or None where each request is looked at."""
+        if self._keys is not None or self._cors is not None:
+            return None
+        settings = self._settings
+        heads = Heads(self._routes, min(settings.max_body_bytes, settings.inline_bytes))
+        return Rounds(heads, self._answering, self._kept, self._metrics, self._records, settings.inline_seconds)
 
     def __call__(self, scope: Scope, receive: Receive, send: Send) -> Coroutine[Any, Any, None]:
         """Serve one HTTP request, when awaited."""
@@ -106,9 +117,7 @@ class Dispatcher:
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":
             media = negotiated(accept, (*route.representations, archive.MEDIA_TYPE))
-        body = exchange.body_at_once(settings.max_body_bytes)
-        if body is None:
-            body = await read_body(exchange.receive, headers, settings.max_body_bytes)
+        body = await read_body(exchange.receive, headers, settings.max_body_bytes)
         whole = self._kept.get(route.path, body) if media is None else None
         if whole is not None:
             self._metrics.cache_hits.inc()
@@ -125,8 +134,7 @@ class Dispatcher:
                 return
             whole = Representation(document.whole())
             self._kept.put(route.path, body, whole)
-        if not exchange.answer_at_once(whole):
-            await exchange.answer(whole)
+        await exchange.answer(whole)
 
     async def _stream(
         self, document: Document, etag: bytes, exchange: Exchange, headers: Sequence[Header] = (JSON,)

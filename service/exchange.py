@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping, Sequence
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Any
 
 from service.cors import Cors
 from service.guards import ClientGone, Receive
@@ -18,29 +18,15 @@ Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
 Send = Callable[[Message], Awaitable[None]]
 
-DIRECT = "polhode.direct"
-"""Name of the extension of a server whose value is a `Direct`."""
-
+PIECES = "polhode.pieces"
+"""Name of the extension of a server whose value is a `WritePiece`."""
 
 SHORT = 1_024
 """Bytes below which a piece of a stream is not worth being sent by itself."""
 
 
-class Direct(Protocol):
-    """A server's short cuts for small requests and responses; each may decline, having done nothing."""
-
-    def read(self, limit: int) -> bytes | None:
-        """Return the request's body if it is here and no longer than the limit."""
-
-    def write(self, headers: bytes, body: bytes, took: float) -> bool:
-        """Send a response with status 200, of headers as they stand in it, each with its line end, and a body.
-
-        It may be sent with others that are ready, if it `took` (s) so little time that this delays nobody.
-        """
-
-    async def write_piece(self, parts: Sequence[bytes | memoryview]) -> bool:
-        """Send a piece of a response that is under way and has no stated length, without joining its parts."""
-
+WritePiece = Callable[[Sequence[bytes | memoryview]], Awaitable[bool]]
+"""Sends a piece of a response that is under way and has no stated length, without joining its parts, or declines."""
 
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
 VARY: Header = (b"vary", b"accept")
@@ -72,10 +58,10 @@ class Exchange:
 
     __slots__ = (
         "_also",
-        "_direct",
         "_records",
         "_send",
         "_since",
+        "_write_piece",
         "headers",
         "identity",
         "key",
@@ -96,7 +82,7 @@ class Exchange:
         self.key: Key | None = None
         self._also = cors.headers(self.headers) if cors else ()
         extensions = scope.get("extensions")
-        self._direct: Direct | None = extensions.get(DIRECT) if extensions else None
+        self._write_piece: WritePiece | None = extensions.get(PIECES) if extensions else None
         self.identity = records.id_of(self.headers.get(b"x-request-id"))
 
     @property
@@ -108,22 +94,6 @@ class Exchange:
         """Return when the client has closed the connection; the body must have been read."""
         while (await self.receive())["type"] != "http.disconnect":
             pass
-
-    def body_at_once(self, limit: int) -> bytes | None:
-        """Return the request's body if the server has it whole already and it keeps the limit."""
-        return None if self._direct is None else self._direct.read(limit)
-
-    def answer_at_once(self, answer: Representation) -> bool:
-        """Send an answer in one piece without waiting for anything, or return False and do nothing."""
-        if self._direct is None or self._also or b"if-none-match" in self.headers:
-            return False
-        took = perf_counter() - self._since
-        own = b"x-request-id: %b\r\nserver-timing: total;dur=%.3f\r\n" % (self.identity, 1e3 * took)
-        if not self._direct.write(answer.section + own, answer.text, took):
-            return False
-        self.started = True
-        self.close(200)
-        return True
 
     async def answer(self, answer: Representation) -> None:
         """Send an answer in one piece, or that the client has it already."""
@@ -217,7 +187,7 @@ class Exchange:
         return known == b"*" or etag in [tag.strip().removeprefix(b"W/") for tag in known.split(b",")]
 
     async def _send_piece(self, parts: Sequence[bytes | memoryview]) -> None:
-        if self._direct is None or not await self._direct.write_piece(parts):
+        if self._write_piece is None or not await self._write_piece(parts):
             await self._send({"type": "http.response.body", "body": b"".join(parts), "more_body": True})
 
     async def _respond(self, status: int, body: bytes, headers: list[Header]) -> None:

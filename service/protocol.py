@@ -1,10 +1,9 @@
-"""The server's HTTP protocol, with short cuts for small requests and small answers.
+"""The server's HTTP protocol, with a shorter way for plain small questions.
 
-uvicorn hands over a body through three coroutines, checks and joins the headers of a response one by one, and writes
-headers and body apart; for a small answer this costs as much as finding it. Here a body that has arrived is taken, and
-a response whose headers are of known form is written, by one call each. Everything else is uvicorn's own: parsing,
-keeping alive, pipelining, back-pressure, disconnection, continuation, shutdown. Where any of them has a say, the short
-cut declines, having done nothing, and the application goes the ordinary way of ASGI. See docs/decisions/0009.
+A question that has arrived whole, with a head that has been understood before, is handed to the application's rounds
+(`service.rounds`) as it is; for a small answer, parsing and the messages of ASGI cost as much as finding it. Everything
+else is uvicorn's own: parsing, keeping alive, pipelining, back-pressure, disconnection, continuation, shutdown. Where
+any of them has a say, or the rounds decline a question, it goes the ordinary way of ASGI. See docs/decisions/0009.
 
 Four things are done otherwise:
 
@@ -21,22 +20,17 @@ Four things are done otherwise:
 from __future__ import annotations
 
 import sys
-from asyncio import Event
-from collections.abc import Callable, Sequence
+from asyncio import BaseTransport, Event
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from httptools import HttpRequestParser
 from uvicorn._types import ASGI3Application, ASGIReceiveCallable, ASGISendCallable, Scope
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol, RequestResponseCycle
 
-from service.exchange import DIRECT
-
-LONGEST = 65_536
-"""Bytes up to which copying a body behind its headers costs less than writing it by itself."""
-
-LONG = 3e-4
-"""Seconds beyond which an answer is sent as soon as it is found: others like it, ready behind it, would delay it more
-than a system call costs them."""
+from service.exchange import PIECES
+from service.rounds import ROUNDS, Rounds
 
 _OK = STATUS_LINE[200]
 _NO_HTTP = b"Invalid HTTP request received."
@@ -48,8 +42,20 @@ class Protocol(HttpToolsProtocol):
     _declined: tuple[bytes, int] | None = None
     """Headers of a request without the offer to upgrade, and the place in what was received where they ended."""
 
-    _unsent = b""
-    """A response that is sent when everything that is ready to run has run."""
+    _rounds: Rounds | None = None
+    """Where plain small questions are answered; None if every request has to go the ordinary way."""
+
+    _between = True
+    """Whether all that has arrived were whole requests."""
+
+    _waiting = b""
+    """A question that waits for its round, as it arrived."""
+
+    _told_at = 0.0
+    """When a round has answered last (s, the loop's time)."""
+
+    _opening: tuple[Any, bytes] = (None, b"")
+    """Default headers of the server, and how a response begins that has them."""
 
     _answered: RequestResponseCycle | None = None
     """The last request that has been begun to be answered, behind which others may wait."""
@@ -57,27 +63,59 @@ class Protocol(HttpToolsProtocol):
     _senseless = False
     """Whether something has arrived that is no HTTP, so that nothing behind it can be understood."""
 
-    def send_soon(self, response: bytes) -> None:
-        """Send a response behind all work that is ready, in one go with those of other connections.
+    def connection_made(self, transport: BaseTransport) -> None:
+        """Begin a connection."""
+        super().connection_made(transport)  # type: ignore[arg-type]
+        if not self.access_log and self.limit_concurrency is None:
+            self._rounds = self.app_state.get(ROUNDS)
 
-        A system call between two answers makes both slower: it drops the processor's caches, and wakes the client's.
-        """
-        self._unsent = response
-        self.loop.call_soon(self._send)
+    def told(self, headers: bytes, body: bytes) -> bool:
+        """Send the answer to the question that waits, as `service.rounds.Asker` has it."""
+        self._waiting = b""
+        if self.transport.is_closing():
+            return False
+        server, loop = self.server_state, self.loop
+        # The server makes them anew every second.
+        if self._opening[0] is not server.default_headers:
+            lines = [_OK, *(b"%b: %b\r\n" % header for header in server.default_headers)]
+            self._opening = server.default_headers, b"".join(lines)
+        self.transport.write(b"%b%b\r\n%b" % (self._opening[1], headers, body))
+        server.total_requests += 1
+        self._told_at = loop.time()
+        if self.timeout_keep_alive_task is None:
+            self._wait_for_more(self.timeout_keep_alive)
+        return True
 
-    def _send(self) -> None:
-        response, self._unsent = self._unsent, b""
-        if response:
-            self.transport.write(response)
+    def declined(self) -> None:
+        """Have the question that waits answered the ordinary way."""
+        data, self._waiting = self._waiting, b""
+        if not self.transport.is_closing():
+            self._parse(data)
+
+    def _finish(self) -> None:
+        """Have the question that waits answered, before anything else is done about the connection."""
+        if self._waiting and self._rounds is not None:
+            self._rounds.finish()
+
+    def _wait_for_more(self, seconds: float) -> None:
+        self.timeout_keep_alive_task = self.loop.call_later(seconds, self.timeout_keep_alive_handler)
+
+    def timeout_keep_alive_handler(self) -> None:
+        """Close a connection on which nothing has been asked for a while; questions do not set back its clock."""
+        idle = 0.0 if self._waiting else self.loop.time() - self._told_at
+        if idle < self.timeout_keep_alive and not self.transport.is_closing():
+            self._wait_for_more(self.timeout_keep_alive - idle)
+        else:
+            super().timeout_keep_alive_handler()
 
     def shutdown(self) -> None:
         """Close the connection, or have it closed after the response that is under way."""
-        self._send()
+        self._finish()
         super().shutdown()
 
     def eof_received(self) -> None:
-        """Send what is answered, before the connection is closed because the client sends no more."""
-        self._send()
+        """Answer what has been asked, before the connection is closed because the client sends no more."""
+        self._finish()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Tell who answers that the client has gone."""
@@ -90,7 +128,6 @@ class Protocol(HttpToolsProtocol):
     def send_400_response(self, msg: str) -> None:
         """Answer what is no HTTP, after what came before it."""
         self._senseless = True
-        self._send()
         cycle, begun = self.cycle, self._begun and self.cycle.more_body
         if begun and self.pipeline:
             # It is the last that came, and nothing has been done about it.
@@ -117,6 +154,11 @@ class Protocol(HttpToolsProtocol):
             )
             self.pipeline.appendleft((self.cycle, not_understood))
 
+    def on_message_begin(self) -> None:
+        """Begin to read a request."""
+        self._between = False
+        super().on_message_begin()
+
     def on_headers_complete(self) -> None:
         """Begin to answer; fields that are read from now on until the next request are none of its headers."""
         super().on_headers_complete()
@@ -131,6 +173,14 @@ class Protocol(HttpToolsProtocol):
             if self.cycle.response_complete:
                 self.shutdown()
         super().on_message_complete()
+        self._between = True
+
+    def on_response_complete(self) -> None:
+        """Let go of the request, and go on with the next."""
+        if self._answered is not None:
+            # The one reference that would keep the cycle until the collector of garbage finds it.
+            self._answered.scope.pop("extensions", None)
+        super().on_response_complete()
 
     @property
     def _begun(self) -> bool:
@@ -138,10 +188,28 @@ class Protocol(HttpToolsProtocol):
         return self.cycle is not None and self.cycle.scope is self.scope
 
     def data_received(self, data: bytes) -> None:
-        """Parse what has arrived."""
+        """Hand a plain question to the rounds, and parse what else has arrived."""
         if self._senseless:
             return
-        self._send()
+        self._finish()
+        cycle, rounds = self.cycle, self._rounds
+        if rounds is None or not self._between or not (cycle is None or cycle.response_complete):
+            self._parse(data)
+            return
+        head = data[: data.find(b"\r\n\r\n") + 4]
+        known = rounds.heads.known(head)
+        if known is None:
+            self._parse(data)
+            begun = self.cycle
+            if begun is not cycle and begun.keep_alive and self._between and self._begun and not self.pipeline:
+                rounds.heads.learn(head, len(data) - len(head), self.scope)
+        elif known.length == len(data) and not self.flow.write_paused:
+            self._waiting = data
+            rounds.ask(self, known.route, data[len(head) :])
+        else:
+            self._parse(data)
+
+    def _parse(self, data: bytes) -> None:
         super().data_received(data)
         rest: Any = memoryview(data) if self._declined else b""
         while self._declined and not self.transport.is_closing():
@@ -173,7 +241,7 @@ class Protocol(HttpToolsProtocol):
         self._declined = b"\r\n".join(lines) + b"\r\n\r\n", stopped.args[0]
 
     def _start_asgi_task(self, cycle: RequestResponseCycle, app: ASGI3Application) -> None:
-        extensions: dict[str, Any] = {DIRECT: ShortCuts(cycle, self.send_soon)}
+        extensions: dict[str, Any] = {PIECES: partial(write_piece, cycle)}
         cycle.scope["extensions"] = extensions
         self._answered = cycle
         super()._start_asgi_task(cycle, app)
@@ -190,73 +258,12 @@ async def not_understood(scope: Scope, receive: ASGIReceiveCallable, send: ASGIS
     await send({"type": "http.response.body", "body": _NO_HTTP, "more_body": False})
 
 
-class ShortCuts:
-    """The short cuts of one request, as `service.exchange.Direct` describes them.
-
-    Parameters
-    ----------
-    cycle : RequestResponseCycle
-        The request and its response, as uvicorn keeps them.
-    """
-
-    __slots__ = ("_cycle", "_send")
-
-    def __init__(self, cycle: RequestResponseCycle, send: Callable[[bytes], None]) -> None:
-        self._cycle, self._send = cycle, send
-
-    def read(self, limit: int) -> bytes | None:
-        """Return the body and leave everything as its last message would have left it."""
-        cycle = self._cycle
-        if (
-            cycle.more_body
-            or cycle.waiting_for_100_continue
-            or cycle.disconnected
-            or cycle.response_complete
-            or len(cycle.body) > limit
-        ):
-            return None
-        body = bytes(cycle.body)
-        cycle.body = bytearray()
-        cycle.flow.resume_reading()
-        cycle.message_event.clear()
-        return body
-
-    def write(self, headers: bytes, body: bytes, took: float) -> bool:
-        """Send the response and leave everything as its last message would have left it."""
-        cycle = self._cycle
-        if (
-            cycle.response_started
-            or cycle.disconnected
-            # The connection is to be closed after this response, which has to be said in it.
-            or not cycle.keep_alive
-            or cycle.waiting_for_100_continue
-            or cycle.more_body
-            # The client reads more slowly than it asks.
-            or cycle.flow.write_paused
-            or cycle.access_log
-            or cycle.scope["method"] == "HEAD"
-            or len(body) > LONGEST
-        ):
-            return False
-        parts = [_OK]
-        for name, value in cycle.default_headers:
-            parts += (name, b": ", value, b"\r\n")
-        parts += (headers, b"\r\n", body)
-        # The one reference that would keep the cycle until the collector of garbage finds it.
-        del cycle.scope["extensions"]
-        cycle.response_started = cycle.response_complete = True
-        (self._send if took < LONG else cycle.transport.write)(b"".join(parts))
-        cycle.message_event.set()
-        cycle.on_response()
-        return True
-
-    async def write_piece(self, parts: Sequence[bytes | memoryview]) -> bool:
-        """Send a chunk as its parts are; large ones would be copied twice to be joined."""
-        cycle = self._cycle
-        if not cycle.chunked_encoding or cycle.response_complete or cycle.scope["method"] == "HEAD":
-            return False
-        if cycle.flow.write_paused and not cycle.disconnected:
-            await cycle.flow.drain()
-        if not cycle.disconnected:
-            cycle.transport.writelines((b"%x\r\n" % sum(map(len, parts)), *parts, b"\r\n"))
-        return True
+async def write_piece(cycle: RequestResponseCycle, parts: Sequence[bytes | memoryview]) -> bool:
+    """Send a chunk as its parts are, as `service.exchange.WritePiece` has it; large ones are copied to be joined."""
+    if not cycle.chunked_encoding or cycle.response_complete or cycle.scope["method"] == "HEAD":
+        return False
+    if cycle.flow.write_paused and not cycle.disconnected:
+        await cycle.flow.drain()
+    if not cycle.disconnected:
+        cycle.transport.writelines((b"%x\r\n" % sum(map(len, parts)), *parts, b"\r\n"))
+    return True

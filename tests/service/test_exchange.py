@@ -1,4 +1,4 @@
-"""One request and its response, with a server's short cuts and without."""
+"""One request and its response, with a server that writes pieces by itself and without."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.cors import Cors
-from service.exchange import DIRECT, SHORT, VARY, Exchange
+from service.exchange import PIECES, SHORT, VARY, Exchange
 from service.guards import ClientGone
 from service.metrics import Metrics
 from service.problems import REGISTRY, Problem
@@ -26,24 +26,15 @@ ORIGIN = "https://a.example"
 ANSWER = Representation(b'{"a":1}')
 
 
-class ShortCuts:
-    """Short cuts that take what they are told to take."""
+class Pieces:
+    """Writes the pieces that it is told to take."""
 
-    def __init__(self, body: bytes | None = None, *, writes: bool = True, pieces: Sequence[bool] = ()) -> None:
-        self.body, self.writes, self.pieces = body, writes, iter(pieces)
-        self.written: list[tuple[bytes, bytes]] = []
+    def __init__(self, takes: Sequence[bool] = ()) -> None:
+        self.takes = iter(takes)
         self.sent: list[dict[str, Any]] = []
 
-    def read(self, limit: int) -> bytes | None:
-        return self.body if self.body is not None and len(self.body) <= limit else None
-
-    def write(self, headers: bytes, body: bytes, took: float) -> bool:
-        if self.writes:
-            self.written.append((headers, body))
-        return self.writes
-
-    async def write_piece(self, parts: Sequence[bytes | memoryview]) -> bool:
-        takes = next(self.pieces, True)
+    async def __call__(self, parts: Sequence[bytes | memoryview]) -> bool:
+        takes = next(self.takes, True)
         if takes:
             self.sent.append({"type": "http.response.body", "body": b"".join(parts), "more_body": True, "direct": True})
         return takes
@@ -55,7 +46,7 @@ class Wire:
     def __init__(
         self,
         method: str = "POST",
-        direct: ShortCuts | None = None,
+        pieces: Pieces | None = None,
         cors: str = "",
         stays: bool = True,
         **headers: str,
@@ -65,9 +56,9 @@ class Wire:
         self.metrics = Metrics()
         encoded = [(name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()]
         scope: dict[str, Any] = {"type": "http", "method": method, "path": "/v1/toy", "headers": encoded}
-        if direct is not None:
-            scope["extensions"] = {DIRECT: direct}
-            direct.sent = self.messages
+        if pieces is not None:
+            scope["extensions"] = {PIECES: pieces}
+            pieces.sent = self.messages
         self.exchange = Exchange(
             Records(self.metrics, "none"), Cors(cors) or None, "ask_toy", scope, self.receive, self.send
         )
@@ -111,14 +102,6 @@ class Wire:
 
 
 class TestBody:
-    def test_the_body_is_taken_where_the_server_has_it_and_it_keeps_the_limit(self) -> None:
-        assert Wire().exchange.body_at_once(10) is None
-        assert Wire(direct=ShortCuts()).exchange.body_at_once(10) is None
-        assert Wire(direct=ShortCuts(b"{}")).exchange.body_at_once(2) == b"{}"
-        assert Wire(direct=ShortCuts(b"{}")).exchange.body_at_once(1) is None
-        # An empty body is a body.
-        assert Wire(direct=ShortCuts(b"")).exchange.body_at_once(10) == b""
-
     async def test_gone_waits_for_the_end_of_the_connection(self) -> None:
         wire = Wire()
         messages = iter([{"type": "http.request", "body": b""}, {"type": "http.disconnect"}])
@@ -129,44 +112,6 @@ class TestBody:
     @pytest.mark.parametrize(("given_id", "kept"), [("grading-1.a_b", True), ("a b", False), ("x" * 65, False)])
     def test_the_id_is_the_clients_where_it_is_plain(self, given_id: str, kept: bool) -> None:
         assert (Wire(x_request_id=given_id).exchange.id == given_id) is kept
-
-
-class TestAtOnce:
-    @pytest.mark.parametrize("extra", [{}, {"accept": "*/*", "if_match": '"x"'}])
-    async def test_the_same_is_sent_as_without_the_short_cut(self, extra: dict[str, str]) -> None:
-        direct = ShortCuts()
-        quick, usual = Wire(direct=direct, x_request_id="a", **extra), Wire(x_request_id="a", **extra)
-        assert quick.exchange.answer_at_once(ANSWER)
-        await usual.exchange.answer(ANSWER)
-        ((section, body),) = direct.written
-        assert section.endswith(b"\r\n")
-        lines = [tuple(line.split(b": ", 1)) for line in section[:-2].split(b"\r\n")]
-        ours, theirs = dict(lines), dict(usual.messages[0]["headers"])
-        assert len(ours) == len(lines)
-        assert ours.pop(b"server-timing").startswith(b"total;dur=")
-        theirs.pop(b"server-timing")
-        assert (ours, body) == (theirs, usual.body)
-        assert quick.messages == []
-        assert quick.exchange.started
-        assert quick.counted() == usual.counted() == {"200": "1.0"}
-
-    @pytest.mark.parametrize(
-        "wire",
-        [
-            Wire(),
-            Wire(direct=ShortCuts(writes=False)),
-            Wire(direct=ShortCuts(), if_none_match='"other"'),
-            Wire(direct=ShortCuts(), cors=ORIGIN, origin=ORIGIN),
-            # Caches are to know that the answer to another origin has other headers.
-            Wire(direct=ShortCuts(), cors=ORIGIN),
-        ],
-        ids=["no short cuts", "declined", "has something", "another origin", "other origins"],
-    )
-    def test_what_it_cannot_say_is_left_to_the_usual_way(self, wire: Wire) -> None:
-        assert not wire.exchange.answer_at_once(ANSWER)
-        assert not wire.exchange.started
-        assert wire.messages == []
-        assert wire.counted() == {}
 
 
 class TestHas:
@@ -285,7 +230,7 @@ class TestStream:
     def test_all_pieces_are_sent_and_none_is_short(self, sizes: list[int], takes: list[bool] | None) -> None:
         """Whatever the server's short cut takes or declines; the last may be short, it has no next."""
         pieces = [bytes([97 + i]) * size for i, size in enumerate(sizes)]
-        wire = Wire(direct=None if takes is None else ShortCuts(pieces=takes))
+        wire = Wire(pieces=None if takes is None else Pieces(takes))
 
         async def run() -> None:
             given = (memoryview(piece) if i % 2 else piece for i, piece in enumerate(pieces))
@@ -340,12 +285,12 @@ class TestStream:
 
     @pytest.mark.parametrize("direct", [False, True])
     async def test_a_client_that_takes_nothing_is_let_go(self, direct: bool) -> None:
-        class Stalled(ShortCuts):
-            async def write_piece(self, parts: Sequence[bytes | memoryview]) -> bool:
+        class Stalled(Pieces):
+            async def __call__(self, parts: Sequence[bytes | memoryview]) -> bool:
                 await asyncio.Event().wait()
                 return True
 
-        wire = Wire(direct=Stalled() if direct else None)
+        wire = Wire(pieces=Stalled() if direct else None)
         send = wire.exchange._send
 
         async def stalling(message: Any) -> None:

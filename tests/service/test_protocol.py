@@ -1,4 +1,4 @@
-"""The short cuts of the protocol: the same bytes on the wire as uvicorn's own, whatever a client does."""
+"""The protocol with its rounds: the same bytes on the wire as uvicorn's own, whatever a client does."""
 
 import asyncio
 import json
@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +15,10 @@ from uvicorn.server import ServerState
 
 from service.app import Service
 from service.composing import Document
-from service.protocol import LONG, LONGEST, Protocol, ShortCuts
+from service.heads import MATTERS
+from service.keys import new_key
+from service.protocol import Protocol
+from service.rounds import ROUNDS, Rounds
 from service.settings import Settings
 from tests.service.conftest import TOYS
 from tests.service.toy_routes import GOOD
@@ -28,6 +32,9 @@ LARGE = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 30_000}
 FAIR = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 600}}).encode()
 MIDDLING = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 4_000}}).encode()
 
+FAILING = json.dumps(GOOD | {"behaviour": "unreachable"}).encode()
+NOT_FINITE = json.dumps(GOOD | {"behaviour": "nan"}).encode()
+
 
 def ask(body: bytes = BODY, more: bytes = b"") -> bytes:
     return HEAD + more + b"content-length: %d\r\n\r\n" % len(body) + body
@@ -38,20 +45,33 @@ def chunked(body: bytes, more: bytes = b"") -> bytes:
     return HEAD + more + b"transfer-encoding: chunked\r\n\r\n" + parts + b"0\r\n\r\n"
 
 
+class InOneProcess(Service):
+    """The application without compute processes, which starts at once."""
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] != "lifespan":
+            await super().__call__(scope, receive, send)
+            return
+        scope["state"][ROUNDS] = self.dispatcher.rounds
+        for name in ("startup", "shutdown"):
+            await receive()
+            await send({"type": f"lifespan.{name}.complete"})
+
+
 @asynccontextmanager
-async def serving(http: Any, **settings: Any) -> AsyncIterator[uvicorn.Server]:
-    app = Service(Settings(inline_seconds=1e9, inline_bytes=10**9, **settings), TOYS)
+async def serving(http: Any, config: dict[str, Any] | None = None, **settings: Any) -> AsyncIterator[uvicorn.Server]:
+    app = InOneProcess(Settings(inline_seconds=1e9, inline_bytes=10**9, **settings), TOYS)
     server = uvicorn.Server(
         uvicorn.Config(
             app,
             port=0,
             http=http,
-            lifespan="off",
+            lifespan="on",
             log_config=None,
-            access_log=False,
             server_header=False,
             date_header=False,
             headers=[("x-server", "one"), ("x-place", "two")],
+            **{"access_log": False, **(config or {})},
         )
     )
     task = asyncio.create_task(server.serve())
@@ -111,6 +131,26 @@ CASES: dict[str, tuple[bytes, ...]] = {
     "another origin": (ask(more=b"origin: https://a.example\r\n") + LAST,),
     "an id": (ask(more=b"x-request-id: mine-1\r\n") + LAST,),
     "an archive": (ask(more=b"accept: application/x-npz\r\n") + LAST,),
+    "several one by one": (ask(), ask(b"{}"), ask(LARGE), ask(FAIR), ask(), ask(b"{"), LAST),
+    "warned": (ask(json.dumps(GOOD | {"behaviour": "warn"}).encode()), ask(), LAST),
+    "failed one by one": (ask(FAILING), ask(more=b"x-request-id: same\r\n"), LAST),
+    "not finite": (ask(NOT_FINITE, b"x-request-id: same\r\n"), ask(), LAST),
+    "a pair behind one": (ask(), ask() + ask(), LAST),
+    "one and a half": (ask(), ask() + ask()[:40], ask()[40:], LAST),
+    "an empty body": (ask(b""), ask(), LAST),
+    "no length": (HEAD + b"\r\n", LAST),
+    "two types": (ask(more=b"content-type: text/plain\r\n"), LAST),
+    "another type": (ask().replace(b"application/json", b"text/plain"), ask(), LAST),
+    "json with a character set": (ask().replace(b"/json", b"/json; charset=utf-8"), LAST),
+    "a name of the client": (ask(more=b"user-agent: a\r\ncookie: b=c\r\n"), ask(), LAST),
+    "kept alive by name": (ask(more=b"connection: keep-alive\r\n"), ask(), LAST),
+    "a query": (ask().replace(b"/v1/toy ", b"/v1/toy?a=b "), LAST),
+    "an escaped path": (ask().replace(b"/v1/toy ", b"/v1/t%6fy "), LAST),
+    "an empty line before": (b"\r\n" + ask(), LAST),
+    "lines without returns": ((HEAD + b"content-length: 2\r\n\r\n{}").replace(b"\r\n", b"\n"), LAST),
+    "a length with a zero": (ask().replace(b"length: ", b"length: 0"), LAST),
+    "a length that is none": (ask().replace(b"length: ", b"length: x"),),
+    "a body that is too short": (ask()[:-1], b"}" + LAST),
     "head": (b"HEAD /healthz HTTP/1.1\r\nhost: x\r\n\r\n" + LAST,),
     "nothing there": (b"GET /nothing HTTP/1.1\r\nhost: x\r\n\r\n" + LAST,),
     "garbage": (b"GARBAGE\r\n\r\n",),
@@ -119,8 +159,10 @@ CASES: dict[str, tuple[bytes, ...]] = {
 }
 
 
-@pytest.mark.parametrize("cached", [0, 100])
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    ("case", "cached"),
+    [*((case, 100) for case in CASES), *((case, 0) for case in CASES if "alive" in case or " by " in case)],
+)
 async def test_the_wire_is_that_of_uvicorn(case: str, cached: int) -> None:
     settings = {"max_body_bytes": 65_000, "cached_answers": cached}
     found = []
@@ -240,39 +282,79 @@ async def test_origins_are_told_either_way() -> None:
 
 
 @pytest.fixture
-def writes(monkeypatch: pytest.MonkeyPatch) -> Counter[bool]:
-    """Count which short cuts were taken, and which declined."""
-    found: Counter[bool] = Counter()
-    write = ShortCuts.write
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
+    """The bodies of the questions that have been answered in rounds."""
+    found: list[bytes] = []
+    ask_in_round = Rounds.ask
 
-    def counted(self: ShortCuts, headers: bytes, body: bytes, took: float) -> bool:
-        taken = write(self, headers, body, took)
-        found[taken] += 1
-        return taken
+    def noted(self: Rounds, asker: Any, route: Any, body: bytes) -> None:
+        found.append(body)
+        ask_in_round(self, asker, route, body)
 
-    monkeypatch.setattr(ShortCuts, "write", counted)
+    monkeypatch.setattr(Rounds, "ask", noted)
     return found
 
 
-async def test_small_answers_take_the_short_cut(writes: Counter[bool]) -> None:
-    async with serving(Protocol, cached_answers=10) as server:
-        await told(server, ask() + ask() + chunked(BODY) + ask(LARGE) + ask(MIDDLING) + LAST)
-        assert writes == {True: 3, False: 1}
-        await told(server, ask(more=b"connection: close\r\n"))
-        assert writes == {True: 3, False: 2}
+async def test_what_is_asked_as_before_is_answered_in_rounds(asked: list[bytes]) -> None:
+    async with serving(Protocol) as server:
+        await told(server, ask(), LAST)
+        assert not asked
+        other = BODY.replace(b"0.1", b"0.2")
+        await told(server, ask(), ask(other), LAST)
+        assert asked == [BODY, other]
+        await told(server, ask() + ask(), chunked(BODY), ask(more=b"connection: close\r\n"))
+        assert asked == [BODY, other]
 
 
-async def test_a_client_that_does_not_read_gets_everything_in_the_end(writes: Counter[bool]) -> None:
+@pytest.mark.parametrize("name", sorted(MATTERS))
+async def test_a_header_that_matters_is_looked_at_each_time(asked: list[bytes], name: bytes) -> None:
+    values = {b"transfer-encoding": b"chunked", b"expect": b"100-continue", b"upgrade": b"h2c"}
+    more = b"%b: %b\r\n" % (name, values.get(name, b"gzip"))
+    question = chunked(BODY) if name == b"transfer-encoding" else ask(more=more)
+    async with serving(Protocol) as server:
+        for _ in range(2):
+            await told(server, question, LAST)
+    assert not asked
+
+
+@pytest.mark.parametrize("config", [{"access_log": True}, {"limit_concurrency": 100}], ids=str)
+async def test_what_the_server_is_to_do_for_each_request_is_left_to_it(
+    monkeypatch: pytest.MonkeyPatch, asked: list[bytes], config: dict[str, Any]
+) -> None:
+    monkeypatch.setattr("logging.Logger.hasHandlers", lambda self: self.name == "uvicorn.access")
+    async with serving(Protocol, config) as server:
+        await told(server, ask(), ask(), LAST)
+    assert not asked
+
+
+@pytest.mark.parametrize("settings", [{"cors_origins": "*"}, {"keys_file": True}], ids=["origins", "keys"])
+async def test_who_asks_is_looked_at_each_time(asked: list[bytes], settings: dict[str, Any], tmp_path: Path) -> None:
+    if "keys_file" in settings:
+        key, line = new_key("one")
+        settings = {"keys_file": tmp_path / "keys"}
+        settings["keys_file"].write_text(line + "\n")
+        more = b"authorization: Bearer %b\r\n" % key.encode()
+    else:
+        more = b"origin: https://a.example\r\n"
+    async with serving(Protocol, **settings) as server:
+        received = await told(server, ask(more=more), ask(more=more), LAST)
+    assert received.count(b"HTTP/1.1 200") == 3
+    assert not asked
+
+
+async def test_a_client_that_does_not_read_gets_everything_in_the_end(asked: list[bytes]) -> None:
     async with serving(Protocol) as server:
         reader, writer = await connect(server)
         # More than all buffers on the way hold, so that the server has to wait for the client.
-        writer.write(ask(FAIR) * 400 + LAST)
-        await asyncio.sleep(0.5)
+        for _ in range(400):
+            writer.write(ask(FAIR))
+            await asyncio.sleep(0.001)
+        writer.write(LAST)
         received = await asyncio.wait_for(reader.read(), 60)
         writer.close()
     assert received.count(b"HTTP/1.1 200") == 401
     assert received.endswith(b'{"status":"alive"}')
-    assert min(writes[True], writes[False]) > 0
+    assert 0 < len(asked) < 399
 
 
 async def test_a_client_that_leaves_harms_nobody() -> None:
@@ -325,34 +407,6 @@ async def test_an_idle_connection_is_closed_when_the_server_stops() -> None:
         writer.close()
 
 
-class Cycle:
-    """What a short cut sees of uvicorn's cycle: a request that has arrived whole and may be answered at once."""
-
-    def __init__(self, **changes: Any) -> None:
-        self.body, self.more_body = bytearray(b"{}"), False
-        self.response_started = self.response_complete = self.disconnected = self.access_log = False
-        self.waiting_for_100_continue, self.keep_alive = False, True
-        self.default_headers = [(b"a", b"b")]
-        self.scope: dict[str, Any] = {"method": "POST", "extensions": {}}
-        self.write_paused = False
-        self.written: list[bytes] = []
-        self.flow = self.transport = self
-        self.message_event = asyncio.Event()
-        self.message_event.set()
-        self.completed = 0
-        for name, value in changes.items():
-            setattr(self, name, value)
-
-    def resume_reading(self) -> None:
-        pass
-
-    def write(self, data: bytes) -> None:
-        self.written.append(data)
-
-    def on_response(self) -> None:
-        self.completed += 1
-
-
 class Transport:
     """Notes what a protocol does to its transport."""
 
@@ -373,20 +427,35 @@ class Transport:
 
 
 def connected() -> tuple[Protocol, Transport]:
-    config = uvicorn.Config(Service(Settings(), TOYS), log_config=None, lifespan="off")
-    protocol, transport = Protocol(config, ServerState(), {}), Transport()
+    service = Service(Settings(), TOYS)
+    config = uvicorn.Config(service, log_config=None, access_log=False, lifespan="off")
+    protocol, transport = Protocol(config, ServerState(), {ROUNDS: service.dispatcher.rounds}), Transport()
     protocol.connection_made(transport)  # type: ignore[arg-type]
+    protocol.data_received(ask())
     return protocol, transport
 
 
-async def test_responses_are_sent_behind_all_work_that_is_ready() -> None:
+def statuses(transport: Transport) -> list[bytes]:
+    return [
+        done.split(b"\r\n")[0].removeprefix(b"HTTP/1.1 ") for done in transport.done if done[:4] in (b"HTTP", b"clos")
+    ]
+
+
+async def until_answered(transport: Transport, count: int) -> None:
+    async with asyncio.timeout(20):
+        while len(statuses(transport)) < count:
+            await asyncio.sleep(0)
+
+
+async def test_answers_are_sent_behind_all_work_that_is_ready() -> None:
     protocol, transport = connected()
+    await until_answered(transport, 1)
+    protocol.data_received(ask())
     found = []
-    protocol.send_soon(b"answer")
-    asyncio.get_running_loop().call_soon(lambda: found.append(list(transport.done)))
-    assert not transport.done
+    asyncio.get_running_loop().call_soon(lambda: found.append(statuses(transport)))
+    assert statuses(transport) == [b"200 OK"]
     await asyncio.sleep(0)
-    assert (transport.done, found) == ([b"answer"], [[b"answer"]])
+    assert (statuses(transport), found) == ([b"200 OK"] * 2, [[b"200 OK"] * 2])
 
 
 @pytest.mark.parametrize(
@@ -394,79 +463,67 @@ async def test_responses_are_sent_behind_all_work_that_is_ready() -> None:
     [
         (lambda protocol: protocol.shutdown(), [b"closed"]),
         (lambda protocol: protocol.data_received(b"GET"), []),
-        (lambda protocol: protocol.send_400_response("no"), [b"HTTP/1.1 400 Bad Request", b"closed"]),
+        (lambda protocol: protocol.data_received(b"\0"), [b"400 Bad Request", b"closed"]),
         (lambda protocol: protocol.eof_received() or protocol.transport.close(), [b"closed"]),
     ],
     ids=["shutdown", "more", "no http", "the end of requests"],
 )
-async def test_nothing_overtakes_a_response(event: Any, after: list[bytes]) -> None:
+async def test_nothing_overtakes_an_answer(event: Any, after: list[bytes]) -> None:
     protocol, transport = connected()
-    protocol.send_soon(b"answer")
+    await until_answered(transport, 1)
+    protocol.data_received(ask())
     event(protocol)
-    assert [done.split(b"\r\n")[0] for done in transport.done] == [b"answer", *after]
+    assert statuses(transport) == [b"200 OK", b"200 OK", *after]
     await asyncio.sleep(0)
-    assert transport.done.count(b"answer") == 1
+    assert len(statuses(transport)) == 2 + len(after)
+    assert protocol.server_state.total_requests == 2
 
 
-@pytest.mark.parametrize(("took", "soon"), [(0.0, True), (LONG / 2, True), (LONG, False), (0.1, False)])
-def test_what_took_long_waits_for_nothing_else(took: float, soon: bool) -> None:
-    cycle: Any = Cycle()
-    kept: list[bytes] = []
-    assert ShortCuts(cycle, kept.append).write(b"c: d\r\n", b"body", took)
-    assert (len(kept), len(cycle.written)) == (int(soon), int(not soon))
+async def test_a_question_that_is_declined_when_the_server_stops_is_answered_all_the_same() -> None:
+    protocol, transport = connected()
+    await until_answered(transport, 1)
+    refused = BODY.replace(b"1.0", b"-10")
+    assert len(refused) == len(BODY)
+    protocol.data_received(ask(refused))
+    protocol.shutdown()
+    await until_answered(transport, 3)
+    assert statuses(transport) == [b"200 OK", b"422 Unprocessable Entity", b"closed"]
 
 
-def test_a_response_is_written_once() -> None:
-    cycle: Any = Cycle()
-    cuts = ShortCuts(cycle, cycle.write)
-    assert cuts.read(2) == b"{}"
-    assert not cycle.message_event.is_set()
-    assert cuts.write(b"c: d\r\n", b"body", 0.0)
-    assert cycle.written == [b"HTTP/1.1 200 OK\r\na: b\r\nc: d\r\n\r\nbody"]
-    assert (cycle.response_complete, cycle.completed, cycle.message_event.is_set()) == (True, 1, True)
-    assert not cuts.write(b"c: d\r\n", b"body", 0.0)
-    assert len(cycle.written) == 1
+async def test_a_client_that_has_left_is_told_nothing() -> None:
+    for body in (BODY, BODY.replace(b"1.0", b"-10")):
+        protocol, transport = connected()
+        await until_answered(transport, 1)
+        await asyncio.sleep(0.01)
+        protocol.data_received(ask(body))
+        transport.close()
+        protocol.connection_lost(None)
+        await asyncio.sleep(0)
+        assert statuses(transport) == [b"200 OK", b"closed", b"closed"]
+        assert not protocol.server_state.tasks
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"response_started": True},
-        {"disconnected": True},
-        {"keep_alive": False},
-        {"waiting_for_100_continue": True},
-        {"more_body": True},
-        {"write_paused": True},
-        {"access_log": True},
-        {"scope": {"method": "HEAD", "extensions": {}}},
-    ],
-    ids=lambda change: next(iter(change)),
-)
-def test_a_response_that_is_no_plain_matter_is_left_alone(change: dict[str, Any]) -> None:
-    cycle: Any = Cycle(**change)
-    assert not ShortCuts(cycle, cycle.write).write(b"c: d\r\n", b"body", 0.0)
-    assert (cycle.written, cycle.completed, cycle.response_complete) == ([], 0, False)
+async def test_a_connection_is_kept_as_long_as_questions_come_on_it() -> None:
+    protocol, transport = connected()
+    protocol.timeout_keep_alive = 0.1  # type: ignore[assignment]
+    await until_answered(transport, 1)
+    for _ in range(8):
+        await asyncio.sleep(0.03)
+        protocol.data_received(ask())
+    since = protocol.loop.time()
+    async with asyncio.timeout(20):
+        while not transport.is_closing():
+            await asyncio.sleep(0.001)
+    assert protocol.loop.time() - since > 0.09
+    assert statuses(transport) == [b"200 OK"] * 9 + [b"closed"]
 
 
-def test_a_long_body_is_not_copied() -> None:
-    cycle: Any = Cycle()
-    assert not ShortCuts(cycle, cycle.write).write(b"", b"x" * (LONGEST + 1), 0.0)
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"more_body": True},
-        {"waiting_for_100_continue": True},
-        {"disconnected": True},
-        {"response_complete": True},
-        {"body": bytearray(b"{} ")},
-    ],
-    ids=lambda change: next(iter(change)),
-)
-def test_a_request_that_is_no_plain_matter_is_left_alone(change: dict[str, Any]) -> None:
-    cycle: Any = Cycle(**change)
-    body = bytes(cycle.body)
-    assert ShortCuts(cycle, cycle.write).read(2) is None
-    assert bytes(cycle.body) == body
-    assert cycle.message_event.is_set()
+async def test_a_connection_on_which_a_question_waits_is_not_closed() -> None:
+    protocol, transport = connected()
+    await until_answered(transport, 1)
+    protocol.data_received(ask())
+    protocol._told_at = -1e9
+    protocol.timeout_keep_alive_handler()
+    assert not transport.is_closing()
+    await asyncio.sleep(0)
+    assert statuses(transport) == [b"200 OK"] * 2
