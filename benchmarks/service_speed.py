@@ -7,8 +7,9 @@ request is the server process's own, as its scheduler counts it, and suffers les
 
 "bare" is uvicorn with uvloop and httptools, reading the body and answering as many bytes. "transport" answers the
 question from a constant: all that is left is parsing, limits, metrics, writing. "plain" serves the same through
-uvicorn's own protocol. The load comes from wrk where it is installed, otherwise from threads of http.client, which
-flatter the slow servers.
+uvicorn's own protocol. "real" keeps no answers, so that every question is computed; "real, new" is the service as it
+is set by default, asked for another body and another spin each time. The load comes from wrk where it is installed,
+otherwise from threads of http.client, which flatter the slow servers.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Annotated, Any, Literal
 
 import uvicorn
@@ -38,7 +40,7 @@ from pydantic import BaseModel, Field
 from benchmarks.machine import RESULTS, described
 from core.bodies.measured import PrincipalMoments
 from service.routes.precession import PRECESSION
-from service.routing import Question
+from service.routing import TABLE, Question
 
 QUESTION = PRECESSION[0]
 BODY = json.dumps(
@@ -47,19 +49,15 @@ BODY = json.dumps(
 CONNECTIONS = 16
 Moment = Annotated[float, Field(gt=0)]
 TRANSPORT = "benchmarks.service_speed:transport"
-REAL = "benchmarks.service_speed:real"
+REAL = TABLE
 OURS = "service.protocol:Protocol"
 
 
-def real() -> tuple[Question, ...]:
-    """Return a table with the question as it is."""
-    return (QUESTION,)
-
-
 def transport() -> tuple[Question, ...]:
-    """Return a table with the question, whose answer is a constant of the same content."""
+    """Return a table with the question as the service has it, whose answer is a constant of the same content."""
     content = _content()
-    return (replace(QUESTION, handle=lambda question, budget: content),)
+    (asked,) = (route for route in resolve_name(REAL)() if route.path == QUESTION.path)
+    return (replace(asked, handle=lambda question, budget: content),)
 
 
 def _content() -> dict[str, Any]:
@@ -67,7 +65,7 @@ def _content() -> dict[str, Any]:
     from service.answering import Answering
     from service.reading import Limits
 
-    answering = Answering(real(), Budget(), Limits())
+    answering = Answering([QUESTION], Budget(), Limits())
     return QUESTION.handle(answering.read(QUESTION, BODY), Budget())
 
 
@@ -77,7 +75,7 @@ def _answer() -> bytes:
     from service.reading import Limits
     from service.writing import written
 
-    answering = Answering(real(), Budget(), Limits())
+    answering = Answering([QUESTION], Budget(), Limits())
     return written(answering.answer(QUESTION, answering.read(QUESTION, BODY)))
 
 
@@ -135,15 +133,15 @@ def idiomatic(table: str) -> Any:
 
     from core.integration.budget import Budget
 
-    route = real()[0] if table == REAL else transport()[0]
+    handle = QUESTION.handle if table == REAL else transport()[0].handle
     signature = {"source": "polhode", "version": "0"}
     app = FastAPI()
 
     async def endpoint(question: Asked) -> Any:
-        answer = dict(route.handle(QUESTION.question.model_construct(**asked(question)), Budget()))
+        answer = dict(handle(QUESTION.question.model_construct(**asked(question)), Budget()))
         return {"signature": signature, **answer, "warnings": []}
 
-    app.post(QUESTION.path, response_model=route.answer)(endpoint)
+    app.post(QUESTION.path, response_model=QUESTION.answer)(endpoint)
     return app
 
 
@@ -155,10 +153,26 @@ SERVERS: dict[str, tuple[Callable[[], Any], str]] = {
     "transport, cache, plain": (lambda: ours(TRANSPORT, 1024), "httptools"),
     "transport, FastAPI": (lambda: idiomatic(TRANSPORT), "httptools"),
     "real": (lambda: ours(REAL, 0), OURS),
+    "real, new": (lambda: ours(REAL, 1024), OURS),
     "real, cache": (lambda: ours(REAL, 1024), OURS),
     "real, FastAPI": (lambda: idiomatic(REAL), "httptools"),
 }
 """Applications, and the protocol they are served by."""
+
+ALIKE = """wrk.method = "POST"
+wrk.body = '%s'
+wrk.headers["Content-Type"] = "application/json"
+"""
+NEW = """local question = '{"body": {"kind": "principal-moments", "moments": [%%.15f, %%.15f, %%.15f]}, '
+  .. '"angular_velocity": [%%.15f, %%.15f, %%.15f]}'
+local head = "POST %s HTTP/1.1\\r\\nHost: 127.0.0.1\\r\\nContent-Type: application/json\\r\\nContent-Length: "
+function request()
+  local r = math.random
+  local body = question:format(1 + r(), 2 + r() / 2, 2.5 + r() / 2, r(), r(), r())
+  return head .. #body .. "\\r\\n\\r\\n" .. body
+end
+"""
+"""What wrk asks: the same question each time, or another one."""
 
 
 def serve(name: str) -> None:
@@ -250,7 +264,7 @@ def with_wrk(port: int, seconds: float, script: Path) -> Load:
 
 
 def with_threads(port: int, seconds: float, script: Path) -> Load:
-    """Return what a few threads count."""
+    """Return what a few threads count, who ask the same question each time."""
     counts: list[int] = []
     until = time.monotonic() + seconds
 
@@ -279,17 +293,18 @@ def main(rounds: int = 9, seconds: float = 1.0) -> None:
     drive = with_wrk if shutil.which("wrk") else with_threads
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        script = folder / "post.lua"
-        quoted = BODY.decode().replace("\\", "\\\\").replace("'", "\\'")
-        script.write_text(f"wrk.method='POST'\nwrk.body='{quoted}'\nwrk.headers['Content-Type']='application/json'\n")
+        alike, new = folder / "alike.lua", folder / "new.lua"
+        alike.write_text(ALIKE % BODY.decode())
+        new.write_text(NEW % QUESTION.path)
         targets = {name: stack.enter_context(running(name)) for name in SERVERS}
-        for target in targets.values():
-            drive(target.port, 1.0, script)
+        scripts = {name: new if name.endswith(", new") else alike for name in SERVERS}
+        for name, target in targets.items():
+            drive(target.port, 1.0, scripts[name])
         order = list(targets)
         for _ in range(rounds):
             for name in order:
                 since = targets[name].processor_seconds()
-                done, rate = drive(targets[name].port, seconds, script)
+                done, rate = drive(targets[name].port, seconds, scripts[name])
                 rates[name].append(rate)
                 costs[name].append((targets[name].processor_seconds() - since) / done)
             order = order[1:] + order[:1]

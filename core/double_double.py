@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from core.compiled import fma, kernel
+from core.compiled import bits_of, double_from_bits, fma, kernel
 
 Pair = tuple[float, float]
 
@@ -113,12 +113,14 @@ def dd_sqrt(ah: float, al: float) -> Pair:
     if ah <= 0.0:
         return 0.0, 0.0
     s = math.sqrt(ah)
+    # Corrections are multiplied by it: dividing takes longer, and the last digit of a correction decides nothing.
+    inverse = 0.5 / s
     rho = fma(-s, s, ah) + al
-    sh, sl = fast_two_sum(s, rho / (2.0 * s))
+    sh, sl = fast_two_sum(s, rho * inverse)
     # One Newton step in pairs takes the error of the step above (about 2^-104) below the pair's own.
     ph, pl = dd_mul(sh, sl, sh, sl)
     dh, _ = dd_add(ah, al, -ph, -pl)
-    return dd_add_d(sh, sl, dh / (2.0 * sh))
+    return dd_add_d(sh, sl, dh * inverse)
 
 
 @kernel()
@@ -162,10 +164,21 @@ class Scaled(NamedTuple):
 
 
 @kernel()
+def _power(e: int) -> float:
+    """Return 2^e for -1022 <= e <= 1023."""
+    return double_from_bits((e + 1023) << 52)
+
+
+@kernel()
 def scaled(h: float, low: float, exponent: int) -> Scaled:
     """Return (h + low) 2^exponent, normalised."""
     if h == 0.0:
         return Scaled(0.0, 0.0, 0)
+    e = ((bits_of(h) >> 52) & 0x7FF) - 1022
+    if -1000 < e < 1000:
+        f = _power(-e)
+        return Scaled(h * f, low * f, exponent + e)
+    # Near the ends of the range, 2^-e or h itself may be no normal number.
     m, e = math.frexp(h)
     return Scaled(m, math.ldexp(low, -e), exponent + e)
 
@@ -196,7 +209,7 @@ def sc_add(a: Scaled, b: Scaled) -> Scaled:
     shift = b.exponent - a.exponent
     if shift < -300:
         return a
-    f = math.ldexp(1.0, shift)
+    f = _power(shift)
     h, low = dd_add(a.high, a.low, b.high * f, b.low * f)
     return scaled(h, low, a.exponent)
 
@@ -230,5 +243,5 @@ def sc_pair(a: Scaled) -> Pair:
         half = e >> 1
         f, g = math.ldexp(1.0, max(half, -1074)), math.ldexp(1.0, max(e - half, -1074))
         return a.high * f * g, a.low * f * g
-    f = math.ldexp(1.0, e)
+    f = _power(e)
     return a.high * f, a.low * f

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib import resources
 from math import ceil, exp, hypot, log
 from sys import float_info
@@ -77,9 +77,13 @@ class Priced:
     operation: str
     counts: Callable[[Any, Budget], Counts]
 
+    @cached_property
+    def _seconds(self) -> Counts:
+        return calibration().seconds[self.operation]
+
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
-        return _sum(calibration().seconds[self.operation], self.counts(question, budget))
+        return _sum(self._seconds, self.counts(question, budget))
 
     def size(self, question: Any, budget: Budget) -> float:
         """Return the predicted length of an answer as JSON (bytes)."""

@@ -18,7 +18,7 @@ from pydantic_core import SchemaValidator
 from core.rows import Rows
 from service.faults import Layout
 from service.guards import Limits, require_distinct_keys, require_simple
-from service.large_arrays import Taken, take_out, taking
+from service.large_arrays import LEAST_BYTES, Taken, take_out, taking
 from service.problems import Fault, Refusal
 
 Q = TypeVar("Q")
@@ -94,21 +94,17 @@ class Reader(Generic[Q]):
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
         self._layout = Layout.of(schema)
         marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, ByPresence)]
-        # The discriminator of the union would have the whole document built to look for a key.
-        self._told_apart = [
-            (
-                mark,
-                [
-                    Reader(member, limits, partial(mark.advised, having=having))
-                    for having, member in zip((False, True), get_args(get_args(question)[0]), strict=True)
-                ],
-            )
-            for mark in marks
-        ]
         self._key = ""
-        for mark, (without, having) in self._told_apart:
+        # The discriminator of the union would have the whole document built to look for a key.
+        self._told_apart: tuple[ByPresence, Reader[Q], Reader[Q]] | None = None
+        for mark in marks:
+            without, having = [
+                Reader(member, limits, partial(mark.advised, having=having))
+                for having, member in zip((False, True), get_args(get_args(question)[0]), strict=True)
+            ]
             having._layout = having._layout.told_from(mark.key, without._layout)
             having._key = mark.key
+            self._told_apart = mark, without, having
         self._advised = advised
         self._limits = limits
 
@@ -120,27 +116,38 @@ class Reader(Generic[Q]):
         Refusal
             With the pointers of what is wrong.
         """
+        if len(body) < LEAST_BYTES:
+            apart = self._told_apart
+            if apart is None:
+                return self._plain(body)
+            if not apart[0].may_be_in(body):
+                return apart[1]._plain(body)
         if len(body) < LARGE:
             return self._read(body)
         with _collecting_later():
             return self._read(body)
+
+    def _plain(self, body: bytes) -> Q:
+        """Return the question of a document that is one of this kind, and has no large arrays."""
+        try:
+            return self._validated(body)
+        except ValidationError as error:
+            raise self._refusal(error) from None
 
     def _read(self, body: bytes) -> Q:
         return self._told(body, *take_out(body, self._arrays))
 
     def _told(self, body: bytes, rest: bytes, taken: Taken | None) -> Q:
         """Return the question of a document, from which arrays may have been taken out."""
-        for mark, (without, having) in self._told_apart:
+        if self._told_apart is not None:
+            mark, without, having = self._told_apart
             require_simple(rest, self._limits)
-            meant: Q
             if mark.may_be_in(rest):
                 try:
-                    meant = having._read(body)
-                    return meant
+                    return having._read(body)
                 except _Absent:
                     pass
-            meant = without._told(body, rest, taken)
-            return meant
+            return without._told(body, rest, taken)
         if taken is not None:
             try:
                 question = self._validated(rest, taken)
@@ -150,10 +157,7 @@ class Reader(Generic[Q]):
                 # Faults of what is not JSON, or of an array where none is meant, are told of the document as it was.
                 if taken.complete and error.errors(include_url=False, include_input=False)[0]["type"] != "json_invalid":
                     raise self._refusal(error) from None
-        try:
-            return self._validated(body)
-        except ValidationError as error:
-            raise self._refusal(error) from None
+        return self._plain(body)
 
     def _validated(self, document: bytes, taken: Taken | None = None) -> Q:
         require_simple(document, self._limits)

@@ -38,11 +38,11 @@ class Representation:
         return [JSON, (b"content-length", b"%d" % len(self.text)), (b"etag", self.etag)]
 
 
-def etag_of(*parts: bytes) -> bytes:
+def etag_of(first: bytes, *more: bytes) -> bytes:
     """Return a strong validator for content that is, or is determined by, these bytes."""
-    # OpenSSL's hashes are faster on long texts, but take longer to begin than a small answer takes as a whole.
-    digest = hashlib.blake2b(parts[0], digest_size=12)
-    for part in parts[1:]:
+    # Processors have instructions for this one, which pays from a few hundred bytes on.
+    digest = hashlib.sha256(first)
+    for part in more:
         digest.update(b"\0")
         digest.update(part)
-    return b'"%b"' % digest.hexdigest().encode()
+    return b'"%b"' % digest.hexdigest()[:24].encode()

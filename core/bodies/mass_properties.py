@@ -71,9 +71,10 @@ class MassProperties:
     def __post_init__(self) -> None:
         self.inertia.setflags(write=False)
         self.inertia_tail.setflags(write=False)
-        for array in (self.center_of_mass, self.center_of_mass_tail):
-            if array is not None:
-                array.setflags(write=False)
+        if self.center_of_mass is not None:
+            self.center_of_mass.setflags(write=False)
+        if self.center_of_mass_tail is not None:
+            self.center_of_mass_tail.setflags(write=False)
 
     @classmethod
     def from_exact(
@@ -193,4 +194,9 @@ class MassProperties:
 def diagonal(moments: Sequence[float]) -> MassProperties:
     """Return mass properties of which only principal moments are known, in body axes as given, shape (3,)."""
     a, b, c = moments
-    return MassProperties(np.array((a, 0.0, 0.0, 0.0, b, 0.0, 0.0, 0.0, c)).reshape(3, 3), ZEROS)
+    inertia = np.zeros((3, 3))
+    inertia[0, 0], inertia[1, 1], inertia[2, 2] = a, b, c
+    properties = MassProperties(inertia, ZEROS)
+    # Where `principal` would keep what it finds.
+    properties.__dict__["principal"] = PrincipalInertia.along_body_axes((a, b, c))
+    return properties

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -23,6 +24,9 @@ MASSES = Rows(0, Quantity("kg", above=0))
 
 MASS_RANGE = 900
 """Most binary orders of magnitude between the heaviest and the lightest point: no product of theirs is lost to zero."""
+
+KEPT = 32
+"""Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
 
 InertiaRow = tuple[InertiaComponent, InertiaComponent, InertiaComponent]
 
@@ -48,7 +52,14 @@ class PrincipalMoments:
 
     def mass_properties(self) -> MassProperties:
         """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
-        return diagonal(self.moments).judged("moments")
+        return _of_moments(self.moments)
+
+
+@lru_cache(KEPT)
+def _of_moments(moments: tuple[float, float, float]) -> MassProperties:
+    """Return the mass properties for principal moments, which are kept: a body is asked about again and again."""
+    # Moments are greater than zero, so that those which compare equal are the same.
+    return diagonal(moments).judged("moments")
 
 
 @dataclass(frozen=True)

@@ -75,11 +75,15 @@ class PrincipalInertia:
         tail = ZEROS if inertia_tail is None else inertia_tail
         (a, d, e), (_, b, f), (_, _, c) = inertia.tolist()
         if d == 0.0 and e == 0.0 and f == 0.0:
-            return cls._permuted((a, b, c), tail)
+            return cls.along_body_axes((a, b, c), tail)
         return cls._diagonalised(inertia, tail)
 
     @classmethod
-    def _permuted(cls, values: tuple[float, float, float], tail: Floats) -> PrincipalInertia:
+    def along_body_axes(cls, values: tuple[float, float, float], tail: Floats = ZEROS) -> PrincipalInertia:
+        """Return the principal inertia of a diagonal tensor with these moments, their tails on the diagonal of `tail`.
+
+        The moments are only sorted: they stay as they are, and the axes are an exact signed permutation.
+        """
         if tail is ZEROS:
             order = sorted((0, 1, 2), key=values.__getitem__)
             tails = _NO_TAILS

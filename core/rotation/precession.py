@@ -131,13 +131,13 @@ OF_SYMMETRIC_BODIES = (
 _OF_A_CHANGE = ("period", "flip_interval", "precession_per_period", "mean_precession_rate")
 
 
-def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
+def precession(body: MassProperties, angular_velocity: Floats | tuple[float, float, float]) -> Precession:
     """Return how a free body precesses that turns with an angular velocity at t = 0.
 
     Parameters
     ----------
     body : MassProperties
-    angular_velocity : ndarray, shape (3,)
+    angular_velocity : ndarray, shape (3,), or tuple of 3 floats
         In body axes (rad/s).
 
     Raises
@@ -147,14 +147,13 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
     AccuracyUnreachable
         If the start is nearer to the separatrix than doubles resolve.
     """
-    given = np.ascontiguousarray(angular_velocity, dtype=np.float64)
-    x, y, z = given.tolist() if given.shape == (3,) else (inf,) * 3
+    x, y, z = _components(angular_velocity)
     if not (isfinite(x) and isfinite(y) and isfinite(z)):
         raise InvalidParameter("angular_velocity", "be three finite numbers")
     inertia, warnings = body.principal_of_motion, inherited_notices(body)
     if not inertia.moments[0] > 0.0:
         # Refused there unless a line of matter turns across itself.
-        FreeRotation(inertia, given)
+        FreeRotation(inertia, np.array((x, y, z)))
     symmetry = inertia.symmetry
     if x == y == z == 0.0:
         return Precession(symmetry, "rest", absent=_AT_REST.copy(), warnings=warnings)
@@ -166,7 +165,7 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
     parts = inertia.moments, inertia.moments_tail, inertia.axes, inertia.axes_tail
     regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, False, 0.0, 0.0, 0)
     if regime == UNDECIDED:
-        exact = exact_difference(Resolved.of(inertia, given))
+        exact = exact_difference(Resolved.of(inertia, np.array((x, y, z))))
         regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, True, *exact)
     if regime == UNREACHABLE:
         raise too_near_the_separatrix()
@@ -178,15 +177,25 @@ def precession(body: MassProperties, angular_velocity: Floats) -> Precession:
         lost = {name: _LOST[figure] for name, figure in zip(FIGURES, figures, strict=True) if figure in _LOST}
         absent |= {name: reason for name, (_, reason) in lost.items()}
         warnings += tuple(Notice(code, f"{name} {reason} and is null") for name, (code, reason) in lost.items())
-    body_rate, space_rate, period, flip, to_momentum, to_velocity, between, turned, mean = (
+    body_rate, space_rate, period, flip, to_momentum, to_velocity, between, turned, mean = [
         figure if isfinite(figure) else None for figure in figures
-    )
+    ]
     pointing: Floats = np.array(axis)
     pointing.setflags(write=False)
     return Precession(
         symmetry, told.regime, pointing, body_rate, space_rate, period, flip, to_momentum, to_velocity, between,
         told.order, turned, mean, absent, warnings,
     )  # fmt: skip
+
+
+def _components(vector: Floats | tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return the components of a vector, infinite if it has not three."""
+    if type(vector) is tuple and len(vector) == 3:
+        x, y, z = vector
+        return float(x), float(y), float(z)
+    given = np.asarray(vector, dtype=np.float64)
+    x, y, z = given.tolist() if given.shape == (3,) else (inf, inf, inf)
+    return x, y, z
 
 
 _SYMMETRY_AXIS: Mapping[Symmetry, int] = {"triaxial": -1, "oblate": 2, "prolate": 0, "linear": 0}

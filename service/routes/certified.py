@@ -148,16 +148,15 @@ class EitherPrice(Priced):
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
-        return self.other.price(question, budget) if self._of_other(question) else super().__call__(question, budget)
+        if isinstance(question, self.other.question):
+            return self.other.price(question, budget)
+        return super().__call__(question, budget)
 
     def size(self, question: Any, budget: Budget) -> float:
         """Return the predicted length of an answer as JSON (bytes)."""
-        if self._of_other(question):
+        if isinstance(question, self.other.question):
             return self.other.price.size(question, budget)
         return super().size(question, budget)
-
-    def _of_other(self, question: Any) -> bool:
-        return isinstance(question, self.other.question)
 
 
 def with_digits(route: Question, other: InDigits) -> Question:

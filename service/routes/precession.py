@@ -96,10 +96,10 @@ class StabilityAnswer(Envelope):
 def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
     """Answer with the figures and, if asked for, the measurement."""
     body = properties_of(question.body)
-    start = np.array(question.angular_velocity)
-    found: Precession = precession(body, start)
+    found: Precession = precession(body, question.angular_velocity)
     answer = found._asdict()
     if question.measure is not None:
+        start = np.array(question.angular_velocity)
         answer["measured"] = measure_period(TorqueFree(body, start), question.measure, budget)
     return answer
 
