@@ -62,16 +62,17 @@ class Heads:
         self.known = self._known.get
         """Return what a head was understood as, None if it is not known."""
 
-    def learn(self, head: bytes, body_bytes: int, scope: Mapping[str, Any]) -> None:
+    def learn(self, head: bytes, scope: Mapping[str, Any]) -> None:
         """Remember a head if it belongs to a plain question; `scope` is what the server's parser made of it."""
         route = self._routes.get((scope["method"], scope["path"]))
         headers = dict(scope["headers"])
+        length = headers.get(b"content-length", b"")
         if (
             isinstance(route, Question)
             and len(head) <= LONGEST
-            and body_bytes <= self._most_bytes
-            # Then nothing but its body has come behind the head, and all of it.
-            and headers.get(b"content-length") == b"%d" % body_bytes
+            and length.isdigit()
+            and len(length) < 10
+            and int(length) <= self._most_bytes
             and len(headers) == len(scope["headers"])
             and MATTERS.isdisjoint(headers)
             and headers.get(b"accept", b"*/*") in _PLAIN_JSON
@@ -79,7 +80,7 @@ class Heads:
         ):
             while len(self._known) >= MOST:
                 del self._known[next(iter(self._known))]
-            self._known[head] = Known(route, len(head) + body_bytes)
+            self._known[head] = Known(route, len(head) + int(length))
 
 
 def _is_json(headers: Mapping[bytes, bytes]) -> bool:

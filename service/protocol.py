@@ -48,6 +48,9 @@ class Protocol(HttpToolsProtocol):
     _between = True
     """Whether all that has arrived were whole requests."""
 
+    _held = b""
+    """A known head and what has arrived of its body."""
+
     _waiting = b""
     """A question that waits for its round, as it arrived."""
 
@@ -102,7 +105,7 @@ class Protocol(HttpToolsProtocol):
 
     def timeout_keep_alive_handler(self) -> None:
         """Close a connection on which nothing has been asked for a while; questions do not set back its clock."""
-        idle = 0.0 if self._waiting else self.loop.time() - self._told_at
+        idle = 0.0 if self._waiting or self._held else self.loop.time() - self._told_at
         if idle < self.timeout_keep_alive and not self.transport.is_closing():
             self._wait_for_more(self.timeout_keep_alive - idle)
         else:
@@ -111,6 +114,9 @@ class Protocol(HttpToolsProtocol):
     def shutdown(self) -> None:
         """Close the connection, or have it closed after the response that is under way."""
         self._finish()
+        if self._held:
+            held, self._held = self._held, b""
+            self._parse(held)
         super().shutdown()
 
     def eof_received(self) -> None:
@@ -196,18 +202,24 @@ class Protocol(HttpToolsProtocol):
         if rounds is None or not self._between or not (cycle is None or cycle.response_complete):
             self._parse(data)
             return
+        if self._held:
+            data, self._held = self._held + data, b""
         head = data[: data.find(b"\r\n\r\n") + 4]
         known = rounds.heads.known(head)
         if known is None:
             self._parse(data)
             begun = self.cycle
-            if begun is not cycle and begun.keep_alive and self._between and self._begun and not self.pipeline:
-                rounds.heads.learn(head, len(data) - len(head), self.scope)
-        elif known.length == len(data) and not self.flow.write_paused:
+            # What came behind the head was taken for its body; the parser may have seen another end of it.
+            if begun is not cycle and self._begun and begun.keep_alive and len(head) + len(begun.body) == len(data):
+                rounds.heads.learn(head, self.scope)
+        elif len(data) > known.length or self.flow.write_paused:
+            self._parse(data)
+        elif len(data) < known.length:
+            # Many clients send head and body apart.
+            self._held = data
+        else:
             self._waiting = data
             rounds.ask(self, known.route, data[len(head) :])
-        else:
-            self._parse(data)
 
     def _parse(self, data: bytes) -> None:
         super().data_received(data)

@@ -32,6 +32,8 @@ LARGE = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 30_000}
 FAIR = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 600}}).encode()
 MIDDLING = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 4_000}}).encode()
 
+TRAP = HEAD + b"content-length: 2\r\n\r\n"
+LOOSE = (HEAD + b"content-length: 6\r\n\r\n").replace(b"\r\n", b"\n") + b"{}\r\n\r\n"
 FAILING = json.dumps(GOOD | {"behaviour": "unreachable"}).encode()
 NOT_FINITE = json.dumps(GOOD | {"behaviour": "nan"}).encode()
 
@@ -137,7 +139,22 @@ CASES: dict[str, tuple[bytes, ...]] = {
     "not finite": (ask(NOT_FINITE, b"x-request-id: same\r\n"), ask(), LAST),
     "a pair behind one": (ask(), ask() + ask(), LAST),
     "one and a half": (ask(), ask() + ask()[:40], ask()[40:], LAST),
-    "an empty body": (ask(b""), ask(), LAST),
+    "an empty body": (ask(b""), ask(b""), ask(), LAST),
+    "head and body apart": (
+        ask()[: -len(BODY)],
+        BODY,
+        ask()[: -len(BODY)],
+        BODY,
+        ask(),
+        ask()[: -len(BODY)],
+        BODY,
+        LAST,
+    ),
+    "a known head, and its body piece by piece": (ask(), ask()[:-30], ask()[-30:-4], ask()[-4:], LAST),
+    "a known head, and more than its body": (ask(), ask()[:-30], ask()[-30:] + ask() + LAST),
+    "a known head, and another after half a body": (ask(), ask()[:-30], ask()),
+    "a body like a head": (ask(TRAP), ask(TRAP), TRAP.strip() + b"{}", LAST),
+    "bodies like heads, without returns": (LOOSE,),
     "no length": (HEAD + b"\r\n", LAST),
     "two types": (ask(more=b"content-type: text/plain\r\n"), LAST),
     "another type": (ask().replace(b"application/json", b"text/plain"), ask(), LAST),
@@ -304,6 +321,31 @@ async def test_what_is_asked_as_before_is_answered_in_rounds(asked: list[bytes])
         assert asked == [BODY, other]
         await told(server, ask() + ask(), chunked(BODY), ask(more=b"connection: close\r\n"))
         assert asked == [BODY, other]
+        await told(server, ask()[:-9], ask()[-9:], LAST)
+        assert asked == [BODY, other, BODY]
+
+
+async def test_a_head_is_learned_before_its_body_has_come(asked: list[bytes]) -> None:
+    async with serving(Protocol) as server:
+        apart = ask()[: -len(BODY)], BODY
+        received = await told(server, *apart, *apart, LAST)
+    assert asked == [BODY]
+    assert received.count(b"HTTP/1.1 200") == 3
+
+
+async def test_the_server_waits_for_the_rest_of_a_body_when_it_stops() -> None:
+    async with serving(Protocol) as server:
+        await told(server, ask(), LAST)
+        reader, writer = await connect(server)
+        writer.write(ask()[:-9])
+        await asyncio.sleep(0.05)
+        server.should_exit = True
+        await asyncio.sleep(0.2)
+        writer.write(ask()[-9:])
+        received = await asyncio.wait_for(reader.read(), 20)
+        writer.close()
+    assert received.startswith(b"HTTP/1.1 200 OK\r\n")
+    assert b"\r\nconnection: close\r\n" in received
 
 
 @pytest.mark.parametrize("name", sorted(MATTERS))
