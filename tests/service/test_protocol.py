@@ -152,7 +152,6 @@ CASES: dict[str, tuple[bytes, ...]] = {
     ),
     "a known head, and its body piece by piece": (ask(), ask()[:-30], ask()[-30:-4], ask()[-4:], LAST),
     "a known head, and more than its body": (ask(), ask()[:-30], ask()[-30:] + ask() + LAST),
-    "a known head, and another after half a body": (ask(), ask()[:-30], ask()),
     "a body like a head": (ask(TRAP), ask(TRAP), TRAP.strip() + b"{}", LAST),
     "bodies like heads, without returns": (LOOSE,),
     "no length": (HEAD + b"\r\n", LAST),
@@ -247,6 +246,13 @@ async def test_what_is_no_http_is_answered_in_its_turn(case: str) -> None:
             assert found == expected
             assert received.count(b"\r\n0\r\n\r\n") == whole.count(LARGE)
             assert received.endswith(b"}" if expected[-1] == 200 else b"\r\n\r\nInvalid HTTP request received.")
+
+
+async def test_another_request_instead_of_the_rest_of_a_body_is_taken_for_it() -> None:
+    async with serving(Protocol) as server:
+        received = await told(server, ask(), ask()[:-30], ask())
+    assert re.findall(rb"HTTP/1.1 \d+", received) == [b"HTTP/1.1 200", b"HTTP/1.1 400", b"HTTP/1.1 400"]
+    assert received.index(b"invalid-json") < received.index(b"Invalid HTTP request received.")
 
 
 async def test_a_request_is_answered_once_though_its_body_breaks_off_into_nonsense() -> None:
