@@ -1,0 +1,65 @@
+"""Every question of the table, asked in the three ways there are: the same bytes come back."""
+
+from __future__ import annotations
+
+import asyncio
+
+import httpx
+import orjson
+import pytest
+
+from service.app import create_app
+from service.routing import Question
+from service.rounds import SHORT, SMALL
+from service.settings import Settings
+from tests.service.test_rounds import Asker
+
+pytestmark = pytest.mark.anyio
+
+SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+EXAMPLES = [(route, name) for route in SERVICE.routes if isinstance(route, Question) for name in sorted(route.examples)]
+PASSING = ("x-request-id", "server-timing")
+
+
+async def asked_of(app: object, route: Question, body: bytes) -> tuple[dict[str, str], bytes]:
+    transport = httpx.ASGITransport(app)  # type: ignore[arg-type]
+    async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
+        response = await client.post(route.path, content=body, headers={"content-type": "application/json"})
+    assert response.status_code == 200, response.text
+    return {name: value for name, value in response.headers.items() if name not in PASSING}, response.content
+
+
+@pytest.fixture(scope="module", autouse=True)
+def warm() -> None:
+    # So that predicted times are times of computing.
+    SERVICE._answering.warm()
+
+
+@pytest.mark.parametrize(("route", "name"), EXAMPLES, ids=[f"{route.operation_id}: {name}" for route, name in EXAMPLES])
+async def test_every_way_answers_the_same(route: Question, name: str) -> None:
+    body = orjson.dumps(route.examples[name].question)
+    headers, text = await asked_of(SERVICE, route, body)
+    assert await asked_of(SERVICE.documented, route, body) == (headers, text)
+    rounds, asker = SERVICE.dispatcher.rounds, Asker()
+    assert rounds is not None
+    rounds.ask(asker, route, body)
+    await asyncio.sleep(0)
+    (heard,) = asker.heard
+    price = SERVICE._answering.price(route, SERVICE._answering.read(route, body))
+    assert (heard is None) is (price > SMALL or len(text) > SHORT)
+    if heard is not None:
+        lines = dict(line.split(": ", 1) for line in heard[0].decode().removesuffix("\r\n").split("\r\n"))
+        assert {line: value for line, value in lines.items() if line not in PASSING} == headers
+        assert heard[1] == text
+
+
+async def test_small_questions_are_answered_in_rounds() -> None:
+    rounds = SERVICE.dispatcher.rounds
+    assert rounds is not None
+    found = set()
+    for route, name in EXAMPLES:
+        asker = Asker()
+        rounds.ask(asker, route, orjson.dumps(route.examples[name].question))
+        await asyncio.sleep(0)
+        found |= {route.operation_id} if asker.heard != [None] else set()
+    assert found >= {"mass_properties", "rotation_trajectory", "precession", "stability", "wobble", "plan"}
