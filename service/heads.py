@@ -1,11 +1,12 @@
 """Heads of requests that have been understood: whoever sends the same bytes again asks in the same way.
 
-A client's requests differ in their bodies; their heads are the same but for the length of the body. Parsing one, and
-looking at each of its headers, costs more than finding it among those that are known.
+A client's requests differ in their bodies; their heads are the same but for the length of the body, and what names the
+single request. Parsing one, and looking at each of its headers, costs more than finding it among those that are known.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -23,16 +24,12 @@ MOST = 1_024
 """How many are remembered; the oldest gives way, so that no client can fill the memory with what it calls itself."""
 
 MATTERS = frozenset(
-    (
-        b"transfer-encoding",
-        b"expect",
-        b"upgrade",
-        b"content-encoding",
-        b"if-none-match",
-        b"x-request-id",
-    )
+    (b"transfer-encoding", b"expect", b"upgrade", b"content-encoding", b"if-none-match", b"x-request-id")
 )
 """Headers by which a request is read or answered in another way than a plain one."""
+
+_OWN = re.compile(rb"\r\n(x-request-id|traceparent|tracestate): ?([!-~]{1,512})(?=\r\n[^ \t])", re.IGNORECASE)
+"""Whole lines that name a single request: without them a head says the same."""
 
 _PLAIN_JSON = frozenset((b"*/*", b"application/json"))
 
@@ -59,13 +56,23 @@ class Heads:
     def __init__(self, routes: Mapping[tuple[str, str], Route], most_bytes: int) -> None:
         self._routes, self._most_bytes = routes, min(most_bytes, LONGEST_BODY)
         self._known: dict[bytes, Known] = {}
-        self.known = self._known.get
-        """Return what a head was understood as, None if it is not known."""
+
+    def find(self, head: bytes) -> tuple[Known | None, bytes | None]:
+        """Return what a head was understood as, None if it is not known, and the id that it gives to the request."""
+        known = self._known.get(head)
+        if known is not None or len(head) > LONGEST:
+            return known, None
+        common, own = _parted(head)
+        known = self._known.get(common) if own else None
+        if known is None:
+            return None, None
+        return Known(known.route, known.length + len(head) - len(common)), own.get(b"x-request-id")
 
     def learn(self, head: bytes, scope: Mapping[str, Any]) -> None:
         """Remember a head if it belongs to a plain question; `scope` is what the server's parser made of it."""
         route = self._routes.get((scope["method"], scope["path"]))
-        headers = dict(scope["headers"])
+        common, own = _parted(head)
+        headers = {name: value for name, value in scope["headers"] if name not in own}
         length = headers.get(b"content-length", b"")
         if (
             isinstance(route, Question)
@@ -73,14 +80,21 @@ class Heads:
             and length.isdigit()
             and len(length) < 10
             and int(length) <= self._most_bytes
-            and len(headers) == len(scope["headers"])
+            and len(headers) + len(own) == len(scope["headers"])
             and MATTERS.isdisjoint(headers)
             and headers.get(b"accept", b"*/*") in _PLAIN_JSON
             and _is_json(headers)
         ):
             while len(self._known) >= MOST:
                 del self._known[next(iter(self._known))]
-            self._known[head] = Known(route, len(head) + int(length))
+            self._known[common] = Known(route, len(common) + int(length))
+
+
+def _parted(head: bytes) -> tuple[bytes, Mapping[bytes, bytes]]:
+    """Return a head without the lines that name a single request, and what they say; all of it if one comes twice."""
+    lines = _OWN.findall(head)
+    own = {name.lower(): value for name, value in lines}
+    return (_OWN.sub(b"", head), own) if lines and len(own) == len(lines) else (head, {})
 
 
 def _is_json(headers: Mapping[bytes, bytes]) -> bool:

@@ -205,7 +205,7 @@ class Protocol(HttpToolsProtocol):
         if self._held:
             data, self._held = self._held + data, b""
         head = data[: data.find(b"\r\n\r\n") + 4]
-        known = rounds.heads.known(head)
+        known, identity = rounds.heads.find(head)
         if known is None:
             self._parse(data)
             begun = self.cycle
@@ -219,7 +219,7 @@ class Protocol(HttpToolsProtocol):
             self._held = data
         else:
             self._waiting = data
-            rounds.ask(self, known.route, data[len(head) :])
+            rounds.ask(self, known.route, data[len(head) :], identity)
 
     def _parse(self, data: bytes) -> None:
         super().data_received(data)

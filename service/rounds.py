@@ -50,11 +50,11 @@ class Asker(Protocol):
 class _Asked:
     """A question on its way."""
 
-    __slots__ = ("asker", "body", "route", "since", "whole", "work")
+    __slots__ = ("asker", "body", "identity", "route", "since", "whole", "work")
 
-    def __init__(self, asker: Asker, route: Question, body: bytes) -> None:
+    def __init__(self, asker: Asker, route: Question, body: bytes, identity: bytes | None) -> None:
         self.since = perf_counter()
-        self.asker, self.route, self.body = asker, route, body
+        self.asker, self.route, self.body, self.identity = asker, route, body, identity
         self.work: Any = None
         """What the last station has made of it."""
         self.whole: Representation | None = None
@@ -88,11 +88,11 @@ class Rounds:
         self._answering, self._kept, self._metrics, self._records = answering, kept, metrics, records
         self._asked: list[_Asked] = []
 
-    def ask(self, asker: Asker, route: Question, body: bytes) -> None:
-        """Have a question answered in the next round."""
+    def ask(self, asker: Asker, route: Question, body: bytes, identity: bytes | None = None) -> None:
+        """Have a question answered in the next round; `identity` is what its head says of it."""
         if not self._asked:
             asyncio.get_running_loop().call_soon(self._go)
-        self._asked.append(_Asked(asker, route, body))
+        self._asked.append(_Asked(asker, route, body, identity))
 
     def finish(self) -> None:
         """Answer at once all that has been asked."""
@@ -148,7 +148,7 @@ class Rounds:
         return True
 
     def _send(self, one: _Asked) -> None:
-        whole, identity = one.whole, self._records.id_of(None)
+        whole, identity = one.whole, self._records.id_of(one.identity)
         assert whole is not None
         took = perf_counter() - one.since
         own = b"%bx-request-id: %b\r\nserver-timing: total;dur=%.3f\r\n" % (whole.section, identity, 1e3 * took)

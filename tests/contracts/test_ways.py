@@ -9,8 +9,8 @@ import orjson
 import pytest
 
 from service.app import create_app
-from service.routing import Question
 from service.rounds import SHORT, SMALL
+from service.routing import Question
 from service.settings import Settings
 from tests.service.test_rounds import Asker
 

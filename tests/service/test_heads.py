@@ -22,12 +22,18 @@ def scope(method: str = "POST", path: str = TOY.path, **headers: bytes) -> dict[
     return {"method": method, "path": path, "headers": list((HEADERS | named).items())}
 
 
+def found(heads: Heads, head: bytes) -> Known | None:
+    known, identity = heads.find(head)
+    assert identity is None
+    return known
+
+
 def test_a_plain_question_is_remembered_with_its_length() -> None:
     heads = Heads(ROUTES, 100)
-    assert heads.known(HEAD) is None
+    assert found(heads, HEAD) is None
     heads.learn(HEAD, scope())
-    assert heads.known(HEAD) == Known(TOY, len(HEAD) + 10)
-    assert heads.known(HEAD[:-1]) is None
+    assert found(heads, HEAD) == Known(TOY, len(HEAD) + 10)
+    assert found(heads, HEAD[:-1]) is None
 
 
 @pytest.mark.parametrize(
@@ -44,7 +50,7 @@ def test_a_plain_question_is_remembered_with_its_length() -> None:
 def test_headers_that_change_nothing_do_not_matter(headers: dict[str, bytes]) -> None:
     heads = Heads(ROUTES, 100)
     heads.learn(HEAD, scope(**headers))
-    assert heads.known(HEAD)
+    assert found(heads, HEAD)
 
 
 @pytest.mark.parametrize(
@@ -70,7 +76,7 @@ def test_headers_that_change_nothing_do_not_matter(headers: dict[str, bytes]) ->
 def test_what_is_no_plain_question_is_not_remembered(told: dict[str, Any]) -> None:
     heads = Heads(ROUTES, 100)
     heads.learn(HEAD, told)
-    assert heads.known(HEAD) is None
+    assert found(heads, HEAD) is None
 
 
 @pytest.mark.parametrize(
@@ -86,12 +92,60 @@ def test_what_is_no_plain_question_is_not_remembered(told: dict[str, Any]) -> No
 def test_long_heads_and_long_bodies_are_not_small_questions(head: int, body: int, most: int, kept: bool) -> None:
     heads = Heads(ROUTES, most)
     heads.learn(b"x" * head, scope(content_length=b"%d" % body))
-    assert (heads.known(b"x" * head) is not None) is kept
+    assert (found(heads, b"x" * head) is not None) is kept
 
 
 def test_the_oldest_gives_way() -> None:
     heads = Heads(ROUTES, 100)
     for i in range(MOST + 2):
         heads.learn(b"%d" % i, scope())
-    known = [i for i in range(MOST + 2) if heads.known(b"%d" % i)]
+    known = [i for i in range(MOST + 2) if found(heads, b"%d" % i)]
     assert known == list(range(2, MOST + 2))
+
+
+def own(**lines: str) -> tuple[bytes, dict[str, Any]]:
+    """Return a head and its scope, with lines of its own."""
+    named = {name.replace("_", "-"): value for name, value in lines.items()}
+    more = "".join(f"{name}: {value}\r\n" for name, value in named.items()).encode()
+    return HEAD[:-2] + more + b"\r\n", scope(**{name: value.encode() for name, value in lines.items()})
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        {"x_request_id": "a-1"},
+        {"traceparent": "00-1-2-01", "tracestate": "a=b"},
+        {"x_request_id": "1", "traceparent": "2"},
+    ],
+    ids=str,
+)
+def test_what_names_a_single_request_does_not_make_another_head(lines: dict[str, str]) -> None:
+    for first in ({}, lines, {name: value + "9" for name, value in lines.items()}):
+        heads = Heads(ROUTES, 100)
+        heads.learn(*own(**first))
+        head, _ = own(**lines)
+        known, identity = heads.find(head)
+        assert known == Known(TOY, len(head) + 10)
+        assert identity == (lines["x_request_id"].encode() if "x_request_id" in lines else None)
+        assert heads.find(HEAD)[0] == Known(TOY, len(HEAD) + 10)
+
+
+@pytest.mark.parametrize("line", ["", "a b", "a\t", " a", "a ", "\x00", "\x80", "a\r\n b", "a\rx", "x" * 513], ids=repr)
+def test_a_line_that_is_not_plain_stays_in_the_head(line: str) -> None:
+    heads = Heads(ROUTES, 100)
+    heads.learn(HEAD, scope())
+    head = HEAD[:-2] + b"X-Request-Id: " + line.encode("latin-1") + b"\r\n\r\n"
+    assert heads.find(head) == (None, None)
+    heads.learn(head, scope(x_request_id=line.strip().encode("latin-1")))
+    assert heads.find(head) == (None, None)
+
+
+def test_two_ids_are_none() -> None:
+    heads = Heads(ROUTES, 100)
+    heads.learn(HEAD, scope())
+    head = HEAD[:-2] + b"x-request-id: a\r\nX-Request-ID: b\r\n\r\n"
+    assert heads.find(head) == (None, None)
+    two = scope()
+    two["headers"] += [(b"x-request-id", b"a"), (b"x-request-id", b"b")]
+    heads.learn(head, two)
+    assert heads.find(head) == (None, None)

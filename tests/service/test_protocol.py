@@ -132,6 +132,12 @@ CASES: dict[str, tuple[bytes, ...]] = {
     "had otherwise": (ask(more=b'if-none-match: "other"\r\n') + LAST,),
     "another origin": (ask(more=b"origin: https://a.example\r\n") + LAST,),
     "an id": (ask(more=b"x-request-id: mine-1\r\n") + LAST,),
+    "ids one by one": (*(ask(more=b"X-Request-ID: mine-%d\r\n" % i) for i in range(3)), LAST),
+    "ids that are not plain": (ask(), ask(more=b"x-request-id: m\xffne\r\n"), ask(more=b"x-request-id: \r\n"), LAST),
+    "an id that is too long": (ask(), ask(more=b"x-request-id: %b\r\n" % (b"x" * 65)), LAST),
+    "two ids one by one": (ask(), ask(more=b"x-request-id: a\r\nx-request-id: b\r\n"), LAST),
+    "a folded id": (ask(), ask(more=b"x-request-id: a\r\n b\r\n")),
+    "a trace": (ask(more=b"traceparent: 00-1-2-01\r\n"), ask(more=b"traceparent: 00-3-4-01\r\n"), LAST),
     "an archive": (ask(more=b"accept: application/x-npz\r\n") + LAST,),
     "several one by one": (ask(), ask(b"{}"), ask(LARGE), ask(FAIR), ask(), ask(b"{"), LAST),
     "warned": (ask(json.dumps(GOOD | {"behaviour": "warn"}).encode()), ask(), LAST),
@@ -310,9 +316,9 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
     found: list[bytes] = []
     ask_in_round = Rounds.ask
 
-    def noted(self: Rounds, asker: Any, route: Any, body: bytes) -> None:
+    def noted(self: Rounds, asker: Any, route: Any, body: bytes, identity: bytes | None) -> None:
         found.append(body)
-        ask_in_round(self, asker, route, body)
+        ask_in_round(self, asker, route, body, identity)
 
     monkeypatch.setattr(Rounds, "ask", noted)
     return found
@@ -329,6 +335,8 @@ async def test_what_is_asked_as_before_is_answered_in_rounds(asked: list[bytes])
         assert asked == [BODY, other]
         await told(server, ask()[:-9], ask()[-9:], LAST)
         assert asked == [BODY, other, BODY]
+        await told(server, ask(more=b"x-request-id: a\r\n"), ask(more=b"x-request-id: b\r\n"), LAST)
+        assert asked == [BODY, other, BODY, BODY, BODY]
 
 
 async def test_a_head_is_learned_before_its_body_has_come(asked: list[bytes]) -> None:
@@ -354,7 +362,7 @@ async def test_the_server_waits_for_the_rest_of_a_body_when_it_stops() -> None:
     assert b"\r\nconnection: close\r\n" in received
 
 
-@pytest.mark.parametrize("name", sorted(MATTERS))
+@pytest.mark.parametrize("name", sorted(MATTERS - {b"x-request-id"}))
 async def test_a_header_that_matters_is_looked_at_each_time(asked: list[bytes], name: bytes) -> None:
     values = {b"transfer-encoding": b"chunked", b"expect": b"100-continue", b"upgrade": b"h2c"}
     more = b"%b: %b\r\n" % (name, values.get(name, b"gzip"))
