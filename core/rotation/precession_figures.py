@@ -59,11 +59,11 @@ UNRESOLVED = -math.inf
 SMALLEST_ANGLE = 2.0**-43
 """What 1e-29 rad are half a unit in the last place of (rad)."""
 
-LIKE_SYMMETRIC = -27
-"""Exponent of the elliptic modulus up to which two nearly equal moments move a body as two equal ones, m < 2^-54."""
+LIKE_SYMMETRIC = -30
+"""Exponent up to which m and |I_b - I_c|/|I_b - I_d| let two nearly equal moments move a body as two equal ones do.
 
-UNLIKE_SYMMETRIC = -15
-"""Exponent of the modulus above which they do not: the rate in the body varies by m/2, here 2^-31 of itself."""
+The rate in the body varies by half of each, here 2^-31 of itself.
+"""
 
 Figures = tuple[float, float, float, float, float, float, float, float, float]
 Found = tuple[int, bool, bool, tuple[float, float, float], Figures]
@@ -112,6 +112,13 @@ def _momentum(
         component = sc_mul(scaled(i[k], it[k], 0), scaled(w[k], wt[k], 0))
         square = sc_add(square, sc_mul(component, component))
     return sc_sqrt(square)
+
+
+@kernel()
+def _like_symmetric(c: Circulation) -> bool:
+    """Return whether a body with nearly equal moments about the axes c and b moves as one with equal ones."""
+    unevenness = sc_div(c.bc, c.bd)
+    return sc_mul(c.k, c.k).exponent <= LIKE_SYMMETRIC and unevenness.exponent <= LIKE_SYMMETRIC
 
 
 @kernel()
@@ -212,7 +219,8 @@ def precession_figures(
     exact_period, followed = _of_a_limit(ABSENT), False
     if k >= 0:
         a, b = (0, 1) if k == 2 else (1, 2)
-        apart = moments[a] != moments[b] or moments_tail[a] != moments_tail[b]
+        # As resolved: what rounding leaves between the derived moments of a turned coin is none.
+        apart = i[a] != i[b] or it[a] != it[b]
     if k < 0 or apart:
         exact = Scaled(high, low, exponent)
         found = decision(i, it, w, wt, decided, exact)
@@ -234,11 +242,10 @@ def precession_figures(
             k1 = complement(c, found.D)
             if k1.exponent < SMALLEST_MODULUS:
                 return UNREACHABLE, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
-            if circled != k or c.k.exponent > UNLIKE_SYMMETRIC:
+            exact_period, followed = _elliptic(c, k1), True
+            if circled != k or not _like_symmetric(c):
                 ax, ay, az, _ = oriented(axes, circled)
-                return regime, k >= 0, apart, (ax, ay, az), _elliptic(c, k1)
-            if c.k.exponent > LIKE_SYMMETRIC:
-                exact_period, followed = _elliptic(c, k1), True
+                return regime, k >= 0, apart, (ax, ay, az), exact_period
         else:
             return regime, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
     a, b = (0, 1) if k == 2 else (1, 2)

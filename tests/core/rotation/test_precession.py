@@ -10,7 +10,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
+from core.bodies.composite import Composite, Part
+from core.bodies.exact import rotation
 from core.bodies.mass_properties import MassProperties, diagonal
+from core.bodies.solids import Cylinder, Disc
 from core.errors import InvalidParameter
 from core.rotation.precession import FIGURES, precession
 from tests.oracles.cases import T_HANDLE, T_HANDLE_ORIGIN
@@ -264,6 +267,24 @@ def test_coin_in_turned_axes():
     assert found.axis == pytest.approx(turn[:, 2], abs=1e-15)
 
 
+@pytest.mark.parametrize("kind", [Disc(radius=0.3, mass=2.0), Cylinder(radius=0.2, height=1.1, mass=3.3)])
+@pytest.mark.parametrize(
+    "attitude", [(0.3, 0.1, -0.7, 0.2), (0.7, 0.1, 0.2, 0.9), (1e-3, 1.0, 2e-5, 0.3), (1.0, 2.0, 3.0, 4.0)]
+)
+def test_a_turned_solid_moves_as_it_does_along_its_axes(kind, attitude):
+    """What rounding leaves between its equal moments, 1e-31 of them, is no difference."""
+    turn = np.array([[float(x) for x in row] for row in rotation(attitude)])
+    spin = np.array([1.0, 0.5, 2.0])
+    straight = precession(kind.mass_properties(), spin)
+    turned = precession(Composite((Part(kind, attitude=attitude),)).mass_properties(), turn @ spin)
+    assert turned.warnings == ()
+    # The axis may point the other way, to the positive side of another body axis.
+    side = np.sign(np.dot(turned.axis, turn @ straight.axis))
+    assert turned.body_rate == pytest.approx(side * straight.body_rate, rel=1e-14)
+    for name in ("space_rate", "period", "precession_per_period", "angular_momentum_to_angular_velocity"):
+        assert getattr(turned, name) == pytest.approx(getattr(straight, name), rel=1e-14), name
+
+
 def test_moments_equal_within_rounding_are_said_to_be():
     found = of((1.0, 1.0 + ULP, 2.0), (1.0, 1.0, -1.0))
     assert [notice.code for notice in found.warnings] == ["moments-equal-within-rounding"]
@@ -286,6 +307,31 @@ def test_the_period_is_that_of_the_moments_as_given_however_nearly_equal(moments
     # Where a rate is stated, the angular velocity goes round at that rate.
     if found.body_rate is not None:
         assert abs(found.body_rate) * found.period == pytest.approx(2.0 * math.pi, rel=1e-9)
+
+
+units = st.integers(-40, 40)
+
+
+@settings(deadline=None, max_examples=300, derandomize=True)
+@given(
+    st.floats(1.0, 1.9), st.tuples(units, units, st.integers(-15, 15)), st.booleans(), st.tuples(slant, slant, slant)
+)
+def test_figures_of_moments_that_differ_by_rounding_are_the_nearest_doubles(size, apart, coin, start):
+    """All three may nearly be equal; half a unit in the last place, and a thousandth of it."""
+    moments = (size + apart[0] * ULP, size + apart[2] * ULP, size + apart[1] * ULP if coin else 2.0 * size)
+    start = tuple(x * 10.0 ** (3 * n) for n, x in enumerate(start))
+    found = of(moments, start)
+    assume(found.symmetry != "spherical" and found.regime == "periodic" and len(set(moments)) == 3)
+    with mp.workdps(50):
+        duration, angle = period(moments, start), precession_per_period(moments, start)
+        for got, want in (
+            (found.period, duration),
+            (found.precession_per_period, angle),
+            (found.mean_precession_rate, angle / duration),
+        ):
+            assert abs(got - want) <= 0.5005 * math.ulp(got)
+        if found.body_rate is not None:
+            assert abs(abs(found.body_rate) * duration - 2 * mp.pi) <= 2 * mp.pi * 2.0**-31
 
 
 @pytest.mark.parametrize("start", [(math.nan, 0.0, 1.0), (math.inf, 0.0, 1.0), (1.0, 2.0)])
