@@ -6,8 +6,10 @@ last rounding they are right to 100 2^-106 < 1.3e-30. Those of three distinct mo
 Carlson's R_F and theta series besides, and D_B may carry a cancellation of 2^6 (more than that is decided exactly):
 1e-27. So each is the nearest double unless the exact number lies within 1e-11 units in the last place of the middle
 between two. There are two exceptions. Angles are arctangents, as right as those of the C library, to one unit. And the
-angle of a precession about the smallest moment is what is left of a whole turn: it is right to 1e-29 rad, and not
-stated where that would be seen. Matter hardly gets there: the moments of such a needle are as 1 to 1e14.
+angle of a precession about the smallest moment is what is left of a whole turn: it is right to 1e-29 rad, to K/8 times
+that where the quarter period K is longer (what cancels grows with it), and not stated where that is more than half a
+unit in the last place. Matter hardly gets there: the moments of such a needle are as 1 to 1e14, or next to the
+separatrix, where K is some hundred, to 1e12.
 """
 
 from __future__ import annotations
@@ -57,7 +59,7 @@ UNRESOLVED = -math.inf
 """In place of an angle that is lost in the whole turn from which it is taken, and of the rate that it makes."""
 
 SMALLEST_ANGLE = 2.0**-43
-"""What 1e-29 rad are half a unit in the last place of (rad)."""
+"""What 1e-29 rad are half a unit in the last place of (rad); for K/8 times that, K/4 times the angle."""
 
 LIKE_SYMMETRIC = -30
 """Exponent up to which m and |I_b - I_c|/|I_b - I_d| let two nearly equal moments move a body as two equal ones do.
@@ -152,7 +154,7 @@ def _elliptic(c: Circulation, k1: Scaled) -> Figures:
     of = periods(kh, kl, ch, cl)
     quarter = quarter_turn(c, turning(c, far.c, far.d), of)
     h, low = angle_per_period(quarter, 1.0 if c.circled == 2 else -1.0)
-    turned, resolved = scaled(h, low, 0), h >= SMALLEST_ANGLE
+    turned, resolved = scaled(h, low, 0), h >= SMALLEST_ANGLE * max(1.0, 0.25 * of.K)
     half = sc_div(scaled(2.0 * of.K, 2.0 * of.K_tail, 0), c.p)
     period = Scaled(half.high, half.low, half.exponent + 1)
     return (
