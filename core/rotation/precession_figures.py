@@ -8,8 +8,10 @@ Carlson's R_F and theta series besides, and D_B may carry a cancellation of 2^6 
 between two. There are two exceptions. Angles are arctangents, as right as those of the C library, to one unit. And the
 angle of a precession about the smallest moment is what is left of a whole turn: it is right to 1e-29 rad, to K/8 times
 that where the quarter period K is longer (what cancels grows with it), and not stated where that is more than half a
-unit in the last place. Matter hardly gets there: the moments of such a needle are as 1 to 1e14, or next to the
-separatrix, where K is some hundred, to 1e12.
+unit in the last place. Matter hardly gets there: the moments of such a needle are as 1 to 1e14.
+
+All of this is for moments and components that are doubles. Those of a turned body are derived, to 1e-30 of the largest,
+and that is seen next to the separatrix, as K is the logarithm of the distance from it.
 """
 
 from __future__ import annotations
