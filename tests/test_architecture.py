@@ -186,7 +186,6 @@ PROVED_THROUGH = {
     "core/rotation/absence.py": "core/rotation/test_precession.py",
     "core/rotation/attitude_frame.py": "core/rotation/test_attitude.py",
     "core/rotation/moves.py": "core/rotation/test_inherited.py",
-    "core/rotation/precession_figures.py": "core/rotation/test_precession.py",
     "core/rotation/sensitivity.py": "core/rotation/test_inherited.py",
     "core/scenes/chain_motion.py": "core/scenes/test_chain_on_wedge.py",
     "core/scenes/rod_motion.py": "core/scenes/test_rod_in_hole.py",

@@ -193,7 +193,7 @@ class MassProperties:
 
 def diagonal(moments: Sequence[float]) -> MassProperties:
     """Return mass properties of which only principal moments are known, in body axes as given, shape (3,)."""
-    a, b, c = moments
+    a, b, c = map(float, moments)
     inertia = np.zeros((3, 3))
     inertia[0, 0], inertia[1, 1], inertia[2, 2] = a, b, c
     properties = MassProperties(inertia, ZEROS)

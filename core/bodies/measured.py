@@ -52,14 +52,15 @@ class PrincipalMoments:
 
     def mass_properties(self) -> MassProperties:
         """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
-        return _of_moments(self.moments)
+        a, b, c = self.moments
+        return _of_moments(float(a), float(b), float(c))
 
 
 @lru_cache(KEPT)
-def _of_moments(moments: tuple[float, float, float]) -> MassProperties:
+def _of_moments(a: float, b: float, c: float) -> MassProperties:
     """Return the mass properties for principal moments, which are kept: a body is asked about again and again."""
-    # Moments are greater than zero, so that those which compare equal are the same.
-    return diagonal(moments).judged("moments")
+    # Doubles greater than zero, so that those which compare equal are the same.
+    return diagonal((a, b, c)).judged("moments")
 
 
 @dataclass(frozen=True)

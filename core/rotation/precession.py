@@ -12,8 +12,8 @@ it, whose quotient is the mean precession rate. The angle is right to the last d
 Montgomery's 2 E T/L less the solid angle that L encloses in the body.
 
 Two moments that differ by rounding alone, less than 16 units in the last place, have the rates and angles of their mean
-while the elliptic parameter m is below 2^-30. Period, and angle in it, are always those of the moments as given, since
-near the plane of the two that little decides.
+while the elliptic parameter m, and their difference as a share of that from the third, are below 2^-30. Period, and
+angle in it, are always those of the moments as given, since near the plane of the two that little decides.
 
 References
 ----------
@@ -228,7 +228,8 @@ _SPHERE = _absent(
 )
 _THREE = absence.TRIAXIAL, OF_SYMMETRIC_BODIES
 _BEYOND = (
-    "the spin lies so near the plane of two nearly equal moments that the body does not move as a symmetric one",
+    "the spin lies so near the plane of two nearly equal moments, or the third is so near to them, that the body does "
+    "not move as a symmetric one",
     OF_SYMMETRIC_BODIES,
 )
 _NEVER_RETURNS = absence.ON_THE_SEPARATRIX, _OF_A_CHANGE[:-1]

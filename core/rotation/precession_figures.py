@@ -6,8 +6,12 @@ last rounding they are right to 100 2^-106 < 1.3e-30. Those of three distinct mo
 Carlson's R_F and theta series besides, and D_B may carry a cancellation of 2^6 (more than that is decided exactly):
 1e-27. So each is the nearest double unless the exact number lies within 1e-11 units in the last place of the middle
 between two. There are two exceptions. Angles are arctangents, as right as those of the C library, to one unit. And the
-angle of a precession about the smallest moment is what is left of a whole turn: it is right to 1e-29 rad, and not
-stated where that would be seen. Matter hardly gets there: the moments of such a needle are as 1 to 1e14.
+angle of a precession about the smallest moment is what is left of a whole turn: it is right to 1e-29 rad, to K/8 times
+that where the quarter period K is longer (what cancels grows with it), and not stated where that is more than half a
+unit in the last place. Matter hardly gets there: the moments of such a needle are as 1 to 1e14.
+
+All of this is for moments and components that are doubles. Those of a turned body are derived, to 1e-30 of the largest,
+and that is seen next to the separatrix, as K is the logarithm of the distance from it.
 """
 
 from __future__ import annotations
@@ -57,13 +61,13 @@ UNRESOLVED = -math.inf
 """In place of an angle that is lost in the whole turn from which it is taken, and of the rate that it makes."""
 
 SMALLEST_ANGLE = 2.0**-43
-"""What 1e-29 rad are half a unit in the last place of (rad)."""
+"""What 1e-29 rad are half a unit in the last place of (rad); for K/8 times that, K/4 times the angle."""
 
-LIKE_SYMMETRIC = -27
-"""Exponent of the elliptic modulus up to which two nearly equal moments move a body as two equal ones, m < 2^-54."""
+LIKE_SYMMETRIC = -30
+"""Exponent up to which m and |I_b - I_c|/|I_b - I_d| let two nearly equal moments move a body as two equal ones do.
 
-UNLIKE_SYMMETRIC = -15
-"""Exponent of the modulus above which they do not: the rate in the body varies by m/2, here 2^-31 of itself."""
+The rate in the body varies by half of each, here 2^-31 of itself.
+"""
 
 Figures = tuple[float, float, float, float, float, float, float, float, float]
 Found = tuple[int, bool, bool, tuple[float, float, float], Figures]
@@ -115,6 +119,13 @@ def _momentum(
 
 
 @kernel()
+def _like_symmetric(c: Circulation) -> bool:
+    """Return whether a body with nearly equal moments about the axes c and b moves as one with equal ones."""
+    unevenness = sc_div(c.bc, c.bd)
+    return sc_mul(c.k, c.k).exponent <= LIKE_SYMMETRIC and unevenness.exponent <= LIKE_SYMMETRIC
+
+
+@kernel()
 def _regular(equal: Scaled, single: Scaled, gap: Scaled, along: Scaled, across: Scaled, periodic: bool) -> Figures:
     """Return the figures of a body with moments `equal`, twice, and `single`; gap is what they differ by."""
     forward = sc_abs(along)
@@ -145,7 +156,7 @@ def _elliptic(c: Circulation, k1: Scaled) -> Figures:
     of = periods(kh, kl, ch, cl)
     quarter = quarter_turn(c, turning(c, far.c, far.d), of)
     h, low = angle_per_period(quarter, 1.0 if c.circled == 2 else -1.0)
-    turned, resolved = scaled(h, low, 0), h >= SMALLEST_ANGLE
+    turned, resolved = scaled(h, low, 0), h >= SMALLEST_ANGLE * max(1.0, 0.25 * of.K)
     half = sc_div(scaled(2.0 * of.K, 2.0 * of.K_tail, 0), c.p)
     period = Scaled(half.high, half.low, half.exponent + 1)
     return (
@@ -212,7 +223,8 @@ def precession_figures(
     exact_period, followed = _of_a_limit(ABSENT), False
     if k >= 0:
         a, b = (0, 1) if k == 2 else (1, 2)
-        apart = moments[a] != moments[b] or moments_tail[a] != moments_tail[b]
+        # As resolved: what rounding leaves between the derived moments of a turned coin is none.
+        apart = i[a] != i[b] or it[a] != it[b]
     if k < 0 or apart:
         exact = Scaled(high, low, exponent)
         found = decision(i, it, w, wt, decided, exact)
@@ -234,11 +246,10 @@ def precession_figures(
             k1 = complement(c, found.D)
             if k1.exponent < SMALLEST_MODULUS:
                 return UNREACHABLE, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
-            if circled != k or c.k.exponent > UNLIKE_SYMMETRIC:
+            exact_period, followed = _elliptic(c, k1), True
+            if circled != k or not _like_symmetric(c):
                 ax, ay, az, _ = oriented(axes, circled)
-                return regime, k >= 0, apart, (ax, ay, az), _elliptic(c, k1)
-            if c.k.exponent > LIKE_SYMMETRIC:
-                exact_period, followed = _elliptic(c, k1), True
+                return regime, k >= 0, apart, (ax, ay, az), exact_period
         else:
             return regime, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
     a, b = (0, 1) if k == 2 else (1, 2)

@@ -26,7 +26,7 @@ from core.quantities import AngularRate, check_value
 from core.rotation.closed_form import FreeRotation
 from core.rotation.linearised import LinearRates, linear_rates
 from core.rotation.precession_figures import OUT_OF_RANGE, oriented
-from core.rotation.principal_frame import PrincipalFrame
+from core.rotation.principal_frame import RESOLUTION, PrincipalFrame
 from core.rotation.torque_free import inherited_notices
 from core.rotation.verdict import REST, Attitude, Kind, verdict
 
@@ -212,7 +212,8 @@ def _moments(inertia: PrincipalInertia) -> tuple[tuple[Floats, Floats], list[Not
     """Return the moments as they count, with their tails, and what is to be said of those that are nearly equal.
 
     Along body axes they are the client's own and differ if they differ. Those of a turned tensor carry the rounding of
-    its components, and the sign of a smaller difference would be that of rounding.
+    its components, and the sign of a smaller difference would be that of rounding. What is left between the equal
+    moments of a turned solid is not worth a word.
     """
     given = inertia.moments, inertia.moments_tail
     distinct = {"triaxial": 3, "oblate": 2, "prolate": 2, "linear": 2, "spherical": 1}[inertia.symmetry]
@@ -226,11 +227,13 @@ def _moments(inertia: PrincipalInertia) -> tuple[tuple[Floats, Floats], list[Not
         return given, [Notice("moments-nearly-equal", detail, ("body",))]
     low, middle, high = exact = exact_vector(*given)
     if distinct == 1:
-        merged = [sum(exact, Fraction(0)) / 3] * 3
+        merged, apart = [sum(exact, Fraction(0)) / 3] * 3, high - low
     elif inertia.symmetry == "oblate":
-        merged = [(low + middle) / 2] * 2 + [high]
+        merged, apart = [(low + middle) / 2] * 2 + [high], middle - low
     else:
-        merged = [low] + [(middle + high) / 2] * 2
+        merged, apart = [low] + [(middle + high) / 2] * 2, high - middle
+    if apart <= Fraction(RESOLUTION) * high:
+        return vector_pairs(merged), []
     detail = "moments differ by less than 16 units in the last place of the largest and are taken as equal"
     return vector_pairs(merged), [Notice("moments-equal-within-rounding", detail, ("body",))]
 

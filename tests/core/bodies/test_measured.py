@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from core.bodies.exact import SMALLEST
+from core.bodies.mass_properties import diagonal
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.errors import InvalidParameter, MechanicsError, UnphysicalInertia
 
@@ -225,6 +226,17 @@ def test_moments_stay_in_their_order_and_a_triple_of_no_body_is_answered_with_a_
     assert not found.validity.physical
     assert not PrincipalMoments((1.0, 2.0, 3.0)).mass_properties().warnings
     assert PrincipalMoments((1e-16, 1e-16, 5e-16)).mass_properties().warnings
+
+
+@pytest.mark.parametrize(
+    "given",
+    [(2, 3, 4), [2.0, 3.0, 4.0], (np.float32(2), 3.0, 4.0), (Fraction(2), 3, 4.0), (2**53 + 1, 2**60, 2**60)],
+)
+def test_moments_of_any_type_are_kept_as_doubles(given: Any) -> None:
+    found, again = (PrincipalMoments(x).mass_properties() for x in (given, tuple(float(x) for x in given)))
+    for properties in (found, again, diagonal(given)):
+        assert properties.inertia.dtype == properties.principal.moments.dtype == np.float64
+        assert properties.principal.moments.tolist() == [float(x) for x in given]
 
 
 @pytest.mark.parametrize("bad", [0.0, -1.0, NAN, float("inf"), True, "1", None])

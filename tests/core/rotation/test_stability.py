@@ -9,8 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.bodies.composite import Composite, Part
 from core.bodies.mass_properties import MassProperties, diagonal
 from core.bodies.measured import PointMasses
+from core.bodies.solids import Cuboid, Cylinder, Disc
 from core.errors import InvalidParameter, NotApplicable
 from core.rotation.closed_form import FreeRotation
 from core.rotation.precession import precession
@@ -150,6 +152,20 @@ def test_sphere_is_neutral_and_rest_is_an_equilibrium():
         assert not equilibrium.survives_dissipation
         assert (equilibrium.kind, equilibrium.stable, equilibrium.attitude) == ("degenerate", True, "unstable")
         assert set(equilibrium.eigenvalues) == {(0.0, 0.0)}
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [Disc(radius=0.3, mass=2.0), Cylinder(radius=0.2, height=1.1, mass=3.3), Cuboid(edges=(0.3, 0.3, 0.3), mass=1.0)],
+)
+@pytest.mark.parametrize("attitude", [(0.3, 0.1, -0.7, 0.2), (0.7, 0.1, 0.2, 0.9), (1e-3, 1.0, 2e-5, 0.3)])
+def test_a_turned_solid_is_what_it_is_along_its_axes(kind, attitude):
+    straight = stability(kind.mass_properties(), 2.0)
+    turned = stability(Composite((Part(kind, attitude=attitude),)).mass_properties(), 2.0)
+    assert turned.warnings == ()
+    for found, want in zip(turned.equilibria, straight.equilibria, strict=True):
+        assert (found.kind, found.stable, found.reason) == (want.kind, want.stable, want.reason)
+        assert np.array(found.eigenvalues) == pytest.approx(np.array(want.eigenvalues), rel=1e-14)
 
 
 def test_coin_in_turned_axes_is_still_a_coin():
