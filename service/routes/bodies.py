@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import fields
 from functools import cache
 from typing import Any, Literal
@@ -17,6 +18,10 @@ from core.integration.budget import Budget
 from service.pricing import Priced
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Matrix, Request, Vector, View
+
+LOOKED_INTO = 8_000
+"""Points of a body, as `counts` has them, up to which it is looked at to foresee a motion; larger ones are not answered
+in the server process."""
 
 
 class MassPropertiesRequest(Request):
@@ -92,6 +97,17 @@ def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
 def counts(question: Any, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question about a body."""
     return {"question": 1.0, "points": _size(question.body), question.body.kind: 1.0}
+
+
+def moments_to_foresee(methods: Iterable[Any], body: Any) -> list[float] | None:
+    """Return the principal moments of a body, ascending (kg m^2), if a method chooses its steps by the motion.
+
+    None if the steps are known without, or for a body so large that its question is not answered in this process.
+    """
+    if _size(body) > LOOKED_INTO or not any(hasattr(method, "tolerance") for method in methods):
+        return None
+    moments: list[float] = properties_of(body).principal_of_motion.moments.tolist()
+    return moments
 
 
 def _size(body: Any) -> int:
