@@ -17,9 +17,9 @@ from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.initial_states import initial_states
 from core.rotation.torque_free import pinned_notices
-from service.pricing import Priced, effort, extreme, numbers, quickest, speed_of
+from service.pricing import Priced, effort, extreme, numbers, speed_of
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.bodies import counts, moments_to_foresee, properties_of
+from service.routes.bodies import counts, moments_to_foresee, properties_of, speed_to_follow
 from service.routes.rotation import AccuracyView, ModelView, WorkView, in_range
 from service.routes.surfaces import SOURCE_BODY, Count, Seed
 from service.routing import Answer, Example, Question
@@ -135,7 +135,7 @@ def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, floa
     if question.sample is not None and moments and moments[0] > 0.0:
         # The root of the mean square over the directions of the sample.
         speed = speed_of([sqrt(question.sample.energy / 1.5) / sqrt(moment) for moment in moments])
-    speed = quickest(speed, moments)
+    speed = speed_to_follow((question.method,), question.body, speed)
     return {
         **counts(question, budget),
         "members": members,

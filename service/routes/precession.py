@@ -15,8 +15,8 @@ from core.rotation.measurement import Measure, MeasuredPeriod, measure_period
 from core.rotation.precession import Precession, Regime, precession
 from core.rotation.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
-from service.pricing import Priced, effort, quickest, speed_of
-from service.routes.bodies import counts, moments_to_foresee, properties_of
+from service.pricing import Priced, effort, speed_of
+from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation import ANGULAR_VELOCITY, T_HANDLE
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Span, Vector, View
@@ -116,8 +116,7 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     if measure is None:
         return found
     times = Span(start=0.0, stop=measure.duration, count=measure.samples)
-    moments = moments_to_foresee((measure.method,), question.body)
-    speed = quickest(speed_of(question.angular_velocity), moments)
+    speed = speed_to_follow((measure.method,), question.body, speed_of(question.angular_velocity))
     return found | effort(measure.method, times, speed, measure.samples)
 
 

@@ -287,6 +287,26 @@ class TestMotionsThatOutrunTheirStart:
         measure = {"method": run, "duration": 1.0, "samples": 3, "tolerance": 0.1}
         assert price("/v1/rotation/precession", **turning, measure=measure) > 1.0
 
+    @pytest.mark.parametrize(("length", "least", "most"), [(1e3, 1.0, 2.0), (1e5, 10.0, 1e4), (1e6, 1e3, inf)])
+    def test_rounding_that_is_taken_for_motion_is_foreseen(self, length: float, least: float, most: float) -> None:
+        """It took 401, 20 910 and more than 300 000 evaluations."""
+        needle = {
+            "body": {
+                "kind": "point-masses",
+                "masses": [1.0, 2.0, 1.0, 0.5],
+                "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.3, length]],
+            },
+            "angular_velocity": [1.0, 2.0, 0.5],
+            "times": {"start": 0.0, "stop": 10.0, "count": 3},
+        }
+        run = {"kind": "lsoda", "tolerance": 1e-9}
+        along = {"body": {"kind": "principal-moments", "moments": [1.0, length * length, length * length]}}
+        price_of = {
+            name: price("/v1/rotation/trajectory", **needle | body, method=run)
+            for name, body in (("oblique", {}), ("principal", along))
+        }
+        assert least <= price_of["oblique"] / price_of["principal"] < most
+
     def test_starts_of_an_energy_are_as_dear_as_the_same_starts_given(self) -> None:
         moments, sample = (3.0, 2.0, 1.5), {"energy": 1e10, "count": 20, "seed": 1}
         states = initial_states(PrincipalMoments(moments).mass_properties(), 1e10, 20, 1)
