@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib import resources
-from math import ceil, exp, hypot, log
+from math import ceil, exp, hypot, inf, log, sqrt
 from sys import float_info
 from typing import Any, Protocol, runtime_checkable
 
@@ -79,7 +79,9 @@ class Priced:
 
     @cached_property
     def _seconds(self) -> Counts:
-        return calibration().seconds[self.operation]
+        seconds = calibration().seconds
+        # A body is looked at in the same way whatever is asked about it, and where it is small that does not stand out.
+        return {"points": seconds["mass_properties"]["points"], **seconds[self.operation]}
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
@@ -134,6 +136,31 @@ def error_of(method: Any, times: Sequence[float] | Any, speed: float) -> float:
 def speed_of(rates: Sequence[float]) -> float:
     """Return the magnitude of an angular velocity, at most the largest double (rad/s)."""
     return min(hypot(*rates), float_info.max)
+
+
+def quickest(speed: float, moments: Sequence[float] | None) -> float:
+    """Return the angular speed (rad/s) that a method has to follow on a free motion with a speed at its start.
+
+    Parameters
+    ----------
+    speed : float
+        rad/s.
+    moments : sequence of 3 floats, optional
+        Principal moments, ascending (kg m^2); without, those of matter.
+    """
+    return speed_of([speed * _quickening(*moments)]) if speed and moments else speed
+
+
+def _quickening(a: float, b: float, c: float) -> float:
+    """Return how many times faster than it turns a body with such moments may swing about the axis of the largest.
+
+    By Euler's equations, made linear about that axis: sqrt((c - a) (c - b) / (a b)), of all three axes the most. It is
+    more than one where c > a + b, which no matter has, and then no such body comes to turn faster by a larger factor.
+    """
+    if c <= a + b:
+        return 1.0
+    # The least moment of a needle may have come out below zero.
+    return max(1.0, sqrt((c - a) / b) * sqrt((c - b) / abs(a))) if a and b else inf
 
 
 def _power(logarithm: float) -> float:

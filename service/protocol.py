@@ -5,7 +5,7 @@ A question that has arrived whole, with a head that has been understood before, 
 else is uvicorn's own: parsing, keeping alive, pipelining, back-pressure, disconnection, continuation, shutdown. Where
 any of them has a say, or the rounds decline a question, it goes the ordinary way of ASGI. See docs/decisions/0009.
 
-Four things are done otherwise:
+Six things are done otherwise:
 
 - A request that offers to go on in another protocol is answered in this one, as RFC 9110, 7.8, has it. The parser stops
   at the end of its headers and takes its body, and all that is pipelined behind it, for the other protocol; clients
@@ -15,6 +15,9 @@ Four things are done otherwise:
 - A client that leaves is missed by the request that is being answered, not only by the last it has sent: its
   computation is stopped.
 - What is no HTTP is answered in its turn: what came before it was accepted, and may be answered by half.
+- What lies behind requests that wait is not parsed before their turn, and little of it is read: a request that waits
+  takes a hundred times the room of its bytes, and there is no end to what a client may send without reading.
+- A head, or the fields behind a body, may have so many bytes and no more: the parser keeps them all.
 """
 
 from __future__ import annotations
@@ -27,17 +30,42 @@ from typing import Any
 
 from httptools import HttpRequestParser
 from uvicorn._types import ASGI3Application, ASGIReceiveCallable, ASGISendCallable, Scope
+from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol, RequestResponseCycle
 
 from service.exchange import PIECES
 from service.rounds import ROUNDS, Rounds
 
 _OK = STATUS_LINE[200]
-_NO_HTTP = b"Invalid HTTP request received."
+
+PARSED_AT_ONCE = 4_096
+"""Bytes, at most: each request that they hold is begun, or waits."""
+
+MOST_BEHIND = 65_536
+"""Bytes behind requests that wait, beyond which the client is not read."""
+
+LONGEST_HEAD = 65_536
+"""Bytes of a head, or of the fields behind a body, beyond which a request is refused."""
+
+_TOO_LONG = f"A request with more than {LONGEST_HEAD} bytes of headers is not read."
+
+
+class Flow(FlowControl):
+    """Flow control that does not read as long as much of what has been read waits to be parsed."""
+
+    full = False
+    """Whether it does."""
+
+    def resume_reading(self) -> None:
+        """Read on, if there is room."""
+        if not self.full:
+            super().resume_reading()
 
 
 class Protocol(HttpToolsProtocol):
     """One connection."""
+
+    flow: Flow
 
     _declined: tuple[bytes, int] | None = None
     """Headers of a request without the offer to upgrade, and the place in what was received where they ended."""
@@ -66,9 +94,16 @@ class Protocol(HttpToolsProtocol):
     _senseless = False
     """Whether something has arrived that is no HTTP, so that nothing behind it can be understood."""
 
+    _behind = b""
+    """What has arrived behind requests that wait."""
+
+    _lines = 0
+    """How many bytes have been parsed that neither completed a head nor belonged to a body."""
+
     def connection_made(self, transport: BaseTransport) -> None:
         """Begin a connection."""
         super().connection_made(transport)  # type: ignore[arg-type]
+        self.flow = Flow(self.transport)
         if not self.access_log and self.limit_concurrency is None:
             self._rounds = self.app_state.get(ROUNDS)
 
@@ -137,7 +172,7 @@ class Protocol(HttpToolsProtocol):
         cycle, begun = self.cycle, self._begun and self.cycle.more_body
         if begun and self.pipeline:
             # It is the last that came, and nothing has been done about it.
-            self.pipeline[0] = cycle, not_understood
+            self.pipeline[0] = cycle, partial(not_understood, msg.encode())
         elif begun and cycle.response_complete:
             self.transport.close()
         elif begun and cycle.response_started:
@@ -158,7 +193,7 @@ class Protocol(HttpToolsProtocol):
                 keep_alive=False,
                 on_response=self.on_response_complete,
             )
-            self.pipeline.appendleft((self.cycle, not_understood))
+            self.pipeline.appendleft((self.cycle, partial(not_understood, msg.encode())))
 
     def on_message_begin(self) -> None:
         """Begin to read a request."""
@@ -168,8 +203,14 @@ class Protocol(HttpToolsProtocol):
     def on_headers_complete(self) -> None:
         """Begin to answer; fields that are read from now on until the next request are none of its headers."""
         super().on_headers_complete()
+        self._lines = 0
         if self._begun:
             self.headers = []
+
+    def on_body(self, body: bytes) -> None:
+        """Hand over a part of a body."""
+        self._lines = 0
+        super().on_body(body)
 
     def on_message_complete(self) -> None:
         """Hand over the end of a body, and close the connection after the response if fields behind it say so."""
@@ -179,19 +220,30 @@ class Protocol(HttpToolsProtocol):
             if self.cycle.response_complete:
                 self.shutdown()
         super().on_message_complete()
+        self._lines = 0
         self._between = True
 
     def on_response_complete(self) -> None:
-        """Let go of the request, and go on with the next."""
+        """Let go of the request, and go on with the next, or with what has arrived behind all that waited."""
         if self._answered is not None:
             # The one reference that would keep the cycle until the collector of garbage finds it.
             self._answered.scope.pop("extensions", None)
         super().on_response_complete()
+        if self._behind and not self.pipeline and not self._lost:
+            behind, self._behind = self._behind, b""
+            self.flow.full = False
+            self.flow.resume_reading()
+            self._parse(behind)
 
     @property
     def _begun(self) -> bool:
         """Whether the last message of which something has been read is a request whose headers are complete."""
         return self.cycle is not None and self.cycle.scope is self.scope
+
+    @property
+    def _lost(self) -> bool:
+        """Whether nothing that comes now will be answered."""
+        return self._senseless or self.transport.is_closing()
 
     def data_received(self, data: bytes) -> None:
         """Hand a plain question to the rounds, and parse what else has arrived."""
@@ -222,17 +274,34 @@ class Protocol(HttpToolsProtocol):
             rounds.ask(self, known.route, data[len(head) :], identity)
 
     def _parse(self, data: bytes) -> None:
+        """Parse what has arrived, up to a request that has to wait."""
+        if len(data) <= PARSED_AT_ONCE and not self.pipeline:
+            self._feed(data)
+            return
+        rest, start = self._behind + data, 0
+        while start < len(rest) and not (self.pipeline or self._lost):
+            self._feed(rest[start : start + PARSED_AT_ONCE])
+            start += PARSED_AT_ONCE
+        self._behind = b"" if self._lost else rest[start:]
+        if self._behind:
+            self.flow.full = len(self._behind) > MOST_BEHIND
+            self.flow.pause_reading()
+
+    def _feed(self, data: bytes) -> None:
+        self._lines += len(data)
         super().data_received(data)
         rest: Any = memoryview(data) if self._declined else b""
-        while self._declined and not self.transport.is_closing():
+        while self._declined and not self._lost:
             (head, end), self._declined = self._declined, None
             rest = rest[end:]
             # The one that stopped may count the connection as closed.
             self.parser = HttpRequestParser(self)
             self.parser.set_dangerous_leniencies(lenient_data_after_close=True)
             super().data_received(head)
-            if not self.transport.is_closing():
+            if not self._lost:
                 super().data_received(rest)
+        if self._lines > LONGEST_HEAD and not self._lost:
+            self.send_400_response(_TOO_LONG)
 
     def _should_upgrade(self) -> bool:
         # Then the parser's calls for this request are passed over and, for an answer, the next method is called.
@@ -259,15 +328,15 @@ class Protocol(HttpToolsProtocol):
         super()._start_asgi_task(cycle, app)
 
 
-async def not_understood(scope: Scope, receive: ASGIReceiveCallable, send: ASGISendCallable) -> None:
+async def not_understood(said: bytes, scope: Scope, receive: ASGIReceiveCallable, send: ASGISendCallable) -> None:
     """Answer as uvicorn does what is no HTTP, where that is said in turn."""
     headers = [
         (b"content-type", b"text/plain; charset=utf-8"),
-        (b"content-length", b"%d" % len(_NO_HTTP)),
+        (b"content-length", b"%d" % len(said)),
         (b"connection", b"close"),
     ]
     await send({"type": "http.response.start", "status": 400, "headers": headers})
-    await send({"type": "http.response.body", "body": _NO_HTTP, "more_body": False})
+    await send({"type": "http.response.body", "body": said, "more_body": False})
 
 
 async def write_piece(cycle: RequestResponseCycle, parts: Sequence[bytes | memoryview]) -> bool:

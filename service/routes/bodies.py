@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from functools import cache
+from math import inf
 from typing import Any, Literal
 
+import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
-from core.bodies.principal_inertia import PrincipalInertia, Symmetry
+from core.bodies.principal_inertia import EPSILON, PrincipalInertia, Symmetry
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
 from core.integration.budget import Budget
-from service.pricing import Priced
+from service.pricing import Priced, quickest, speed_of
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Matrix, Request, Vector, View
+
+LOOKED_INTO = 8_000
+"""Points of a body, as `counts` has them, up to which it is looked at to foresee a motion; larger ones are not answered
+in the server process."""
 
 
 class MassPropertiesRequest(Request):
@@ -92,6 +99,33 @@ def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
 def counts(question: Any, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question about a body."""
     return {"question": 1.0, "points": _size(question.body), question.body.kind: 1.0}
+
+
+def moments_to_foresee(methods: Iterable[Any], body: Any) -> list[float] | None:
+    """Return the principal moments of a body, ascending (kg m^2), if a method chooses its steps by the motion.
+
+    None if the steps are known without, or for a body so large that its question is not answered in this process.
+    """
+    if _size(body) > LOOKED_INTO or not any(hasattr(method, "tolerance") for method in methods):
+        return None
+    moments: list[float] = properties_of(body).principal_of_motion.moments.tolist()
+    return moments
+
+
+def speed_to_follow(methods: Sequence[Any], body: Any, speed: float) -> float:
+    """Return the angular speed that tells how often methods evaluate a free motion that starts with one (rad/s).
+
+    In axes that are not principal, rates carry a rounding that grows with the ratio of the principal moments. A method
+    that takes it for the motion shortens its steps in proportion, once it exceeds the tolerance.
+    """
+    moments = moments_to_foresee(methods, body)
+    if moments is None or not speed:
+        return speed
+    speed, least, largest = quickest(speed, moments), abs(moments[0]), moments[2]
+    if np.count_nonzero(properties_of(body).principal_of_motion.axes) == 3:
+        return speed
+    tolerance = min(method.tolerance for method in methods if hasattr(method, "tolerance"))
+    return speed_of([speed * max(1.0, EPSILON * largest / tolerance / least if least else inf)])
 
 
 def _size(body: Any) -> int:

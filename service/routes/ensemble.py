@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Annotated, Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from core.rotation.initial_states import initial_states
 from core.rotation.torque_free import pinned_notices
 from service.pricing import Priced, effort, extreme, numbers, speed_of
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.bodies import counts, properties_of
+from service.routes.bodies import counts, moments_to_foresee, properties_of, speed_to_follow
 from service.routes.rotation import AccuracyView, ModelView, WorkView, in_range
 from service.routes.surfaces import SOURCE_BODY, Count, Seed
 from service.routing import Answer, Example, Question
@@ -125,11 +126,16 @@ def _starts(question: EnsembleRequest, body: Any) -> Any:
 
 
 def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of an ensemble; a sample's starts are not known yet, nor how fast they are."""
+    """Return what is counted of an ensemble; of a sample's starts it is known how fast they are on average."""
     starts = question.angular_velocities or []
     members = question.sample.count if question.sample is not None else len(starts)
     samples = sample_count(question.times, budget)
+    moments = moments_to_foresee((question.method,), question.body)
     speed = max((speed_of(start) for start in starts), default=1.0)
+    if question.sample is not None and moments and moments[0] > 0.0:
+        # The root of the mean square over the directions of the sample.
+        speed = speed_of([sqrt(question.sample.energy / 1.5) / sqrt(moment) for moment in moments])
+    speed = speed_to_follow((question.method,), question.body, speed)
     return {
         **counts(question, budget),
         "members": members,

@@ -18,6 +18,7 @@ from service import pricing
 from service.pricing import Foreseen, Priced, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.reading import Limits, Reader
+from service.routes.bodies import speed_to_follow
 from service.routes.rotation import T_HANDLE, ModelView
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, View
@@ -202,7 +203,7 @@ def _evaluations(asked: Any, budget: Budget) -> int | None:
 
 def _speed(asked: Any) -> float:
     starts = getattr(asked, "angular_velocities", None) or [getattr(asked, "angular_velocity", (1.0,))]
-    return max(pricing.speed_of(start) for start in starts)
+    return speed_to_follow((asked.method,), asked.body, max(pricing.speed_of(start) for start in starts))
 
 
 def _samples(asked: Any) -> int | None:

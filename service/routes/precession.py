@@ -16,7 +16,7 @@ from core.rotation.precession import Precession, Regime, precession
 from core.rotation.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
 from service.pricing import Priced, effort, speed_of
-from service.routes.bodies import counts, properties_of
+from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation import ANGULAR_VELOCITY, T_HANDLE
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Span, Vector, View
@@ -116,7 +116,8 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     if measure is None:
         return found
     times = Span(start=0.0, stop=measure.duration, count=measure.samples)
-    return found | effort(measure.method, times, speed_of(question.angular_velocity), measure.samples)
+    speed = speed_to_follow((measure.method,), question.body, speed_of(question.angular_velocity))
+    return found | effort(measure.method, times, speed, measure.samples)
 
 
 def precession_outline(question: PrecessionRequest) -> PrecessionRequest:

@@ -21,7 +21,7 @@ from core.rotation.attitude import FreeAttitude
 from core.rotation.torque_free import TorqueFree
 from service.pricing import Priced, effort, extreme, numbers, speed_of
 from service.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.bodies import counts, properties_of
+from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, QuaternionRow, Request, Times, Vector, View, sample_count, sample_times
 
@@ -225,7 +225,8 @@ def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, 
     found = counts(question, budget) | {"samples": samples}
     if "attitude" in wanted:
         found |= {"attitudes": 1.0, "attitude samples": samples}
-    found |= effort(question.method, question.times, speed_of(question.angular_velocity), samples)
+    speed = speed_to_follow((question.method,), question.body, speed_of(question.angular_velocity))
+    found |= effort(question.method, question.times, speed, samples)
     columns = 3 * ("angular_velocity" in wanted) + 4 * ("attitude" in wanted)
     return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
 

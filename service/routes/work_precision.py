@@ -16,7 +16,7 @@ from core.rotation.torque_free import TorqueFree
 from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
 from service.figures import SVG, Curve, Level, log_log
 from service.pricing import Priced, effort, extreme, speed_of
-from service.routes.bodies import counts, properties_of
+from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation import ANGULAR_VELOCITY, T_HANDLE, TIMES
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
@@ -107,7 +107,7 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
     if question.methods is None:
         return found | {"ladders": repeats, "ladder samples": repeats * samples}
-    speed = speed_of(question.angular_velocity)
+    speed = speed_to_follow(question.methods, question.body, speed_of(question.angular_velocity))
     for method in question.methods:
         for name, count in effort(method, question.times, speed, samples, repeats).items():
             found[name] = found.get(name, 0.0) + count

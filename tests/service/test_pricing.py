@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from math import ceil, inf, isfinite, nextafter, ulp
+from sys import float_info
 from typing import Any, get_args, get_type_hints
 
 import numpy as np
@@ -12,9 +13,12 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from core.bodies.measured import PrincipalMoments
 from core.errors import MechanicsError
 from core.integration.budget import Budget
 from core.integration.methods import Method
+from core.rotation.initial_states import initial_states
+from core.rotation.torque_free import TorqueFree
 from service.answering import Answering
 from service.pricing import (
     UNCOUNTABLE,
@@ -29,6 +33,7 @@ from service.pricing import (
     farthest,
     numbers,
     one,
+    quickest,
     setting,
     speed_of,
     steps,
@@ -218,6 +223,107 @@ class TestMethods:
         assert max(map(abs, rate)) <= speed < inf
         if speed < 1e150:
             assert speed <= sum(map(abs, rate)) + ulp(speed)
+
+
+MOMENT = st.floats(1e-9, 1e9)
+SWINGING = {
+    "body": {"kind": "principal-moments", "moments": [795.0, 0.007, 1.0]},
+    "angular_velocity": [1.0, 10.0, 1.0],
+    "times": {"start": 0.0, "stop": 1.0, "count": 3},
+    "accuracy": 0.5,
+}
+"""No matter has these moments; the motion swings 9000 times as fast as it turns."""
+
+RUN = {"kind": "dormand-prince-853", "tolerance": 1e-6}
+PARTS = [{"body": {"kind": "ball", "radius": 1.0, "mass": 1.0 + i}, "position": [i, i * i, 0.0]} for i in range(60)]
+
+
+def price(path: str, **question: Any) -> float:
+    route = ROUTES[path]
+    return ANSWERING.price(route, ANSWERING.read(route, json.dumps(question).encode()))
+
+
+class TestMotionsThatOutrunTheirStart:
+    @given(MOMENT, MOMENT, st.floats(0.0, 1.0), SPEED)
+    @settings(derandomize=True)
+    def test_matter_does_not(self, a: float, b: float, share: float, speed: float) -> None:
+        low, middle = sorted((a, b))
+        moments = [low, middle, max(middle, share * (low + middle))]
+        assert quickest(speed, moments) == speed
+
+    @given(st.lists(MOMENT, min_size=3, max_size=3), SPEED)
+    @settings(derandomize=True)
+    def test_a_swing_is_that_of_the_linear_equations(self, moments: list[float], speed: float) -> None:
+        """At rest but for the axis of the largest moment, the rates are eigenvalues of the Jacobian, by numpy."""
+        a, b, c = sorted(moments)
+        jacobian = np.array([[0.0, (b - c) / a], [(c - a) / b, 0.0]])
+        swing = float(np.abs(np.linalg.eigvals(jacobian)).max())
+        assume(speed < 1e200)
+        assert quickest(speed, [a, b, c]) == pytest.approx(speed * max(1.0, swing), rel=1e-6)
+
+    def test_what_has_no_thickness_has_a_price(self) -> None:
+        assert quickest(2.0, [0.0, 1.0, 1.0]) == quickest(2.0, [-1e-20, 1.0, 1.0]) == 2.0
+        assert quickest(2.0, [-1e-10, 1.0, 1.0]) == 2.0
+        assert quickest(2.0, [0.0, 1.0, 2.0]) == quickest(2.0, [0.0, 0.0, 2.0]) == float_info.max
+        assert quickest(0.0, [0.0, 1.0, 2.0]) == 0.0
+
+    def test_evaluations_are_foreseen_in_order_of_magnitude(self) -> None:
+        plan = {"path": "/v1/rotation/trajectory", "request": SWINGING | {"method": RUN}}
+        question = ANSWERING.read(ROUTES["/v1/plan"], json.dumps(plan).encode())
+        foreseen = ANSWERING.answer(ROUTES["/v1/plan"], question)["cost"]["evaluations"]
+        body = PrincipalMoments((795.0, 0.007, 1.0)).mass_properties()
+        system = TorqueFree(body, np.array(SWINGING["angular_velocity"]))
+        run = METHODS[RUN["kind"]](RUN["tolerance"]).integrate(system, np.array([0.0, 0.5, 1.0]), Budget())
+        assert run.work.evaluations / 2 < foreseen < 10 * run.work.evaluations
+
+    def test_every_operation_foresees_them(self) -> None:
+        run = RUN | {"kind": "lsoda"}
+        rates = {"angular_velocities": [SWINGING["angular_velocity"]]}
+        several = {name: SWINGING[name] for name in ("body", "times", "accuracy")} | rates
+        turning = {name: SWINGING[name] for name in ("body", "angular_velocity")}
+        assert price("/v1/rotation/trajectory", **SWINGING, method=run) > 1.0
+        assert price("/v1/rotation/ensemble", **several, method=run) > 1.0
+        assert price("/v1/work-precision", **SWINGING, methods=[run]) > 1.0
+        measure = {"method": run, "duration": 1.0, "samples": 3, "tolerance": 0.1}
+        assert price("/v1/rotation/precession", **turning, measure=measure) > 1.0
+
+    @pytest.mark.parametrize(("length", "least", "most"), [(1e3, 1.0, 2.0), (1e5, 10.0, 1e4), (1e6, 1e3, inf)])
+    def test_rounding_that_is_taken_for_motion_is_foreseen(self, length: float, least: float, most: float) -> None:
+        """It took 401, 20 910 and more than 300 000 evaluations."""
+        needle = {
+            "body": {
+                "kind": "point-masses",
+                "masses": [1.0, 2.0, 1.0, 0.5],
+                "positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.3, length]],
+            },
+            "angular_velocity": [1.0, 2.0, 0.5],
+            "times": {"start": 0.0, "stop": 10.0, "count": 3},
+        }
+        run = {"kind": "lsoda", "tolerance": 1e-9}
+        along = {"body": {"kind": "principal-moments", "moments": [1.0, length * length, length * length]}}
+        price_of = {
+            name: price("/v1/rotation/trajectory", **needle | body, method=run)
+            for name, body in (("oblique", {}), ("principal", along))
+        }
+        assert least <= price_of["oblique"] / price_of["principal"] < most
+
+    def test_starts_of_an_energy_are_as_dear_as_the_same_starts_given(self) -> None:
+        moments, sample = (3.0, 2.0, 1.5), {"energy": 1e10, "count": 20, "seed": 1}
+        states = initial_states(PrincipalMoments(moments).mass_properties(), 1e10, 20, 1)
+        question = {
+            "body": {"kind": "principal-moments", "moments": moments},
+            "times": {"start": 0.0, "stop": 5.0, "count": 3},
+            "method": RUN,
+        }
+        given = price("/v1/rotation/ensemble", **question, angular_velocities=states.tolist())
+        assert given / 2 < price("/v1/rotation/ensemble", **question, sample=sample) < 2 * given
+
+
+def test_the_parts_of_a_body_cost_the_same_whatever_is_asked() -> None:
+    turning = {"body": {"kind": "composite", "parts": PARTS}, "angular_velocity": [1.0, 0.0, 0.0]}
+    least = price("/v1/bodies/mass-properties", body=turning["body"]) / 2
+    assert price("/v1/rotation/precession", **turning) > least > 0.003
+    assert price("/v1/rotation/stability", body=turning["body"]) > least
 
 
 ORDINARY = st.floats(-1e6, 1e6).filter(lambda t: t == 0.0 or abs(t) > 1e-300)

@@ -17,7 +17,7 @@ from service.app import Service
 from service.composing import Document
 from service.heads import MATTERS
 from service.keys import new_key
-from service.protocol import Protocol
+from service.protocol import LONGEST_HEAD, MOST_BEHIND, PARSED_AT_ONCE, Protocol
 from service.rounds import ROUNDS, Rounds
 from service.settings import Settings
 from tests.service.conftest import TOYS
@@ -261,6 +261,44 @@ async def test_another_request_instead_of_the_rest_of_a_body_is_taken_for_it() -
     assert received.index(b"invalid-json") < received.index(b"Invalid HTTP request received.")
 
 
+TINY = b"GET /healthz HTTP/1.1\r\n\r\n"
+LONG = b"x: " + b"y" * LONGEST_HEAD
+TOO_LONG: dict[str, tuple[bytes, int]] = {
+    "one field": (HEAD + LONG, 0),
+    "many fields": (HEAD + b"x: y\r\n" * (LONGEST_HEAD // 6), 0),
+    "a target": (b"GET /" + LONG[3:], 0),
+    "behind others": (TINY * 3 + ask(LARGE) + HEAD + LONG, 4),
+    "a name": (HEAD + LONG[3:], 0),
+    "empty lines": (TINY + b"\r\n" * LONGEST_HEAD, 1),
+    "behind a body": (chunked(BODY)[:-2] + LONG, 0),
+    "the length of a chunk": (OPEN + b"\r\n1;" + LONG[3:], 0),
+}
+
+
+@pytest.mark.parametrize("case", TOO_LONG)
+async def test_a_head_that_does_not_end_is_refused_in_its_turn(case: str) -> None:
+    whole, before = TOO_LONG[case]
+    async with serving(Protocol) as server:
+        reader, writer = await connect(server)
+        writer.write(whole + b"y" * (2 * PARSED_AT_ONCE))
+        try:
+            received = await asyncio.wait_for(reader.read(), 20)
+        finally:
+            writer.close()
+    assert received.count(b"HTTP/1.1 200") == before
+    assert re.findall(rb"HTTP/1.1 \d+", received)[before:] == [b"HTTP/1.1 400"]
+    assert received.endswith(b"A request with more than 65536 bytes of headers is not read.")
+
+
+async def test_long_heads_are_read_up_to_a_limit_that_each_request_has_to_itself() -> None:
+    asked = ask(more=LONG[: LONGEST_HEAD - PARSED_AT_ONCE] + b"\r\n")
+    closing = chunked(BODY, b"connection: close\r\n")[:-2]
+    trailer = LONG[: LONGEST_HEAD - PARSED_AT_ONCE] + b"\r\n\r\n"
+    async with serving(Protocol) as server:
+        received = await told(server, asked + asked + ask(b" " * 100_000) + asked + closing + trailer)
+    assert re.findall(rb"HTTP/1.1 (\d+)", received) == [b"200", b"200", b"400", b"200", b"200"]
+
+
 async def test_a_request_is_answered_once_though_its_body_breaks_off_into_nonsense() -> None:
     async with serving(Protocol) as server:
         head = OPEN.replace(b"application/json", b"text/plain")
@@ -413,6 +451,25 @@ async def test_a_client_that_does_not_read_gets_everything_in_the_end(asked: lis
     assert 0 < len(asked) < 399
 
 
+async def test_of_many_requests_in_a_row_few_wait_and_all_are_answered_in_turn(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    waiting: list[int] = []
+    answered = Protocol.on_response_complete
+
+    def noted(self: Protocol) -> None:
+        waiting.append(len(self.pipeline))
+        answered(self)
+
+    monkeypatch.setattr(Protocol, "on_response_complete", noted)
+    turns = [b"GET /%d HTTP/1.1\r\nx-request-id: %d\r\n\r\n" % (i, i) for i in range(6_000)]
+    async with serving(Protocol) as server:
+        received = await told(server, b"".join(turns[:3_000]) + ask(LARGE) + b"".join(turns[3_000:]) + LAST)
+    assert [int(i) for i in re.findall(rb"x-request-id: (\d+)\r", received)] == list(range(6_000))
+    assert received.endswith(b'{"status":"alive"}')
+    assert 0 < max(waiting) <= PARSED_AT_ONCE // len(turns[0])
+
+
 async def test_a_client_that_leaves_harms_nobody() -> None:
     async with serving(Protocol) as server:
         for pieces in ((ask(),), (ask()[:-4],), (ask() * 50,), (ask(LARGE),)):
@@ -468,6 +525,13 @@ class Transport:
 
     def __init__(self) -> None:
         self.done: list[bytes] = []
+        self.reading = True
+
+    def pause_reading(self) -> None:
+        self.reading = False
+
+    def resume_reading(self) -> None:
+        self.reading = True
 
     def write(self, data: bytes) -> None:
         self.done.append(data)
@@ -583,3 +647,28 @@ async def test_a_connection_on_which_a_question_waits_is_not_closed() -> None:
     assert not transport.is_closing()
     await asyncio.sleep(0)
     assert statuses(transport) == [b"200 OK"] * 2
+
+
+async def test_who_has_much_waiting_is_not_read_until_it_is_answered() -> None:
+    protocol, transport = connected()
+    await until_answered(transport, 1)
+    count = MOST_BEHIND // len(TINY) + 1_000
+    protocol.data_received(TINY * count)
+    read_on = []
+    while len(statuses(transport)) <= count:
+        await asyncio.sleep(0)
+        read_on.append(transport.reading)
+    assert read_on.index(True) > 100
+    assert read_on[-1]
+
+
+async def test_a_server_that_stops_answers_what_it_has_begun_to_read() -> None:
+    protocol, transport = connected()
+    await until_answered(transport, 1)
+    halves = ask(b" " * 3 * PARSED_AT_ONCE)
+    protocol.data_received(TINY + halves + TINY * 1_000)
+    assert len(protocol.pipeline) == 1
+    protocol.shutdown()
+    await until_answered(transport, 4)
+    assert statuses(transport) == [b"200 OK", b"200 OK", b"400 Bad Request", b"closed"]
+    assert b"\r\nconnection: close\r\n" in transport.done[-3]
