@@ -72,6 +72,7 @@ SERVICE_LAYERS = (
     {"rounds"},
     {"dispatch"},
     {"app"},
+    {"orderly_http"},
     {"server", "protocol", "running", "__main__"},
 )
 """The service's files from the ground upwards; each imports from its own storey or from below."""
