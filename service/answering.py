@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib import import_module
 from typing import Any
 
 import orjson
@@ -53,6 +54,8 @@ class Answering:
         for route in self._routes:
             for example in route.examples.values():
                 self.answer(route, self.read(route, orjson.dumps(example.question)))
+        # What its methods import when one of them is first asked for would hold up the event loop.
+        import_module("scipy.integrate")
 
 
 def _warning(notice: Notice) -> dict[str, str]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import subprocess
+import sys
 from typing import Any
 
 import orjson
@@ -18,9 +20,19 @@ from service.problems import Refusal
 from service.reading import Limits
 from service.routing import Example, Question
 from service.writing import written
+from tests.service.conftest import ROOT
 from tests.service.toy_routes import GOOD, TOY, Ask
 
 OTHER = dataclasses.replace(TOY, path="/v1/other", handle=lambda question, budget: {"other": budget.samples})
+
+METHOD = json.dumps(
+    {
+        "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
+        "angular_velocity": [0.1, 1.0, 0.1],
+        "times": [0.0, 1.0],
+        "method": {"kind": "KIND", "tolerance": 1e-6},
+    }
+)
 
 
 def answering(*routes: Question, **limits: int) -> Answering:
@@ -130,3 +142,24 @@ class TestWarm:
     def test_an_example_that_is_not_answered_stops_the_start(self, example: dict[str, Any]) -> None:
         with pytest.raises((Refusal, RuntimeError)):
             answering(dataclasses.replace(TOY, examples={"bad": Example("", example)})).warm()
+
+
+def test_nothing_is_imported_for_a_question_any_more_once_it_is_warm() -> None:
+    """In a process of its own, which has imported nothing for other tests."""
+    program = f"""
+import sys
+from core.integration.budget import Budget
+from service.answering import Answering
+from service.reading import Limits
+from service.routing import TABLE
+from pkgutil import resolve_name
+answering = Answering(resolve_name(TABLE)(), Budget(), Limits())
+answering.warm()
+before = set(sys.modules)
+(route,) = (route for route in resolve_name(TABLE)() if route.path == "/v1/rotation/trajectory")
+for kind in ("lsoda", "radau"):
+    answering.answer(route, answering.read(route, {METHOD!r}.replace("KIND", kind).encode()))
+print(*(set(sys.modules) - before))
+"""
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert found.stdout.split() == []
