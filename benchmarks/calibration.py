@@ -24,6 +24,7 @@ import orjson
 from scipy.optimize import nnls
 
 from benchmarks.machine import RESULTS, described
+from core.bodies import measured as measured_bodies
 from core.bodies.measured import PrincipalMoments
 from core.errors import MechanicsError
 from core.integration.budget import Budget
@@ -117,7 +118,9 @@ def variants() -> dict[str, list[dict[str, Any]]]:
         many | {"sample": {"energy": 1.0, "count": m, "seed": 0}, "times": span(n)} for m, n in ((100, 10), (9, 9))
     ]
     ensemble += [
-        many | {"angular_velocities": [STARTS[1]] * 9, "times": span(30), "method": method} for method in methods()
+        many | {"angular_velocities": [STARTS[1]] * 9, "times": span(n), "method": method}
+        for method in methods()
+        for n in (30, 1000)
     ]
     surface = [
         many | {"energy": 1.0, "resolution": n, "layout": layout}
@@ -140,12 +143,15 @@ def variants() -> dict[str, list[dict[str, Any]]]:
         "rotation_trajectory": trajectory,
         "rotation_ensemble": ensemble,
         "precession": pairs
+        + [{"body": body, "angular_velocity": STARTS[0]} for body in SOLIDS]
+        # Measured for longer than a period, so that the return is found.
         + [
-            pair | {"measure": {"method": method, "duration": 10.0, "samples": 300, "tolerance": 0.035}}
+            pair | {"measure": {"method": method, "duration": 30.0, "samples": count, "tolerance": 0.035}}
             for pair in pairs[1:2]
             for method in methods()
+            for count in (300, 10_000)
         ],
-        "stability": [{"body": body} for body in BODIES],
+        "stability": [{"body": body} for body in [*BODIES, *SOLIDS]],
         "energy_ellipsoid": surface,
         "initial_states": [many | {"energy": 1.0, "count": n} for n in SIZES],
         "work_precision": compared,
@@ -171,13 +177,14 @@ def measured_cost(answering: Answering, route: Question, question: dict[str, Any
     """Return the time of an answer (s), its length, and the time of writing it (s).
 
     Times are those that the processor gave this thread, and the least of several: what other processes take from a
-    loaded machine is no part of a price.
+    loaded machine is no part of a price. What is kept of a body that is asked about again is forgotten each time.
     """
     body = orjson.dumps(question)
     answer = answering.answer(route, answering.read(route, body))
     spent, writing, text = [], [], written(answer)
     begun = time.thread_time()
     while len(spent) < 5 or (len(spent) < 50 and time.thread_time() - begun < 0.05):
+        measured_bodies._of_moments.cache_clear()
         start = time.thread_time()
         answer = answering.answer(route, answering.read(route, body))
         middle = time.thread_time()
