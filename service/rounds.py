@@ -22,13 +22,16 @@ from service.metrics import Metrics
 from service.records import Records
 from service.representation import Representation
 from service.routing import Question
-from service.writing import ONE_PIECE, written
+from service.writing import ONE_PIECE, array_size, written
 
 ROUNDS = "polhode.rounds"
 """Name under which an application gives its rounds to the server, in the state of its lifespan."""
 
-SMALL = 3e-4
+SMALL = 1e-4
 """Predicted seconds up to which a question keeps the others of its round waiting for no more than a moment."""
+
+FEW = 1_024
+"""Numbers of an answer, likewise; none is written that then has to be sent in pieces."""
 
 SHORT = 2 * ONE_PIECE
 """Bytes of text that cannot hold so many numbers that the answer has to be sent in pieces."""
@@ -140,6 +143,8 @@ class Rounds:
         return True
 
     def _write(self, one: _Asked) -> bool:
+        if array_size(one.work) > FEW:
+            return False
         text = written(one.work)
         if len(text) > SHORT:
             return False

@@ -62,9 +62,11 @@ def array_size(answer: Any) -> int:
             continue
         if kind is np.ndarray:
             size += value.size
+        elif kind is dict:
+            size += array_size(value)
         elif strings := strings_in(value):
             size += strings
-        elif kind is dict or ((kind is list or kind is tuple) and value and type(value[0]) not in _NO_ARRAYS):
+        elif (kind is list or kind is tuple) and value and type(value[0]) not in _NO_ARRAYS:
             size += array_size(value)
     return size
 

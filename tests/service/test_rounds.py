@@ -17,7 +17,7 @@ from service.metrics import Metrics
 from service.reading import Limits
 from service.records import Records
 from service.representation import etag_of
-from service.rounds import SHORT, SMALL, TOGETHER, Rounds
+from service.rounds import FEW, SMALL, TOGETHER, Rounds
 from service.writing import written
 from tests.service.toy_routes import GOOD, TOY
 
@@ -98,7 +98,7 @@ async def test_an_answer_comes_with_the_headers_of_any_answer() -> None:
         samples(0),
         samples(10**9),
         samples(int(SMALL / 1e-8) + 1),
-        samples(SHORT // 8),
+        samples(FEW // 4 + 1),
     ],
     ids=str,
 )
@@ -174,3 +174,16 @@ async def test_nothing_is_answered_here_that_is_to_be_computed_elsewhere() -> No
     await asyncio.sleep(0)
     assert small.heard[0] is not None
     assert larger.heard == [None]
+
+
+async def test_what_is_long_is_not_written_to_be_declined(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Though it cost little to find."""
+    seen: list[Any] = []
+    monkeypatch.setattr("service.rounds.written", lambda answer: seen.append(answer) or written(answer))
+    room, short, longer = Room(), Asker(), Asker()
+    room.ask(short, **samples(FEW // 4))
+    room.ask(longer, **samples(FEW // 4 + 1))
+    await asyncio.sleep(0)
+    assert short.heard[0] is not None
+    assert longer.heard == [None]
+    assert len(seen) == 1
