@@ -27,9 +27,10 @@ from benchmarks.machine import RESULTS, described
 from core.bodies import measured as measured_bodies
 from core.bodies.measured import PrincipalMoments
 from core.errors import MechanicsError
-from core.integration.budget import Budget
-from core.integration.error_statements import measured
-from core.integration.methods import (
+from core.rotation.torque_free import TorqueFree
+from core.systems.budget import Budget
+from core.systems.error_statements import measured
+from core.systems.methods import (
     DiscreteMoserVeselov,
     DormandPrince853,
     ExplicitEuler,
@@ -39,14 +40,13 @@ from core.integration.methods import (
     RungeKutta4,
     SymmetricSplitting,
 )
-from core.rotation.torque_free import TorqueFree
-from service import pricing
-from service.answering import Answering
-from service.reading import Limits
+from service.execution import cost_model as pricing
+from service.execution.request_handler import Answering
+from service.requests.request_reader import Limits
+from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.rotation import T_HANDLE
+from service.routes.rotation.trajectory import T_HANDLE
 from service.routing import Question
-from service.writing import written
 
 ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "service" / "calibration.json"

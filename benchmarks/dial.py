@@ -23,10 +23,10 @@ from benchmarks.machine import RESULTS, described, medians
 from core.bodies.mass_properties import PrincipalInertia, diagonal
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import MechanicsError
-from core.integration.methods import DormandPrince853, ExplicitEuler, ImplicitMidpoint, RungeKutta4, SymmetricSplitting
-from core.integration.methods.method import AbstractMethod
-from core.rotation.closed_form import FreeRotation
+from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
+from core.systems.methods import DormandPrince853, ExplicitEuler, ImplicitMidpoint, RungeKutta4, SymmetricSplitting
+from core.systems.methods.method import AbstractMethod
 
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "dial.svg"
 MOMENTS = (795.792181070, 713.509259259, 395.782921811)

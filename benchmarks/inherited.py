@@ -22,10 +22,10 @@ import numpy as np
 
 from benchmarks.machine import RESULTS, described
 from benchmarks.ratio_figure import drawn
-from core.integration.methods import DormandPrince853, RungeKutta4
-from core.integration.solve import solve
-from core.rotation.attitude import FreeAttitude
+from core.rotation.attitude.free_attitude import FreeAttitude
 from core.rotation.torque_free import TorqueFree
+from core.systems.methods import DormandPrince853, RungeKutta4
+from core.systems.solve import solve
 from tests.oracles.perturbed import ATTITUDE, Perturbed
 from tests.oracles.uncertain_bodies import KINDS, REGIMES, Uncertain, uncertain
 

@@ -19,8 +19,8 @@ import orjson
 
 from benchmarks.machine import RESULTS, described
 from benchmarks.service_rows import MASS_PROPERTIES, Caller, running
-from service import large_arrays
-from service.reading import Limits, Reader
+from service.requests import large_arrays
+from service.requests.request_reader import Limits, Reader
 
 COUNTS = (1_000, 10_000, 100_000)
 

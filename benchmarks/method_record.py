@@ -1,4 +1,4 @@
-"""Make core/integration/record.json: what each step-choosing method, with each tolerance, was measured to do.
+"""Make core/systems/record.json: what each step-choosing method, with each tolerance, was measured to do.
 
     python -m benchmarks.method_record
 
@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import MechanicsError
-from core.integration.accuracy import CANDIDATES
-from core.integration.error_statements import measured
-from core.integration.system import System
-from tests.core.integration.systems import elliptic_functions, kepler, oscillator, rigid_body_with_solution
+from core.systems.accuracy import CANDIDATES
+from core.systems.error_statements import measured
+from core.systems.system import System
+from tests.core.systems.systems import elliptic_functions, kepler, oscillator, rigid_body_with_solution
 
 TARGET = Path(__file__).parents[1] / "core" / "integration" / "record.json"
 TOLERANCES = [float(f"{10.0 ** (-k / 2):.2g}") for k in range(4, 33)]

@@ -23,7 +23,7 @@ import numpy as np
 
 from benchmarks.machine import RESULTS, described
 from core.bodies.mass_properties import diagonal
-from core.rotation.closed_form import FreeRotation
+from core.rotation.free_rotation import FreeRotation
 from tests.core.certified.judge import UNIT_ROUNDOFF, Verdict, judged
 from tests.oracles.cases import Case
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from core.bodies.measured import PointMasses
-from core.integration.solve import solve
 from core.rotation.torque_free import TorqueFree
+from core.systems.solve import solve
 
 ROOT = Path(__file__).parents[1]
 COLOURS = ("#c1440e", "#2a6f4e", "#1f4e8c")

@@ -11,12 +11,12 @@ from typing import Any
 import orjson
 
 from benchmarks.machine import RESULTS, described, medians
-from core.integration.budget import Budget
-from service.answering import Answering
-from service.reading import Limits
+from core.systems.budget import Budget
+from service.execution.request_handler import Answering
+from service.requests.request_reader import Limits
+from service.responses.json_rows import chunks
 from service.routes import questions
-from service.routes.rotation import T_HANDLE
-from service.writing import chunks
+from service.routes.rotation.trajectory import T_HANDLE
 
 QUESTION: dict[str, Any] = {
     "body": T_HANDLE,

@@ -20,10 +20,10 @@ from typing import Any
 
 from benchmarks.machine import RESULTS, described
 from core.errors import MechanicsError
-from core.integration.budget import Budget
-from service.answering import Answering
+from core.systems.budget import Budget
+from service.execution.request_handler import Answering
 from service.problems import Refusal, problem_of
-from service.reading import Limits
+from service.requests.request_reader import Limits
 from service.routes import questions
 from service.routing import Question
 

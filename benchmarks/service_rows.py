@@ -28,10 +28,10 @@ import uvicorn
 import uvloop
 
 from benchmarks.machine import RESULTS, described
-from core.integration.budget import Budget
-from service.archive import MEDIA_TYPE
+from core.systems.budget import Budget
+from service.responses.npz import MEDIA_TYPE
 from service.routes.bodies import BODIES
-from service.routes.rotation import ROTATION
+from service.routes.rotation.trajectory import ROTATION
 from service.routing import Question
 from service.settings import Settings
 
@@ -115,7 +115,7 @@ def serve() -> None:
     """Serve and print the port."""
     app = Watched()
     config = uvicorn.Config(
-        app, port=0, loop="uvloop", http="service.protocol:Protocol", log_config=None, access_log=False
+        app, port=0, loop="uvloop", http="service.http.protocol:Protocol", log_config=None, access_log=False
     )
     server = uvicorn.Server(config)
 

@@ -39,7 +39,7 @@ from pydantic import BaseModel, Field
 
 from benchmarks.machine import RESULTS, described
 from core.bodies.measured import PrincipalMoments
-from service.routes.precession import PRECESSION
+from service.routes.rotation.precession import PRECESSION
 from service.routing import TABLE, Question
 
 QUESTION = PRECESSION[0]
@@ -50,7 +50,7 @@ CONNECTIONS = 16
 Moment = Annotated[float, Field(gt=0)]
 TRANSPORT = "benchmarks.service_speed:transport"
 REAL = TABLE
-OURS = "service.protocol:Protocol"
+OURS = "service.http.protocol:Protocol"
 
 
 def transport() -> tuple[Question, ...]:
@@ -61,19 +61,19 @@ def transport() -> tuple[Question, ...]:
 
 
 def _content() -> dict[str, Any]:
-    from core.integration.budget import Budget
-    from service.answering import Answering
-    from service.reading import Limits
+    from core.systems.budget import Budget
+    from service.execution.request_handler import Answering
+    from service.requests.request_reader import Limits
 
     answering = Answering([QUESTION], Budget(), Limits())
     return QUESTION.handle(answering.read(QUESTION, BODY), Budget())
 
 
 def _answer() -> bytes:
-    from core.integration.budget import Budget
-    from service.answering import Answering
-    from service.reading import Limits
-    from service.writing import written
+    from core.systems.budget import Budget
+    from service.execution.request_handler import Answering
+    from service.requests.request_reader import Limits
+    from service.responses.json_rows import written
 
     answering = Answering([QUESTION], Budget(), Limits())
     return written(answering.answer(QUESTION, answering.read(QUESTION, BODY)))
@@ -131,7 +131,7 @@ def idiomatic(table: str) -> Any:
     """Return the question as FastAPI's tutorial would serve it: a model in, a model out, nothing else."""
     from fastapi import FastAPI
 
-    from core.integration.budget import Budget
+    from core.systems.budget import Budget
 
     handle = QUESTION.handle if table == REAL else transport()[0].handle
     signature = {"source": "polhode", "version": "0"}

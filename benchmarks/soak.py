@@ -28,9 +28,9 @@ import numpy as np
 from benchmarks.machine import RESULTS, described
 from benchmarks.servers import Server, service
 from core.bodies.measured import PrincipalMoments
-from core.integration.solve import solve
-from core.rotation.precession import precession
+from core.rotation.precession.precession import precession
 from core.rotation.torque_free import TorqueFree
+from core.systems.solve import solve
 
 JSON = {"content-type": "application/json"}
 PRECESSION, TRAJECTORY = "/v1/rotation/precession", "/v1/rotation/trajectory"

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from core.bodies.measured import PrincipalMoments
-from core.integration.budget import Budget
-from core.rotation.closed_form import FreeRotation
-from service.figures import Curve, Level, log_log
-from service.routes.rotation import T_HANDLE
+from core.rotation.free_rotation import FreeRotation
+from core.systems.budget import Budget
+from service.responses.svg import Curve, Level, log_log
+from service.routes.rotation.trajectory import T_HANDLE
 from service.routes.work_precision import WorkPrecisionRequest, answer_work_precision, drawn
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
-from core.integration.budget import Budget
-from core.integration.error_statements import drifts, estimated, measured
-from core.integration.methods import (
+from core.systems.budget import Budget
+from core.systems.error_statements import drifts, estimated, measured
+from core.systems.methods import (
     ClosedFormEvaluation,
     DiscreteMoserVeselov,
     DormandPrince853,
@@ -33,9 +33,9 @@ from core.integration.methods import (
     RungeKutta4,
     SymmetricSplitting,
 )
-from core.integration.methods.dormand_prince_853 import SMALLEST_TOLERANCE
-from core.integration.solve import checked_times
-from core.integration.system import Floats, System
+from core.systems.methods.dormand_prince_853 import SMALLEST_TOLERANCE
+from core.systems.solve import checked_times
+from core.systems.system import Floats, System
 
 STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
 TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))

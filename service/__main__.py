@@ -11,8 +11,8 @@ from pydantic import ValidationError
 
 from service import VERSION
 from service.app import create_app
-from service.keys import new_key
-from service.logs import configure
+from service.http.keys import new_key
+from service.observability.logs import configure
 from service.running import Config, run
 from service.settings import Settings
 
@@ -66,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         host=settings.host,
         port=settings.port,
         workers=settings.workers,
-        http="service.protocol:Protocol",
+        http="service.http.protocol:Protocol",
         log_config=None,
         access_log=False,
         server_header=False,

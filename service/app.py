@@ -12,16 +12,16 @@ from typing import Any
 import orjson
 from fastapi import FastAPI
 
-from service.answering import Answering
-from service.aside import aside
-from service.compute import Compute
-from service.dispatch import Dispatcher
-from service.documentation import documented, openapi
-from service.exchange import Scope, Send
-from service.guards import Receive
-from service.logs import LOG
-from service.metrics import Metrics
-from service.rounds import ROUNDS
+from service.execution.admission import Compute
+from service.execution.daemon_thread import aside
+from service.execution.request_handler import Answering
+from service.http.dispatch import Dispatcher
+from service.http.limits import Receive
+from service.http.request_context import Scope, Send
+from service.http.rounds import ROUNDS
+from service.observability.logs import LOG
+from service.observability.metrics import Metrics
+from service.openapi.document import documented, openapi
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages

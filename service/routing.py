@@ -8,13 +8,13 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from core.integration.budget import Budget
+from core.systems.budget import Budget
 
 TABLE = "service.routes:questions"
 """Where the route table is; compute processes load it from there by themselves."""
 
 Answer = dict[str, Any]
-"""Fields of an answer in the order in which they are written; see `service.writing`."""
+"""Fields of an answer in the order in which they are written; see `service.responses.json_rows`."""
 
 
 @dataclass(frozen=True)

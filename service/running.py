@@ -16,7 +16,7 @@ import uvicorn
 from uvicorn.config import STARTUP_FAILURE
 from uvicorn.supervisors import Multiprocess
 
-from service.scratch import Scratch
+from service.execution.scratch import Scratch
 
 
 class Config(uvicorn.Config):

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from core.errors import BudgetExceeded, InvalidParameter
-from core.integration.budget import Budget
 from core.quantities import Time
+from core.systems.budget import Budget
 from service import VERSION
-from service.faults import ARRAY, OBJECT
+from service.requests.error_messages import ARRAY, OBJECT
 
 SIGNATURE = {"source": "polhode", "version": VERSION}
 

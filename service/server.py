@@ -1,7 +1,7 @@
 """The application of one server process, for servers that take an import path: uvicorn service.server:app."""
 
 from service.app import create_app
-from service.logs import configure
+from service.observability.logs import configure
 from service.settings import Settings
 
 _SETTINGS = Settings()

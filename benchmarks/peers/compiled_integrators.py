@@ -11,10 +11,10 @@ from numba import njit
 from benchmarks.peers.cases import Case
 from benchmarks.peers.equations import answer, c_function, c_function_output_first, initial_state, vector_field
 from benchmarks.peers.peer import COMPILED, TOLERANCES, Peer, Run
-from core.integration.budget import Budget
-from core.integration.methods import DormandPrince853
-from core.integration.system import Floats
-from tests.core.integration.systems import Given
+from core.systems.budget import Budget
+from core.systems.methods import DormandPrince853
+from core.systems.system import Floats
+from tests.core.systems.systems import Given
 
 UNLIMITED = Budget(evaluations=10**12)
 

@@ -13,7 +13,7 @@ import numpy as np
 from numba import cfunc, njit, types
 
 from benchmarks.peers.cases import Case
-from core.integration.system import VECTOR_FIELD, Floats
+from core.systems.system import VECTOR_FIELD, Floats
 
 
 @njit(inline="always")

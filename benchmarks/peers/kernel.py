@@ -9,8 +9,8 @@ import numpy as np
 from benchmarks.machine import medians
 from benchmarks.peers.cases import SAMPLES
 from core.double_double import Scaled
-from core.rotation.constants_of_motion import constants_of_motion
-from core.rotation.sampling import sample_components
+from core.rotation.closed_form.constants_of_motion import constants_of_motion
+from core.rotation.closed_form.sampling import sample_components
 
 BRANCHES = (
     ("trigonometric branch", (1.0, 2.0, 3.0), (0.3, -0.2, 0.9)),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from html import escape
 from typing import Any
 
-from service.figures import Scale
+from service.responses.svg import Scale
 
 OURS = "Polhode"
 SHOWN = {

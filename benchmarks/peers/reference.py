@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.peers.cases import Case
 from core.certified.free_rotation import CertifiedRotation
-from core.integration.system import Floats
+from core.systems.system import Floats
 from tests.oracles.free_rotation import reference_angular_velocity, reference_attitude
 
 DIGITS = 50

@@ -15,7 +15,7 @@ from benchmarks.peers.measures import measured
 from benchmarks.peers.peer import Peer, Run
 from benchmarks.peers.reference import confirmed, reference
 from core.bodies.mass_properties import PrincipalInertia
-from core.rotation.closed_form import FreeRotation
+from core.rotation.free_rotation import FreeRotation
 
 TOO_LONG = 2.5
 """After a run that takes longer (s), a peer's dearer settings are left out."""

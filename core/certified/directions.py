@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from core.certified.adaptive_precision import working_bits
 from core.certified.decimals import FLOOR_IN_DIGITS, Undetermined
 from core.certified.exact_start import Balls
-from core.certified.raising import working_bits
 
 TIE_BITS = 320
 """Components that so many bits do not tell apart are taken as equal."""

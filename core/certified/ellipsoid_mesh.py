@@ -7,17 +7,17 @@ from dataclasses import dataclass
 
 from flint import arb, fmpq
 
+from core.certified.adaptive_precision import bits_for, check_digits, determined, each_determined
 from core.certified.decimals import decimal, decimals
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
 from core.certified.exact_start import Balls, cross_of_balls, dot
 from core.certified.free_rotation import Rows
-from core.certified.raising import bits_for, check_digits, determined, each_determined
-from core.rotation.energy_surface import CORNERS, Faces, check_resolution, geodesic, topology
+from core.rotation.surfaces.energy_surface import CORNERS, Faces, check_resolution, geodesic, topology
 
 
 @dataclass(frozen=True)
 class CertifiedMeshQuality:
-    """How well triangles stand for the ellipsoid; see `core.rotation.energy_surface.MeshQuality`."""
+    """How well triangles stand for the ellipsoid; see `core.rotation.surfaces.energy_surface.MeshQuality`."""
 
     watertight: bool
     euler_characteristic: int
@@ -36,7 +36,7 @@ class CertifiedMesh:
 
 
 def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: int) -> CertifiedMesh:
-    """Return the triangles of `core.rotation.energy_surface.EnergyEllipsoid.triangles`, every vertex on the ellipsoid.
+    """Return the triangles of `core.rotation.surfaces.energy_surface.EnergyEllipsoid.triangles`, every vertex on the ellipsoid.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: in
 
 
 def certified_grid(surface: CertifiedEllipsoid, resolution: int, digits: int) -> tuple[Rows, Rows, Rows]:
-    """Return x, y and z over longitude and colatitude, as `core.rotation.energy_surface.EnergyEllipsoid.grid` does.
+    """Return x, y and z over longitude and colatitude, as `core.rotation.surfaces.energy_surface.EnergyEllipsoid.grid` does.
 
     Raises
     ------

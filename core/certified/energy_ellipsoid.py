@@ -8,21 +8,21 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
+from core.certified.adaptive_precision import bits_for, check_digits, determined, each_determined
 from core.certified.decimals import DEEPEST, decimal, decimal_of_fraction, decimals, floor_below
 from core.certified.directions import floor_of_directions
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
 from core.certified.exact_start import Balls, dot, principal_axes
 from core.certified.free_rotation import CertifiedRotation, Rows
-from core.certified.raising import bits_for, check_digits, determined, each_determined
 from core.certified.turning_motion import TurningMotion
 from core.errors import InvalidParameter
-from core.rotation.polhodes import check_count
+from core.rotation.surfaces.polhodes import check_count
 
 
 @dataclass(frozen=True)
 class CertifiedPolhode:
-    """One curve; the fields are those of `core.rotation.polhodes.Polhode`.
+    """One curve; the fields are those of `core.rotation.surfaces.polhodes.Polhode`.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ class CertifiedEllipsoid:
         """Return the polhode in the direction of an angular velocity as `count` points and the first again.
 
         The angular velocity is scaled to the energy of this surface, which scales its polhode with it. The points are
-        those of `core.rotation.polhodes`: even steps of the amplitude, along with the motion where it is periodic. On
+        those of `core.rotation.surfaces.polhodes`: even steps of the amplitude, along with the motion where it is periodic. On
         the separatrix they are those of the whole ellipse, of which the motion draws one half.
 
         Raises

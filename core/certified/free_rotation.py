@@ -9,14 +9,14 @@ from functools import cached_property
 
 from flint import arb
 
+from core.certified.adaptive_precision import bits_for, check_digits, determined, each_determined
 from core.certified.decimals import DEEPEST, FLOOR_IN_DIGITS, decimal, decimal_of_fraction, decimals, floor_below
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact_numbers
 from core.certified.exact_start import ExactStart, Regime
-from core.certified.raising import bits_for, check_digits, determined, each_determined
 from core.certified.turning_motion import QuaternionBalls, TurningMotion, product
 from core.errors import InvalidParameter
-from core.integration.system import Model
+from core.systems.system import Model
 
 Rows = list[list[str]]
 IDENTITY = (1, 0, 0, 0)

@@ -10,16 +10,16 @@ from math import isqrt
 from flint import arb
 
 from core.bodies.principal_inertia import Symmetry
+from core.certified.adaptive_precision import bits_for, check_digits, determined
 from core.certified.decimals import decimal, decimal_of_fraction, decimals
 from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import Vector
 from core.certified.exact_inputs import enclosed
 from core.certified.exact_start import Balls, Regime
 from core.certified.free_rotation import CertifiedRotation
-from core.certified.raising import bits_for, check_digits, determined
 from core.certified.turning_motion import TurningMotion
-from core.rotation import absence
-from core.rotation.precession import OF_SYMMETRIC_BODIES, order_of_directions
+from core.rotation.precession import missing_reasons
+from core.rotation.precession.precession import OF_SYMMETRIC_BODIES, order_of_directions
 
 
 @dataclass(frozen=True)
@@ -152,16 +152,18 @@ def _axis_of_symmetry(rotation: CertifiedRotation) -> tuple[Vector, Fraction, Fr
 def _why_absent(rotation: CertifiedRotation, name: str) -> str:
     equal = rotation.inertia.equal_moments
     if rotation.regime == "rest":
-        return absence.NOTHING_TURNS
+        return missing_reasons.NOTHING_TURNS
     if name == "axis":
-        return absence.SPHERE
+        return missing_reasons.SPHERE
     if name in OF_SYMMETRIC_BODIES and equal != 2:
-        return absence.SPHERE if equal == 3 else absence.TRIAXIAL
+        return missing_reasons.SPHERE if equal == 3 else missing_reasons.TRIAXIAL
     if name == "order_of_directions":
-        return absence.SAME_DIRECTION
+        return missing_reasons.SAME_DIRECTION
     if rotation.regime == "steady":
-        return {1: absence.STEADY_BY_AXIS, 2: absence.STEADY_IN_BODY, 3: absence.STEADY_ANYHOW}[equal]
-    return absence.ON_THE_SEPARATRIX if rotation.regime == "separatrix" else absence.NO_MIDDLE_AXIS
+        return {1: missing_reasons.STEADY_BY_AXIS, 2: missing_reasons.STEADY_IN_BODY, 3: missing_reasons.STEADY_ANYHOW}[
+            equal
+        ]
+    return missing_reasons.ON_THE_SEPARATRIX if rotation.regime == "separatrix" else missing_reasons.NO_MIDDLE_AXIS
 
 
 @dataclass(frozen=True)

@@ -17,18 +17,18 @@ from typing import Any, TypeVar
 
 from flint import arb
 
+from core.certified.adaptive_precision import bits_for, check_digits, determined, working_bits
 from core.certified.decimals import Undetermined, decimal, place_of
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
-from core.certified.raising import bits_for, check_digits, determined, working_bits
 from core.certified.scene_samples import Sampler, sampler
 from core.errors import InvalidParameter, MechanicsError, NotApplicable
-from core.integration.system import Model
 from core.notices import Notice
 from core.scenes.answer import HORIZON, MOTION, ConstrainedSystem
 from core.scenes.enclosure import BITS, sign
 from core.scenes.friction import Friction
 from core.scenes.rod_in_hole import RodInHole
 from core.scenes.unwinding_shafts import UnwindingShafts
+from core.systems.system import Model
 
 LARGEST = Fraction(10**300)
 """The scenes check the ranges of their parameters as doubles."""

@@ -1,7 +1,7 @@
 """Every equilibrium of a free body to any number of digits.
 
 About axis i at the rate W, lambda^2 = W^2 (I_i - I_j)(I_k - I_i)/(I_j I_k), and lambda = 0. Which moments are equal is
-decided exactly; what follows from that stands in `core.rotation.verdict`.
+decided exactly; what follows from that stands in `core.rotation.stability.classification`.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from fractions import Fraction
 from flint import arb
 
 from core.bodies.principal_inertia import Symmetry
+from core.certified.adaptive_precision import bits_for, check_digits, determined
 from core.certified.decimals import Undetermined, decimal, decimal_of_fraction, decimals
 from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
 from core.certified.exact_start import Balls, PrincipalState, principal_axes
 from core.certified.free_rotation import CertifiedRotation, triaxial_model
-from core.certified.raising import bits_for, check_digits, determined
 from core.certified.turning_motion import constants_of
-from core.rotation.stability import flip_reason, no_middle_axis
-from core.rotation.verdict import REST, Attitude, Kind, Verdict, drift, verdict
+from core.rotation.stability.classification import REST, Attitude, Kind, Verdict, drift, verdict
+from core.rotation.stability.stability import flip_reason, no_middle_axis
 
 
 @dataclass(frozen=True)

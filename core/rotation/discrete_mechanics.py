@@ -20,7 +20,7 @@ import math
 import numpy as np
 
 from core.compiled import kernel
-from core.integration.system import DISCRETE_STEP, Floats
+from core.systems.system import DISCRETE_STEP, Floats
 
 ITERATIONS = 50
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, Path
-from core.integration.budget import Budget
-from core.integration.error_statements import rest_of
-from core.integration.methods.method import AbstractMethod
-from core.integration.solve import checked_times, solve
-from core.integration.system import Floats
-from core.integration.trajectory import Trajectory
 from core.notices import Notice
 from core.rotation.torque_free import TorqueFree
+from core.systems.budget import Budget
+from core.systems.error_statements import rest_of
+from core.systems.methods.method import AbstractMethod
+from core.systems.solve import checked_times, solve
+from core.systems.system import Floats
+from core.systems.trajectory import Trajectory
 
 MOST_NAMED = 8
 """Members that a warning names by their indices."""
@@ -81,7 +81,7 @@ def ensemble(
     method: AbstractMethod | None = None,
     budget: Budget | None = None,
 ) -> Ensemble:
-    """Solve one body from several starts, shape (m, 3), at times, shape (n,); see `core.integration.solve.solve`.
+    """Solve one body from several starts, shape (m, 3), at times, shape (n,); see `core.systems.solve.solve`.
 
     Raises
     ------

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.bodies.mass_properties import MassProperties
-from core.bodies.moves import moves_of_tensor
+from core.bodies.sensitivities import moves_of_tensor
 from core.compiled import kernel
-from core.integration.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 from core.notices import Notice
-from core.rotation.closed_form import FreeRotation
 from core.rotation.discrete_mechanics import moser_veselov
+from core.rotation.free_rotation import FreeRotation
+from core.systems.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 
 PARTS = 3
 

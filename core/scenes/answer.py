@@ -13,10 +13,10 @@ import numpy as np
 
 from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter
-from core.integration.system import Floats, Model
-from core.integration.trajectory import Accuracy, Work
 from core.notices import Notice
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding, sign
+from core.systems.system import Floats, Model
+from core.systems.trajectory import Accuracy, Work
 
 HORIZON = "horizon"
 SMALLEST_SAMPLE = 1e-290

@@ -12,10 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
-from core.integration.system import Floats, Model
 from core.scenes.answer import Columns, Event, UnbrokenMotion, finite
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, sign, square_root
 from core.scenes.quadratics import real_roots
+from core.systems.system import Floats, Model
 
 SMALLEST = 2.0**-1074
 NAMES = ("position", "velocity", "apex_tension")

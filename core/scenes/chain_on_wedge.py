@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 from core.errors import InvalidParameter
-from core.integration.system import Model
 from core.quantities import Acceleration, Length, LengthOrZero, Quantity, Slope, Velocity, check
 from core.scenes.answer import ConstrainedSystem, Motion
 from core.scenes.chain_motion import ChainMotion, Slide
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
+from core.systems.system import Model
 
 EndMass = Annotated[float, Quantity("kg", at_least=0)]
 LinearDensity = Annotated[float, Quantity("kg m^-1", at_least=0)]

@@ -10,12 +10,12 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from core.balls import precision
 from core.errors import InvalidParameter
-from core.integration.system import Model
 from core.quantities import Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, check
 from core.scenes.answer import ConstrainedSystem, Motion
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
 from core.scenes.pendulum import Pendulum
 from core.scenes.rod_motion import Rod, RodMotion, contact_limits
+from core.systems.system import Model
 
 HalfTurn = Annotated[float, Quantity("rad", at_least=-math.pi, at_most=math.pi)]
 

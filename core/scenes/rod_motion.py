@@ -17,10 +17,10 @@ from functools import cached_property
 
 import numpy as np
 
-from core.integration.system import Floats, Model
 from core.scenes.answer import Columns, Event, UnbrokenMotion, finite
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, angle_of, exact, sign
 from core.scenes.pendulum import Pendulum
+from core.systems.system import Floats, Model
 
 WHY = {
     "rest": "the rod lies at the bottom",

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.integration.system import Floats, Model
 from core.notices import Notice
 from core.scenes.answer import Columns, Event, Motion, finite
 from core.scenes.bounces import Sequence
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, as_pair
 from core.scenes.string_phases import Phase, Phases
+from core.systems.system import Floats, Model
 
 WHY = {"taut": "the string is taut", "slack": "the string is slack", "stick": "both shafts roll on the string's track"}
 FREEDOM = {"taut": 3, "slack": 4, "stick": 2}

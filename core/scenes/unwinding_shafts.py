@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 from core.errors import InvalidParameter, NotApplicable
-from core.integration.system import Model
 from core.notices import Notice
 from core.quantities import (
     Acceleration,
@@ -28,6 +27,7 @@ from core.scenes.friction import Friction, with_friction
 from core.scenes.string_phases import Law, Limit, follow, settled
 from core.scenes.string_samples import ShaftMotion
 from core.scenes.string_state import Constants, Drive, State, frictionless
+from core.systems.system import Model
 
 Restitution = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 

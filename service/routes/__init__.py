@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from service.routes.bodies import BODIES
-from service.routes.certified import with_digits
-from service.routes.certified_rotation import PRECESSION_IN_DIGITS, STABILITY_IN_DIGITS, TRAJECTORY_IN_DIGITS
-from service.routes.certified_scenes import scenes_in_digits
-from service.routes.certified_surfaces import ELLIPSOID_IN_DIGITS
-from service.routes.ensemble import ENSEMBLE
+from service.routes.certified.questions import with_digits
+from service.routes.certified.rotation import PRECESSION_IN_DIGITS, STABILITY_IN_DIGITS, TRAJECTORY_IN_DIGITS
+from service.routes.certified.scenes import scenes_in_digits
+from service.routes.certified.surfaces import ELLIPSOID_IN_DIGITS
 from service.routes.plan import planning
-from service.routes.precession import PRECESSION
-from service.routes.rotation import ROTATION
+from service.routes.rotation.ensemble import ENSEMBLE
+from service.routes.rotation.precession import PRECESSION
+from service.routes.rotation.surfaces import SURFACES
+from service.routes.rotation.trajectory import ROTATION
+from service.routes.rotation.wobble import WOBBLE
 from service.routes.scenes import questions as about_scenes
-from service.routes.surfaces import SURFACES
-from service.routes.wobble import WOBBLE
 from service.routes.work_precision import WORK_PRECISION
 from service.routing import Question
 

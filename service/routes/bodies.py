@@ -16,8 +16,8 @@ from core.bodies.mass_properties import MassProperties
 from core.bodies.principal_inertia import EPSILON, PrincipalInertia, Symmetry
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
-from core.integration.budget import Budget
-from service.pricing import Priced, quickest, speed_of
+from core.systems.budget import Budget
+from service.execution.cost_model import Priced, quickest, speed_of
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Matrix, Request, Vector, View
 

@@ -10,10 +10,10 @@ from typing import Any, cast
 import orjson
 from pydantic import Field
 
-from core.integration.accuracy import record
-from core.integration.methods import Method
-from core.integration.methods.method import AbstractMethod, Family, Invariance
 from core.quantities import members_of
+from core.systems.accuracy import record
+from core.systems.methods import Method
+from core.systems.methods.method import AbstractMethod, Family, Invariance
 from service.problems import registry
 from service.routes.scenes import CATALOGUE
 from service.routing import Page, Reply

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from service.metrics import CONTENT_TYPE, Metrics
+from service.observability.metrics import CONTENT_TYPE, Metrics
 from service.problems import MEDIA_TYPE, REGISTRY, Problem
 from service.routing import Page, Reply
 from service.schemas import View

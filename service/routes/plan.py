@@ -11,18 +11,18 @@ import numpy as np
 from pydantic import Field
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError
-from core.integration.budget import Budget
-from core.integration.methods import Method
 from core.notices import Notice
-from service import pricing
-from service.pricing import Foreseen, Priced, one
+from core.systems.budget import Budget
+from core.systems.methods import Method
+from service.execution import cost_model as pricing
+from service.execution.cost_model import Foreseen, Priced, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
-from service.reading import Limits, Reader
+from service.requests.request_reader import Limits, Reader
+from service.responses.json_rows import written
 from service.routes.bodies import speed_to_follow
-from service.routes.rotation import T_HANDLE, ModelView
+from service.routes.rotation.trajectory import T_HANDLE, ModelView
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, View
-from service.writing import written
 
 WITHIN = "/request"
 CHEAP = 0.02

@@ -10,14 +10,14 @@ from typing import Any, Literal, cast, get_type_hints
 import orjson
 from pydantic import ConfigDict, Field, create_model
 
-from core.integration.budget import Budget
 from core.quantities import Tolerance, members_of
 from core.scenes import Scene
 from core.scenes.answer import ConstrainedSystem
 from core.scenes.answer import SceneAnswer as SceneFound
-from service.pricing import Priced, numbers
-from service.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.rotation import AccuracyView, ModelView, WorkView
+from core.systems.budget import Budget
+from service.execution.cost_model import Priced, numbers
+from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
+from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView
 from service.routing import Answer, Example, Page, Question, Reply
 from service.schemas import SIGNATURE, Envelope, Request, Times, View, sample_count, sample_times
 

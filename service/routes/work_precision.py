@@ -9,15 +9,15 @@ import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
-from core.integration.budget import Budget
-from core.integration.methods import ClosedFormEvaluation, Method
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
+from core.systems.budget import Budget
+from core.systems.methods import ClosedFormEvaluation, Method
 from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
-from service.figures import SVG, Curve, Level, log_log
-from service.pricing import Priced, effort, extreme, speed_of
+from service.execution.cost_model import Priced, effort, extreme, speed_of
+from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.rotation import ANGULAR_VELOCITY, T_HANDLE, TIMES
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE, TIMES
 from service.routing import Answer, Example, Question
 from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
 

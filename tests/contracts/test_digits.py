@@ -8,12 +8,12 @@ from typing import Any
 import orjson
 import pytest
 
-from core.integration.budget import Budget
-from service.answering import Answering
-from service.reading import Limits
+from core.systems.budget import Budget
+from service.execution.request_handler import Answering
+from service.requests.request_reader import Limits
+from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.certified import EitherPrice
-from service.writing import written
+from service.routes.certified.questions import EitherPrice
 
 ROUTES = {route.path: route for route in questions() if isinstance(route.price, EitherPrice)}
 ANSWERING = Answering(ROUTES.values(), Budget(), Limits())

@@ -10,14 +10,14 @@ import pytest
 from scipy.special import ellipj
 
 from core.errors import BudgetExceeded, InvalidParameter, MechanicsError
-from core.integration.budget import Budget
-from core.integration.methods import Method
-from core.integration.methods.fixed_step import FixedStep
-from core.integration.methods.method import AbstractMethod, Family, Invariance
-from core.integration.solve import solve
-from core.integration.system import ClosedForm, System
 from core.quantities import members_of
-from tests.core.integration.systems import counting, elliptic_functions, oscillator, rigid_body
+from core.systems.budget import Budget
+from core.systems.methods import Method
+from core.systems.methods.fixed_step import FixedStep
+from core.systems.methods.method import AbstractMethod, Family, Invariance
+from core.systems.solve import solve
+from core.systems.system import ClosedForm, System
+from tests.core.systems.systems import counting, elliptic_functions, oscillator, rigid_body
 
 CATALOGUE: dict[str, Any] = {member.kind: member for member in members_of(Method)}
 

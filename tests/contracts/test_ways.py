@@ -9,11 +9,11 @@ import orjson
 import pytest
 
 from service.app import create_app
-from service.rounds import FEW, SHORT, SMALL
+from service.http.rounds import FEW, SHORT, SMALL
+from service.responses.json_rows import array_size
 from service.routing import Question
 from service.settings import Settings
-from service.writing import array_size
-from tests.service.test_rounds import Asker
+from tests.service.http.test_rounds import Asker
 
 pytestmark = pytest.mark.anyio
 

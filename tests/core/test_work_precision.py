@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from core.errors import AccuracyUnreachable, InvalidParameter
-from core.integration.budget import Budget
-from core.integration.error_statements import measured
-from core.integration.methods import (
+from core.systems.budget import Budget
+from core.systems.error_statements import measured
+from core.systems.methods import (
     ClosedFormEvaluation,
     DormandPrince853,
     ExplicitEuler,
@@ -19,9 +19,9 @@ from core.integration.methods import (
     RungeKutta4,
     SymmetricSplitting,
 )
-from core.integration.solve import solve
+from core.systems.solve import solve
 from core.work_precision import Measurement, pareto_front, work_precision
-from tests.core.integration.systems import elliptic_functions, explosion, lorenz, prey_and_predator, stiff
+from tests.core.systems.systems import elliptic_functions, explosion, lorenz, prey_and_predator, stiff
 
 TIMES = np.linspace(0, 10, 11)
 

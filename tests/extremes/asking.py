@@ -10,13 +10,13 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from core.errors import MechanicsError
-from core.integration.budget import Budget
-from service.answering import Answering
+from core.systems.budget import Budget
+from service.execution.request_handler import Answering
 from service.problems import REGISTRY, Problem, Refusal, problem_of
-from service.reading import Limits
+from service.requests.request_reader import Limits
+from service.responses.json_rows import written
 from service.routes import questions
 from service.routing import Question
-from service.writing import written
 
 ROUTES: dict[str, Question] = {route.path: route for route in questions()}
 BUDGET = Budget(samples=2_000_000, evaluations=5_000)

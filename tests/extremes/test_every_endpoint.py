@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from core.errors import MechanicsError
-from service.archive import METADATA, archive
 from service.problems import Refusal
+from service.responses.npz import METADATA, archive
 from tests.extremes.asking import ANSWERING, ROUTES, ask, faults_of
 from tests.extremes.questions import QUESTIONS
 

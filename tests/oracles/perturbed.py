@@ -12,7 +12,7 @@ import numpy as np
 
 from core.certified.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
-from core.integration.system import Floats
+from core.systems.system import Floats
 from tests.oracles.uncertain_bodies import Uncertain
 
 DIGITS = 50

@@ -12,10 +12,10 @@ import orjson
 import pytest
 from mpmath import mp, mpf
 
-from core.integration.budget import Budget
-from service.answering import Answering
+from core.systems.budget import Budget
 from service.app import create_app
-from service.reading import Limits
+from service.execution.request_handler import Answering
+from service.requests.request_reader import Limits
 from service.routing import Question
 from service.settings import Settings
 from tests.oracles.free_rotation import flip_interval, period, reference_angular_velocity, reference_attitude

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from service.app import create_app
 from service.routing import Question
 from service.settings import Settings
-from tests.service.test_dispatch import receiving, scope, sending
+from tests.service.http.test_dispatch import receiving, scope, sending
 
 EXAMPLES = int(os.environ.get("POLHODE_FUZZ", "12"))
 SERVICE = create_app(

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import orjson
 import pytest
 
-from core.integration.methods import Method
+from core.systems.methods import Method
 from service.app import create_app
 from service.routes import questions
 from service.routing import Question

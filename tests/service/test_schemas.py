@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from pydantic import TypeAdapter, ValidationError
 
 from core.errors import BudgetExceeded, InvalidParameter
-from core.integration.budget import Budget
+from core.systems.budget import Budget
 from service import VERSION
 from service.schemas import (
     SIGNATURE,

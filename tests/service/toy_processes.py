@@ -9,11 +9,11 @@ import socket
 import time
 from pathlib import Path
 
-from service.processes import HEADER, framed
+from service.execution.worker_pool import HEADER, framed
 
 
 def main(channel: socket.socket, folder: str) -> None:
-    """Answer requests as `service.worker.serve` does; what is begun is noted in a file of the folder."""
+    """Answer requests as `service.execution.worker.serve` does; what is begun is noted in a file of the folder."""
     place = Path(folder)
     if used_up(place / "stillborn"):
         os._exit(3)

@@ -11,9 +11,9 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from core.errors import AccuracyUnreachable, MechanicsError, UnphysicalInertia
-from core.integration.budget import Budget
 from core.notices import Notice
 from core.quantities import AngularVelocity, Mass, MomentOfInertia, Position, TaggedBy, check
+from core.systems.budget import Budget
 from service.routing import Example, Question
 from service.schemas import Envelope, Request, Times, Vector, sample_count, sample_times
 

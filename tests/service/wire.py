@@ -11,8 +11,8 @@ import uvicorn
 from uvicorn.server import ServerState
 
 from service.app import Service
-from service.protocol import Protocol
-from service.rounds import ROUNDS
+from service.http.protocol import Protocol
+from service.http.rounds import ROUNDS
 from service.settings import Settings
 from tests.service.conftest import TOYS
 from tests.service.toy_routes import GOOD

@@ -23,8 +23,8 @@ import numpy as np
 from core.bodies.mass_properties import PrincipalInertia
 from core.certified.free_rotation import CertifiedRotation
 from core.errors import AccuracyUnreachable
-from core.rotation.attitude import FreeAttitude
-from core.rotation.closed_form import FreeRotation
+from core.rotation.attitude.free_attitude import FreeAttitude
+from core.rotation.free_rotation import FreeRotation
 from tests.oracles.cases import ORDERS, Case, cases
 
 TARGET = Path(__file__).parents[3] / "benchmarks" / "results" / "judge.json"

@@ -10,7 +10,7 @@ from core.certified.ellipsoid_mesh import certified_grid, certified_triangles
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
 from core.certified.exact_inertia import ExactInertia
 from core.errors import BudgetExceeded, InvalidParameter
-from core.rotation.energy_surface import EnergyEllipsoid
+from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from tests.core.certified.test_energy_ellipsoid import OBLIQUE, quadrics
 
 PLAIN = ExactInertia.of_moments([3, 1, 2])

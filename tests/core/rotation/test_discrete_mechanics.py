@@ -11,10 +11,10 @@ from scipy.optimize import minimize_scalar
 
 from core.bodies.mass_properties import diagonal
 from core.bodies.measured import InertiaTensor
-from core.integration.methods import DiscreteMoserVeselov
 from core.rotation.discrete_mechanics import moser_veselov
 from core.rotation.torque_free import TorqueFree
-from tests.core.integration.methods.test_discrete_moser_veselov import step_by_riccati
+from core.systems.methods import DiscreteMoserVeselov
+from tests.core.systems.methods.test_discrete_moser_veselov import step_by_riccati
 
 UPRIGHT = np.eye(3).ravel()
 

@@ -5,12 +5,12 @@ import pytest
 
 from core.bodies.mass_properties import diagonal
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
-from core.integration.budget import Budget
-from core.integration.methods import ExplicitEuler
-from core.integration.solve import solve
 from core.rotation.ensemble import ensemble
-from core.rotation.initial_states import initial_states
+from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.torque_free import TorqueFree
+from core.systems.budget import Budget
+from core.systems.methods import ExplicitEuler
+from core.systems.solve import solve
 
 
 def test_the_source_s_thirty_starts():

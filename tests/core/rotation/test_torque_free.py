@@ -7,8 +7,8 @@ from core.bodies.composite import Composite, Part
 from core.bodies.examples import t_handle_points
 from core.bodies.measured import PointMasses, PrincipalMoments
 from core.bodies.solids import Ball
-from core.integration.error_statements import drifts
 from core.rotation.torque_free import TorqueFree
+from core.systems.error_statements import drifts
 
 CROSS = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 2, 0], [0, -2, 0], [0, 0, 3], [0, 0, -3]])
 

@@ -1,0 +1,1 @@
+"""The attitude of a freely rotating body."""

@@ -1,0 +1,1 @@
+"""The closed form of the angular velocity: set-up and sampling."""

@@ -1,0 +1,1 @@
+"""Precession rates, periods and cones of a free body."""

@@ -1,0 +1,289 @@
+"""How a free body precesses: rates, periods and cones, from the initial state alone; nothing is integrated.
+
+Two equal moments I beside I3, spin w3 along the axis e3 of the third and w_perp across it (regular precession):
+
+    body rate   (I3 - I)/I w3                of the angular velocity about e3, seen in the body
+    space rate  L/I                          of e3 about the angular momentum L, seen in space
+    angles      tan(e3, L) = I w_perp / (I3 w3),   tan(e3, w) = w_perp / w3,
+                tan(L, w) = |I3 - I| w_perp |w3| / (I w_perp^2 + I3 w3^2)
+
+Three distinct moments: period 4K/p of the angular velocity, and the angle by which the circled axis turns about L in
+it, whose quotient is the mean precession rate. The angle is right to the last digits; modulo a whole turn it is
+Montgomery's 2 E T/L less the solid angle that L encloses in the body.
+
+Two moments that differ by rounding alone, less than 16 units in the last place, have the rates and angles of their mean
+while the elliptic parameter m, and their difference as a share of that from the third, are below 2^-30. Period, and
+angle in it, are always those of the moments as given, since near the plane of the two that little decides.
+
+References
+----------
+L. D. Landau, E. M. Lifshitz, "Mechanics", sections 33 and 37. H. Goldstein, C. Poole, J. Safko, "Classical
+Mechanics", 3rd ed., section 5.6. R. Montgomery, "How much does the rigid body rotate?", American Journal of Physics 59
+(1991) 394.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf, isfinite
+from types import MappingProxyType
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from core.bodies.mass_properties import MassProperties, Symmetry
+from core.errors import InvalidParameter
+from core.notices import Notice
+from core.rotation.closed_form.circulation import (
+    PERIODIC,
+    SEPARATRIX,
+    STEADY,
+    UNDECIDED,
+    UNREACHABLE,
+    exact_difference,
+    too_near_the_separatrix,
+)
+from core.rotation.closed_form.principal_frame import Resolved
+from core.rotation.free_rotation import FreeRotation
+from core.rotation.precession import missing_reasons
+from core.rotation.precession.figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
+from core.rotation.torque_free import inherited_notices
+from core.systems.system import Floats
+
+Regime = Literal["rest", "steady", "periodic", "separatrix"]
+Absent = Mapping[str, str]
+
+
+class Precession(NamedTuple):
+    """Rates and angles of a precession; None where the motion has no such thing, and `absent` says why.
+
+    Attributes
+    ----------
+    symmetry : str
+        Class of the principal moments about the point about which the body turns.
+    regime : {"rest", "steady", "periodic", "separatrix"}
+        Of the angular velocity in the body.
+    axis : ndarray, shape (3,), or None
+        Unit vector in body axes: the symmetry axis, or the principal axis that the angular velocity circles. It points
+        along the positive side of the body axis that it is nearest to.
+    body_rate : float or None
+        Rate at which the angular velocity goes round `axis` in the body, positive in the right-hand sense; symmetric
+        bodies only (rad/s).
+    space_rate : float or None
+        Rate L/I at which the axis goes round the angular momentum; symmetric bodies only. For a spin along the
+        axis it is the rate of an infinitesimal wobble (rad/s).
+    period : float or None
+        Of the angular velocity in the body (s).
+    flip_interval : float or None
+        Between sign changes of the component along the middle axis (s).
+    axis_to_angular_momentum, axis_to_angular_velocity : float or None
+        Angle of the axis with each, from 0 to pi; symmetric bodies only (rad). The second is the half-angle of
+        the body cone if it is acute.
+    angular_momentum_to_angular_velocity : float or None
+        Half-angle of the space cone; symmetric bodies only (rad).
+    order_of_directions : str or None
+        Which of axis, angular momentum and angular velocity lies between the others.
+    precession_per_period : float or None
+        Angle by which the axis turns about the angular momentum in a period, not reduced by whole turns (rad).
+    mean_precession_rate : float or None
+        That angle over the period; on the separatrix the limit that the rate tends to (rad/s).
+    absent : mapping of str to str
+        Why a field is None.
+    warnings : tuple of Notice
+    """
+
+    symmetry: Symmetry
+    regime: Regime
+    axis: Floats | None = None
+    body_rate: float | None = None
+    space_rate: float | None = None
+    period: float | None = None
+    flip_interval: float | None = None
+    axis_to_angular_momentum: float | None = None
+    axis_to_angular_velocity: float | None = None
+    angular_momentum_to_angular_velocity: float | None = None
+    order_of_directions: str | None = None
+    precession_per_period: float | None = None
+    mean_precession_rate: float | None = None
+    absent: Absent = MappingProxyType({})
+    warnings: tuple[Notice, ...] = ()
+
+
+FIGURES = (
+    "body_rate",
+    "space_rate",
+    "period",
+    "flip_interval",
+    "axis_to_angular_momentum",
+    "axis_to_angular_velocity",
+    "angular_momentum_to_angular_velocity",
+    "precession_per_period",
+    "mean_precession_rate",
+)
+OF_SYMMETRIC_BODIES = (
+    "body_rate",
+    "space_rate",
+    "axis_to_angular_momentum",
+    "axis_to_angular_velocity",
+    "angular_momentum_to_angular_velocity",
+    "order_of_directions",
+)
+_OF_A_CHANGE = ("period", "flip_interval", "precession_per_period", "mean_precession_rate")
+
+
+def precession(body: MassProperties, angular_velocity: Floats | tuple[float, float, float]) -> Precession:
+    """Return how a free body precesses that turns with an angular velocity at t = 0.
+
+    Parameters
+    ----------
+    body : MassProperties
+    angular_velocity : ndarray, shape (3,), or tuple of 3 floats
+        In body axes (rad/s).
+
+    Raises
+    ------
+    InvalidParameter
+        If the angular velocity is not three finite numbers, or a moment of inertia is not positive.
+    AccuracyUnreachable
+        If the start is nearer to the separatrix than doubles resolve.
+    """
+    x, y, z = _components(angular_velocity)
+    if not (isfinite(x) and isfinite(y) and isfinite(z)):
+        raise InvalidParameter("angular_velocity", "be three finite numbers")
+    inertia, warnings = body.principal_of_motion, inherited_notices(body)
+    if not inertia.moments[0] > 0.0:
+        # Refused there unless a line of matter turns across itself.
+        FreeRotation(inertia, np.array((x, y, z)))
+    symmetry = inertia.symmetry
+    if x == y == z == 0.0:
+        return Precession(symmetry, "rest", absent=_AT_REST.copy(), warnings=warnings)
+    if symmetry == "spherical":
+        if len(set(zip(inertia.moments.tolist(), inertia.moments_tail.tolist(), strict=True))) > 1:
+            warnings += (_equal_within_rounding("the three moments"),)
+        return Precession(symmetry, "steady", absent=_SPHERE.copy(), warnings=warnings)
+    k = _SYMMETRY_AXIS[symmetry]
+    parts = inertia.moments, inertia.moments_tail, inertia.axes, inertia.axes_tail
+    regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, False, 0.0, 0.0, 0)
+    if regime == UNDECIDED:
+        exact = exact_difference(Resolved.of(inertia, np.array((x, y, z))))
+        regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, True, *exact)
+    if regime == UNREACHABLE:
+        raise too_near_the_separatrix()
+    if apart:
+        warnings += (_DIFFERENT_AS_GIVEN if beyond else _equal_within_rounding("two moments"),)
+    told = _TOLD[symmetry, regime, beyond]
+    absent = told.absent.copy()
+    if OUT_OF_RANGE in figures or UNRESOLVED in figures:
+        lost = {name: _LOST[figure] for name, figure in zip(FIGURES, figures, strict=True) if figure in _LOST}
+        absent |= {name: reason for name, (_, reason) in lost.items()}
+        warnings += tuple(Notice(code, f"{name} {reason} and is null") for name, (code, reason) in lost.items())
+    body_rate, space_rate, period, flip, to_momentum, to_velocity, between, turned, mean = [
+        figure if isfinite(figure) else None for figure in figures
+    ]
+    pointing: Floats = np.array(axis)
+    pointing.setflags(write=False)
+    return Precession(
+        symmetry, told.regime, pointing, body_rate, space_rate, period, flip, to_momentum, to_velocity, between,
+        told.order, turned, mean, absent, warnings,
+    )  # fmt: skip
+
+
+def _components(vector: Floats | tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return the components of a vector, infinite if it has not three."""
+    if type(vector) is tuple and len(vector) == 3:
+        x, y, z = vector
+        return float(x), float(y), float(z)
+    given = np.asarray(vector, dtype=np.float64)
+    x, y, z = given.tolist() if given.shape == (3,) else (inf, inf, inf)
+    return x, y, z
+
+
+_SYMMETRY_AXIS: Mapping[Symmetry, int] = {"triaxial": -1, "oblate": 2, "prolate": 0, "linear": 0}
+"""Number, in ascending order, of the moment that is not equal to the other two."""
+
+
+_LOST: Mapping[float, tuple[str, str]] = {
+    OUT_OF_RANGE: ("out-of-range", "leaves the range of double precision"),
+    UNRESOLVED: ("unresolved", "is too small a part of a turn to be told from none in double precision"),
+}
+"""What is said of figures that exist and cannot be stated."""
+
+
+class _Told(NamedTuple):
+    """What one kind of motion is called, and what is said of the figures that it does not have."""
+
+    regime: Regime
+    order: str | None
+    absent: dict[str, str]
+
+
+def _absent(*reasons: tuple[str, tuple[str, ...]]) -> dict[str, str]:
+    return {name: reason for reason, names in reasons for name in names}
+
+
+_AT_REST = _absent((missing_reasons.NOTHING_TURNS, ("axis", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
+_SPHERE = _absent(
+    (missing_reasons.SPHERE, ("axis", *OF_SYMMETRIC_BODIES)),
+    (missing_reasons.STEADY_ANYHOW, _OF_A_CHANGE),
+)
+_THREE = missing_reasons.TRIAXIAL, OF_SYMMETRIC_BODIES
+_BEYOND = (
+    "the spin lies so near the plane of two nearly equal moments, or the third is so near to them, that the body does "
+    "not move as a symmetric one",
+    OF_SYMMETRIC_BODIES,
+)
+_NEVER_RETURNS = missing_reasons.ON_THE_SEPARATRIX, _OF_A_CHANGE[:-1]
+_TRIAXIAL = {
+    STEADY: _Told("steady", None, _absent(_THREE, (missing_reasons.STEADY_BY_AXIS, _OF_A_CHANGE))),
+    PERIODIC: _Told("periodic", None, _absent(_THREE)),
+    SEPARATRIX: _Told("separatrix", None, _absent(_THREE, _NEVER_RETURNS)),
+}
+_UNLIKE_SYMMETRIC = {
+    PERIODIC: _Told("periodic", None, _absent(_BEYOND)),
+    SEPARATRIX: _Told("separatrix", None, _absent(_BEYOND, _NEVER_RETURNS)),
+}
+_CONSTANT = _Told(
+    "steady",
+    None,
+    _absent(
+        (missing_reasons.STEADY_IN_BODY, ("body_rate", *_OF_A_CHANGE)),
+        (missing_reasons.SAME_DIRECTION, ("order_of_directions",)),
+    ),
+)
+_NO_MIDDLE_AXIS = _absent((missing_reasons.NO_MIDDLE_AXIS, ("flip_interval",)))
+
+
+def order_of_directions(symmetry: Symmetry) -> str:
+    """Return which of axis, angular momentum and angular velocity lies between the others, no two in one direction."""
+    if symmetry == "oblate":
+        return "oblate: the angular momentum lies between the axis and the angular velocity"
+    return "prolate: the angular velocity lies between the axis and the angular momentum"
+
+
+def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], _Told]:
+    """Return what is told by symmetry, regime and whether a symmetric body does not move as one."""
+    found: dict[tuple[Symmetry, int, bool], _Told] = {
+        ("triaxial", regime, False): told for regime, told in _TRIAXIAL.items()
+    }
+    symmetric: tuple[Symmetry, ...] = ("oblate", "prolate", "linear")
+    for symmetry in symmetric:
+        found[symmetry, STEADY, False] = _CONSTANT
+        found[symmetry, PERIODIC, False] = _Told("periodic", order_of_directions(symmetry), _NO_MIDDLE_AXIS)
+        found |= {(symmetry, regime, True): told for regime, told in _UNLIKE_SYMMETRIC.items()}
+    return found
+
+
+_TOLD = _told_of_all()
+
+
+_DIFFERENT_AS_GIVEN = Notice(
+    "moments-nearly-equal",
+    "two moments differ by less than 16 units in the last place of the largest; the difference is taken as given, and "
+    "half a unit in a moment may change the whole motion",
+    ("body",),
+)
+
+
+def _equal_within_rounding(which: str) -> Notice:
+    detail = f"{which} differ by less than 16 units in the last place of the largest and are taken as equal"
+    return Notice("moments-equal-within-rounding", detail, ("body",))

@@ -1,0 +1,1 @@
+"""Equilibria of a free body and their stability."""

@@ -1,0 +1,1 @@
+"""The energy ellipsoid, polhodes on it, and initial states of one energy."""

@@ -1,0 +1,1 @@
+"""How uncertain inputs move a free rotation."""

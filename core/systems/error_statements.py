@@ -1,0 +1,246 @@
+"""How wrong a computed motion is: against a reference, against a finer run of the same method, and by its drifts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numba import types
+
+from core.compiled import kernel
+from core.errors import BudgetExceeded, NotApplicable
+from core.systems.budget import Budget
+from core.systems.methods.method import AbstractMethod, Integration
+from core.systems.system import Floats, System
+
+SAFETY = 4.0
+"""Factor between the estimate from a finer run and the error that is stated.
+
+A finer run shows the coarser run's error less its own. Halving the steps of a first-order method takes away half of the
+error, so a factor 2 is owed, and so is it where a sixteenth of the tolerance does no better than that; the other factor
+2 is for methods that converge less evenly than their order says.
+"""
+
+ROUNDOFF = 8 * 2.0**-53
+"""Added to every estimate: two runs of one method may round alike."""
+
+
+_row = types.float64[::1]
+_rows = types.float64[:, :]
+
+
+class Errors(NamedTuple):
+    """Errors of samples, all relative.
+
+    Attributes
+    ----------
+    largest : float
+        Largest norm of any row's error, relative to the largest norm of the motion.
+    final : float
+        The same at the time farthest from the start.
+    components : tuple of float
+        Largest error of each component, relative to the largest magnitude that this component takes; to the largest
+        norm where that magnitude is zero, or so small that the quotient leaves the range of doubles.
+    """
+
+    largest: float
+    final: float
+    components: tuple[float, ...]
+
+    def beyond(self, own: float) -> Errors:
+        """Return errors that are not below the true ones, the reference being wrong by up to `own`.
+
+        What the reference's norm is wrong by, and what the comparison rounds, counts in proportion to large errors.
+        """
+        more = 1.0 + own + ROUNDOFF
+        return Errors(
+            self.largest * more + own, self.final * more + own, tuple(c * more + own for c in self.components)
+        )
+
+
+@kernel()
+def _norm_of_far(state: Floats, exact: Floats, inverse: float) -> float:
+    """Return the norm of a difference whose square leaves the range of doubles."""
+    most, norm = 0.0, 0.0
+    for k in range(state.size):
+        most = max(most, abs(state[k] * inverse - exact[k] * inverse))
+    for k in range(state.size):
+        share = (state[k] * inverse - exact[k] * inverse) / most
+        norm += share * share
+    return most * math.sqrt(norm) if most < math.inf else most
+
+
+@kernel(types.float64(_rows, _rows, types.float64, _row, _row, _row))
+def _differences(
+    states: Floats, reference: Floats, unit: float, errors: Floats, wrong: Floats, magnitudes: Floats
+) -> float:
+    """Fill in the norm of every row's error and the extremes of every column; return the largest norm of `reference`.
+
+    All in units of `unit`, a power of two that keeps the squares in range and rounds nothing.
+    """
+    largest, inverse = 0.0, 1.0 / unit
+    for i in range(states.shape[0]):
+        norm, error = 0.0, 0.0
+        for k in range(states.shape[1]):
+            exact = reference[i, k] * inverse
+            difference = states[i, k] * inverse - exact
+            norm += exact * exact
+            error += difference * difference
+            magnitudes[k] = max(magnitudes[k], abs(exact))
+            wrong[k] = max(wrong[k], abs(difference))
+        largest = max(largest, norm)
+        errors[i] = math.sqrt(error)
+        if error == math.inf:
+            errors[i] = _norm_of_far(states[i], reference[i], inverse)
+    return math.sqrt(largest)
+
+
+def measured(states: Floats, reference: Floats, times: Floats) -> Errors:
+    """Return the errors of `states` against `reference`, both of shape (n, k) at `times` of shape (n,).
+
+    A motion that is at rest has no scale of its own; its errors are then relative to the largest of `states`.
+
+    Raises
+    ------
+    NotApplicable
+        If the states are so far from the reference that a double cannot say how far; the path leads from the method.
+    """
+    largest = _magnitude(reference) or _magnitude(states)
+    if largest == 0.0:
+        return Errors(0.0, 0.0, (0.0,) * states.shape[1])
+    unit = math.ldexp(1.0, max(math.frexp(largest)[1] - 1, -1022))
+    errors = np.empty(len(states))
+    wrong, magnitudes = np.zeros(states.shape[1]), np.zeros(states.shape[1])
+    norm = _differences(states, reference, unit, errors, wrong, magnitudes) or largest / unit
+    if not errors.max() / norm < math.inf:
+        raise _out_of_range()
+    magnitudes[magnitudes == 0.0] = norm
+    with np.errstate(over="ignore"):
+        components = wrong / magnitudes
+    components = np.where(np.isfinite(components), components, wrong / norm)
+    final = int(np.abs(times).argmax())
+    return Errors(float(errors.max()) / norm, float(errors[final]) / norm, tuple(map(float, components)))
+
+
+def _out_of_range() -> NotApplicable:
+    return NotApplicable(
+        "the states are so far from the motion that their error leaves the range of double precision",
+        path=("kind",),
+        remedy="give the method a finer setting, or leave it out",
+    )
+
+
+def _magnitude(rows: Floats) -> float:
+    return max(float(rows.max()), -float(rows.min()))
+
+
+def drifts(system: System, states: Floats) -> dict[str, float]:
+    """Return the largest relative change of every conserved quantity from its value at the start.
+
+    A quantity that is zero at the start is compared with the largest value it takes. One that leaves the double range
+    has no drift that could be stated and is left out.
+    """
+    found = {}
+    for name, (first, least, largest) in system.ranges(states).items():
+        change = max(largest - first, first - least)
+        scale = abs(first) or max(abs(least), abs(largest))
+        drift = change if change == 0.0 else change / scale if scale > 0.0 else math.inf
+        if math.isfinite(drift):
+            found[name] = drift
+    return found
+
+
+class Estimate(NamedTuple):
+    """What a finer run tells about a run.
+
+    Attributes
+    ----------
+    errors : Errors
+        Not smaller than the true ones as long as the method converges from one run to the other.
+    finer : AbstractMethod or None
+        The method that made the finer run; None if there was none finer and a coarser one had to serve.
+    integration : Integration
+        Of the other run.
+    """
+
+    errors: Errors
+    finer: AbstractMethod | None
+    integration: Integration
+
+
+def estimated(
+    method: AbstractMethod, system: System, times: Floats, run: Integration, budget: Budget, spent: int
+) -> Estimate:
+    """Return the error of a run as a finer run of the same method shows it.
+
+    At the end of what a method offers the comparison is with a coarser run, whose error is the larger of the two.
+
+    Parameters
+    ----------
+    method, system, times : AbstractMethod, System, ndarray
+        Of the run.
+    run : Integration
+    budget : Budget
+        For all that is done to answer the question.
+    spent : int
+        Evaluations that were spent so far.
+
+    Raises
+    ------
+    BudgetExceeded, InvalidParameter
+        As `AbstractMethod.integrate`, for the other run.
+    NotApplicable
+        If the error leaves the range of doubles.
+    """
+    finer = method.finer()
+    neighbour = finer or method.coarser()
+    if neighbour is None:
+        raise NotApplicable(f"{method.kind} has no setting to compare with", path=("kind",))
+    rest = rest_of(budget, spent)
+    try:
+        other = neighbour.integrate(system, times, rest)
+    except BudgetExceeded as fault:
+        raise BudgetExceeded(
+            fault.what, spent + fault.needed, budget.evaluations, path=fault.path, remedy=fault.remedy
+        ) from None
+    difference = measured(run.states, other.states, times)
+    scale = _certain_scale(system, other.states, difference)
+    errors = Errors(
+        SAFETY * scale * difference.largest + ROUNDOFF,
+        SAFETY * scale * difference.final + ROUNDOFF,
+        tuple(SAFETY * scale * component + ROUNDOFF for component in difference.components),
+    )
+    if not max(errors.largest, *errors.components) < math.inf:
+        raise _out_of_range()
+    return Estimate(errors, finer, other)
+
+
+def _certain_scale(system: System, states: Floats, difference: Errors) -> float:
+    """Return by how much the motion's largest norm may be smaller than that of `states`, as a factor of at least 1.
+
+    A run that blows up has a norm that the motion never had, and errors relative to it would look small. The motion's
+    largest norm is certain only as far as the error leaves it, and to be no smaller than the norm at the start.
+    """
+    unit = float(np.abs(states).max()) or 1.0
+    norms = np.sqrt(((states / unit) ** 2).sum(axis=1))
+    # The square of the start may be nothing beside that of a run that blows up, and the start is all that is certain.
+    start = math.hypot(*(system.initial_state / unit).tolist())
+    largest = max(float(norms.max()), start)
+    left = max(largest * (1 - difference.largest), start)
+    return largest / left if left > 0.0 else 1.0
+
+
+def rest_of(budget: Budget, spent: int) -> Budget:
+    """Return what is left of a budget.
+
+    Raises
+    ------
+    BudgetExceeded
+        If nothing is left.
+    """
+    if spent >= budget.evaluations:
+        remedy = "ask for earlier times or for less accuracy"
+        raise BudgetExceeded("evaluations", spent + 1, budget.evaluations, remedy=remedy)
+    return replace(budget, evaluations=budget.evaluations - spent)

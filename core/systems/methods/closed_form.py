@@ -1,0 +1,45 @@
+"""The exact solution as a member of the catalogue."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from core.errors import NotApplicable
+from core.quantities import check
+from core.systems.budget import Budget
+from core.systems.methods.method import AbstractMethod, Family, Integration
+from core.systems.system import Floats, System
+from core.systems.trajectory import Work
+
+
+@dataclass(frozen=True)
+class ClosedFormEvaluation(AbstractMethod):
+    """Evaluate the closed form of the motion at each time, at a cost that does not depend on the time."""
+
+    kind: Literal["closed-form"] = "closed-form"
+
+    order: ClassVar[None] = None
+    family: ClassVar[Family] = "closed form"
+    when_to_use: ClassVar[str] = (
+        "Always, where a closed form exists: it is right to the last digits at any time and faster than every "
+        "integrator that reaches an error of 1e-3."
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
+        """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""
+        exact = system.closed_form()
+        if exact is None:
+            raise NotApplicable(
+                f"{system.model.name} has no closed form",
+                path=("kind",),
+                remedy="use dormand-prince-853, or leave the method to the service",
+            )
+        return Integration(exact.sample(times), Work(times.size))
+
+    def finer(self) -> None:
+        """Return None: there is nothing more accurate in double precision."""
+        return None

@@ -1,0 +1,68 @@
+"""Forward Euler: the slope at the start of a step is taken for all of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from core.compiled import kernel
+from core.quantities import Duration, check
+from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by
+from core.systems.methods.method import Family
+from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+
+
+@kernel(march_by(VECTOR_FIELD))
+def _march(
+    field: Any,
+    begin: Floats,
+    step: Floats,
+    count: Integers,
+    state: Floats,
+    parameters: Floats,
+    samples: Floats,
+    tally: Integers,
+) -> int:
+    slope = np.empty_like(state)
+    for i in range(count.size):
+        h = step[i]
+        for j in range(count[i]):
+            field(begin[i] + j * h, state, parameters, slope)
+            for k in range(state.size):
+                state[k] += h * slope[k]
+        if not keep(state, i, samples):
+            tally[1] = OVERFLOW
+            return i
+    return count.size
+
+
+@dataclass(frozen=True)
+class ExplicitEuler(FixedStep):
+    """Forward Euler: w[i+1] = w[i] + h f(t[i], w[i]).
+
+    Parameters
+    ----------
+    step : float
+        Longest step (s).
+    """
+
+    step: Duration
+    kind: Literal["explicit-euler"] = "explicit-euler"
+
+    order: ClassVar[int] = 1
+    family: ClassVar[Family] = "explicit"
+    when_to_use: ClassVar[str] = (
+        "To see what a first-order method does, which most physics engines use: on a free body its energy grows at "
+        "every step, and ten times less error costs ten times more steps."
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def _evaluations_per_step(self, system: System) -> int:
+        return 1
+
+    def _compiled(self) -> Any:
+        return _march

@@ -1,0 +1,225 @@
+"""What every method is: a question's choice of how to compute a motion, with its order, its family and its work."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, Literal, NamedTuple
+
+import numpy as np
+
+from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
+from core.systems.budget import Budget
+from core.systems.system import Floats, System
+from core.systems.trajectory import Work
+
+Family = Literal["closed form", "explicit", "implicit", "structure-preserving"]
+Invariance = Literal["every first integral", "quadratic invariants", "invariants of every part", "time symmetry"]
+
+EXTREME = 300
+"""Exponents of two beyond which states are brought near one: cubes of what lies within stay doubles."""
+
+LONGEST, SHORTEST = float(np.finfo(np.float64).max), float(np.finfo(np.float64).smallest_subnormal)
+
+COUNTABLE = 10**18
+"""Counts above this are reported as this: what matters is that they are out of reach."""
+
+
+@dataclass(frozen=True, eq=False)
+class Integration:
+    """What a method returns.
+
+    Attributes
+    ----------
+    states : ndarray, shape (n, k)
+        One finite row per requested time, in the order of the request.
+    work : Work
+    """
+
+    states: Floats
+    work: Work
+
+
+class AbstractMethod(ABC):
+    """A method with its setting.
+
+    Subclasses are frozen dataclasses with a field `kind`, by which requests tell them apart, and at most one other
+    field, the setting.
+
+    Attributes
+    ----------
+    order : int or None
+        The error falls with this power of the step (of the mean step, for methods that choose their steps);
+        None if it has no fixed order.
+    family : str
+        ``"closed form"``, ``"explicit"``, ``"implicit"`` or ``"structure-preserving"``.
+    preserves : tuple of str
+        What the method keeps to round-off, whatever its step.
+    when_to_use : str
+        One sentence.
+    """
+
+    kind: str
+    order: ClassVar[int | None]
+    family: ClassVar[Family]
+    preserves: ClassVar[tuple[Invariance, ...]] = ()
+    when_to_use: ClassVar[str]
+
+    @abstractmethod
+    def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
+        """Return the states of `system` at `times`.
+
+        Parameters
+        ----------
+        system : System
+        times : ndarray, shape (n,)
+            Measured from the initial state, of either sign, in any order, repeated or not (s).
+        budget : Budget, optional
+            Evaluations that may be spent; the default of `Budget` if omitted.
+
+        Raises
+        ------
+        BudgetExceeded
+            Before running where the work can be predicted, otherwise as soon as the limit is met.
+        NotApplicable
+            If the system lacks what the method needs.
+        InvalidParameter
+            If the method fails with this setting: the states overflow, an implicit equation has no solution that
+            iteration finds, the step shrinks below the resolution of time. A failure of the method does not end the
+            motion, so it is an error and no event: no sample of such a run is handed on.
+        """
+
+    @abstractmethod
+    def finer(self) -> AbstractMethod | None:
+        """Return the same method made clearly more accurate at every place, None if it cannot be."""
+
+    def coarser(self) -> AbstractMethod | None:
+        """Return the same method made clearly less accurate, None if it cannot be; asked where `finer` has none."""
+        return None
+
+
+class Leg(NamedTuple):
+    """The part of an integration on one side of the start."""
+
+    states: Floats
+    evaluations: int
+    steps: int
+    rejected: int
+
+
+class Units(NamedTuple):
+    """Powers of two by which states and times are divided, so that products of extreme states stay doubles.
+
+    Attributes
+    ----------
+    state, time : int
+        Exponents; zero unless the start is extreme and the system says how its motion scales.
+    """
+
+    state: int = 0
+    time: int = 0
+
+    @classmethod
+    def of(cls, system: System, start: Floats) -> Units:
+        """Return the units for a start: those in which its largest component is about one, where it is extreme."""
+        exponent = math.frexp(float(np.abs(start).max()))[1]
+        degree = system.structure.degree
+        if degree is None or abs(exponent) <= EXTREME:
+            return cls()
+        return cls(exponent, -exponent * (degree - 1))
+
+    def states(self, given: Floats) -> Floats:
+        """Return states in these units."""
+        return np.ldexp(given, -self.state) if self.state else given
+
+    def given_states(self, states: Floats) -> Floats:
+        """Return states in the units of the question."""
+        return np.ldexp(states, self.state) if self.state else states
+
+    def times(self, given: Floats) -> Floats:
+        """Return times in these units; beyond the range of doubles they are infinite or zero."""
+        if not self.time:
+            return given
+        with np.errstate(over="ignore", under="ignore"):
+            return np.ldexp(given, -self.time)
+
+    def duration(self, given: float) -> float:
+        """Return a positive duration in these units, a double that is neither zero nor infinite."""
+        return max(min(float(self.times(np.array([given]))[0]), LONGEST), SHORTEST) if self.time else given
+
+    def given_time(self, time: float) -> float:
+        """Return a time in the units of the question."""
+        return math.ldexp(time, self.time)
+
+
+class Marching(AbstractMethod):
+    """Base of the methods that march from the initial state, out to either side of it.
+
+    It sorts the times and counts; a subclass marches to targets that it meets in order. Times are visited once each,
+    so repeated times cost nothing and the order of the request changes no sample.
+    """
+
+    setting: ClassVar[str]
+
+    def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
+        """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""
+        budget = budget or Budget()
+        start = np.ascontiguousarray(system.initial_state, dtype=np.float64)
+        units = Units.of(system, start)
+        begin, times = units.states(start), units.times(times)
+        self._require_finite_start(system, begin)
+        if not np.isfinite(times).all():
+            # So many turns that not even their number is a double.
+            raise self._over_budget(math.inf, budget.evaluations)
+        states = np.empty((times.size, start.size))
+        states[times == 0.0] = begin
+        evaluations = steps = rejected = 0
+        for side in (np.flatnonzero(times > 0.0), np.flatnonzero(times < 0.0)):
+            if not side.size:
+                continue
+            # A slice where it can be: numpy copies rows by index ten times slower.
+            run = side[-1] - side[0] + 1 == side.size
+            place = slice(side[0], side[-1] + 1) if run else side
+            targets, rows = _outwards(times[place])
+            leg = self._march(system, begin, targets, budget.evaluations - evaluations, units)
+            states[place] = leg.states if rows is None else leg.states[rows]
+            evaluations += leg.evaluations
+            steps += leg.steps
+            rejected += leg.rejected
+        return Integration(units.given_states(states), Work(times.size, evaluations, steps, rejected))
+
+    @abstractmethod
+    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+        """Return the states at `targets`, which have one sign, differ, and grow in magnitude; all are in `units`."""
+
+    def _require_finite_start(self, system: System, start: Floats) -> None:
+        slope = np.empty_like(start)
+        system.equation(0.0, start, system.parameters, slope)
+        if not np.isfinite(slope).all():
+            raise NotApplicable(
+                "the rate of change of the initial state lies outside the range of double precision",
+                path=("kind",),
+                remedy="choose units in which it does not, or use the closed form",
+            )
+
+    def _overflow(self, time: float, remedy: str) -> InvalidParameter:
+        rule = f"be small enough that the states stay in the double range; they left it before t = {time:.6g} s"
+        return InvalidParameter(self.setting, rule, remedy=remedy)
+
+    def _over_budget(self, needed: float, limit: int) -> BudgetExceeded:
+        count = int(min(max(needed, limit + 1.0), float(COUNTABLE)))
+        remedy = f"use a larger {self.setting}, or ask for earlier times"
+        return BudgetExceeded("evaluations", count, limit, path=(self.setting,), remedy=remedy)
+
+    def _out_of_budget(self, spent: int, limit: int, fraction: float) -> BudgetExceeded:
+        """Return the refusal of a run that was stopped after a fraction of the way, with the work it would need."""
+        return self._over_budget(spent / fraction if fraction > 0 else 0.0, limit)
+
+
+def _outwards(times: Floats) -> tuple[Floats, np.ndarray[tuple[int], np.dtype[np.intp]] | None]:
+    """Return the distinct times by growing magnitude, and for each of `times` its place among them."""
+    if (np.diff(np.abs(times)) > 0).all():
+        return np.ascontiguousarray(times), None
+    distinct, rows = np.unique(np.abs(times), return_inverse=True)
+    return np.copysign(distinct, times[0]), rows

@@ -1,0 +1,45 @@
+"""Radau IIA of order five, from SciPy: an implicit Runge-Kutta method for stiff motions.
+
+References
+----------
+E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., Springer 1996, section IV.8.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+from core.quantities import check
+from core.systems.methods.from_scipy import FromSciPy, SciPyTolerance
+from core.systems.methods.method import Family
+
+
+@dataclass(frozen=True)
+class Radau(FromSciPy):
+    """Radau IIA with three stages; samples inside a step come from an interpolant of order three.
+
+    Parameters
+    ----------
+    tolerance : float
+        Largest estimated error of a step, relative to the largest component of the initial state and to each
+        component, whichever is more.
+    """
+
+    tolerance: SciPyTolerance
+    kind: Literal["radau"] = "radau"
+
+    order: ClassVar[int] = 5
+    family: ClassVar[Family] = "implicit"
+    when_to_use: ClassVar[str] = (
+        "For stiff motions, where explicit methods would need steps far shorter than anything that is seen; a free "
+        "body is not one."
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def _solver(self) -> Any:
+        from scipy.integrate import Radau as SciPyRadau
+
+        return SciPyRadau

@@ -1,0 +1,85 @@
+"""The classical Runge-Kutta method of order four.
+
+References
+----------
+W. Kutta, "Beitrag zur näherungsweisen Integration totaler Differentialgleichungen", Zeitschrift für Mathematik und
+Physik 46 (1901) 435.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from core.compiled import kernel
+from core.quantities import Duration, check
+from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by
+from core.systems.methods.method import Family
+from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+
+
+@kernel(march_by(VECTOR_FIELD))
+def _march(
+    field: Any,
+    begin: Floats,
+    step: Floats,
+    count: Integers,
+    state: Floats,
+    parameters: Floats,
+    samples: Floats,
+    tally: Integers,
+) -> int:
+    k1, k2, k3, k4 = np.empty_like(state), np.empty_like(state), np.empty_like(state), np.empty_like(state)
+    stage = np.empty_like(state)
+    for i in range(count.size):
+        h = step[i]
+        for j in range(count[i]):
+            t = begin[i] + j * h
+            field(t, state, parameters, k1)
+            for k in range(state.size):
+                stage[k] = state[k] + 0.5 * h * k1[k]
+            field(t + 0.5 * h, stage, parameters, k2)
+            for k in range(state.size):
+                stage[k] = state[k] + 0.5 * h * k2[k]
+            field(t + 0.5 * h, stage, parameters, k3)
+            for k in range(state.size):
+                stage[k] = state[k] + h * k3[k]
+            field(t + h, stage, parameters, k4)
+            for k in range(state.size):
+                state[k] += h * ((k1[k] + k4[k]) + 2 * (k2[k] + k3[k])) / 6
+        if not keep(state, i, samples):
+            tally[1] = OVERFLOW
+            return i
+    return count.size
+
+
+@dataclass(frozen=True)
+class RungeKutta4(FixedStep):
+    """The classical Runge-Kutta method.
+
+    Parameters
+    ----------
+    step : float
+        Longest step (s).
+    """
+
+    step: Duration
+    kind: Literal["runge-kutta-4"] = "runge-kutta-4"
+
+    order: ClassVar[int] = 4
+    family: ClassVar[Family] = "explicit"
+    when_to_use: ClassVar[str] = (
+        "For moderate accuracy (1e-3 to 1e-8) over a few periods at a fixed cost per step, and as the yardstick that "
+        "most readers know."
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def _evaluations_per_step(self, system: System) -> int:
+        return 4
+
+    def _compiled(self) -> Any:
+        return _march

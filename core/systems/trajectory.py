@@ -1,0 +1,93 @@
+"""What a solved motion is: samples, the model that gave them, how right they are and what they cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from core.notices import Notice
+from core.systems.system import Floats, Model
+
+How = Literal["closed form", "measured against closed form", "finer run"]
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """How right an answer is; every figure is relative to the largest norm of the motion.
+
+    Attributes
+    ----------
+    requested : float
+        Largest error of any sample that the client tolerates.
+    error : float
+        Largest numerical error of any sample, inputs taken as exact; never smaller than the true one.
+    final_error : float or None
+        The same at the time farthest from the start.
+    how : str
+        What the figure rests on.
+    inherited : float or None
+        What half an ulp in every input (or the stated input uncertainty) would move.
+    drifts : mapping of str to float
+        Largest relative change of each conserved quantity. A drift is not an error: it can be 1e-15 while the phase
+        is wrong altogether.
+    """
+
+    requested: float
+    error: float
+    how: How
+    final_error: float | None = None
+    inherited: float | None = None
+    drifts: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What an answer cost, counted and therefore the same on every machine.
+
+    Attributes
+    ----------
+    samples : int
+        Rows of the answer.
+    evaluations : int
+        Of the equation of motion, or of the flows of its parts.
+    steps, rejected_steps : int
+        Taken by the method, and tried in vain beside them.
+    evaluations_for_error : int
+        Spent on stating the error, beside those that made the samples.
+    """
+
+    samples: int
+    evaluations: int = 0
+    steps: int = 0
+    rejected_steps: int = 0
+    evaluations_for_error: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Samples of a motion.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        In the order that was asked for (s).
+    state : ndarray, shape (n, k)
+        One row per time.
+    method : str
+        Kind of the method that made it.
+    ended : str
+        ``"horizon"``, or the event that ended the motion before it.
+    warnings : tuple of Notice
+        What the reader of the samples should know.
+    """
+
+    time: Floats
+    state: Floats
+    model: Model
+    method: str
+    accuracy: Accuracy
+    work: Work
+    period: float | None = None
+    ended: str = "horizon"
+    warnings: tuple[Notice, ...] = ()

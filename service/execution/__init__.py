@@ -1,0 +1,1 @@
+"""Where questions are answered: handler, cost model, admission, worker pool, response cache."""

@@ -1,0 +1,225 @@
+"""What a question will cost, before it is answered: counts that the question tells, times measured costs per count.
+
+The costs stand in a table that `benchmarks.calibration` measures and writes. Times are the measuring machine's; counts
+and bytes hold on every machine.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib import resources
+from math import ceil, exp, hypot, inf, log, sqrt
+from sys import float_info
+from typing import Any, Protocol, runtime_checkable
+
+from core.systems.budget import Budget
+
+Counts = Mapping[str, float]
+
+UNCOUNTABLE = 1e18
+"""What is more than this is counted as this: infinite counts, times nothing, would leave a question without a price."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The measured table.
+
+    Attributes
+    ----------
+    seconds, bytes : mapping of str to mapping of str to float
+        By operation, cost per count: of computing the answer, and of the answer as JSON.
+    writing : float
+        Time per byte of writing an answer (s).
+    methods : mapping of str to mapping of str to float
+        By kind of method: ``evaluations`` per step, or logarithms of ``evaluations`` per radian turned at tolerance one
+        and their ``exponent``; ``error`` and ``error_exponent``, per radian turned, likewise.
+    """
+
+    seconds: Mapping[str, Counts]
+    bytes: Mapping[str, Counts]
+    writing: float
+    methods: Mapping[str, Mapping[str, float]]
+
+
+@cache
+def calibration() -> Calibration:
+    """Return the committed table."""
+    table = json.loads(resources.files("service.execution").joinpath("calibration.json").read_text(encoding="utf-8"))
+    return Calibration(**{name: table[name] for name in ("seconds", "bytes", "writing", "methods")})
+
+
+@runtime_checkable
+class Foreseen(Protocol):
+    """A price that also foresees how long the answer will be."""
+
+    def __call__(self, question: Any, budget: Budget) -> float:
+        """Return the predicted time of computing an answer (s)."""
+        ...
+
+    def size(self, question: Any, budget: Budget) -> float:
+        """Return the predicted length of an answer as JSON (bytes)."""
+        ...
+
+
+@dataclass(frozen=True)
+class Priced:
+    """A route's price: the operation's name in the table, and what is counted of a question.
+
+    Attributes
+    ----------
+    counts : callable
+        Refuses what exceeds the budget.
+    """
+
+    operation: str
+    counts: Callable[[Any, Budget], Counts]
+
+    @cached_property
+    def _seconds(self) -> Counts:
+        seconds = calibration().seconds
+        # A body is looked at in the same way whatever is asked about it, and where it is small that does not stand out.
+        return {"points": seconds["mass_properties"]["points"], **seconds[self.operation]}
+
+    def __call__(self, question: Any, budget: Budget) -> float:
+        """Return the predicted time of computing an answer (s)."""
+        return _sum(self._seconds, self.counts(question, budget))
+
+    def size(self, question: Any, budget: Budget) -> float:
+        """Return the predicted length of an answer as JSON (bytes)."""
+        return _sum(calibration().bytes[self.operation], self.counts(question, budget))
+
+
+def one(question: Any, budget: Budget) -> Counts:
+    """Return what is counted of a question that always costs the same."""
+    return {"question": 1.0}
+
+
+def _sum(costs: Counts, counts: Counts) -> float:
+    total = 0.0
+    for name, count in counts.items():
+        total += costs.get(name, 0.0) * count
+    return total
+
+
+def setting(method: Any) -> tuple[str, float]:
+    """Return the name and the value of a method's setting."""
+    name = "step" if hasattr(method, "step") else "tolerance"
+    return name, getattr(method, name)
+
+
+def evaluations(method: Any, times: Sequence[float] | Any, speed: float) -> float:
+    """Return how often a method is predicted to evaluate the equation of a rotation with `speed` (rad/s)."""
+    if method is None or method.kind == "closed-form":
+        return 0.0
+    name, value = setting(method)
+    costs = calibration().methods[method.kind]
+    if name == "step":
+        return costs["evaluations"] * steps(times, value)
+    turned = speed * extent(times) if speed else 0.0
+    return min(UNCOUNTABLE, _power(costs["evaluations"] + costs["exponent"] * log(value)) * (turned + 1.0))
+
+
+def error_of(method: Any, times: Sequence[float] | Any, speed: float) -> float:
+    """Return the order of magnitude of a method's error on a rotation, at most 2."""
+    name, value = setting(method)
+    costs = calibration().methods[method.kind]
+    # A step is judged by how far the body turns meanwhile.
+    small = value * speed if name == "step" else value
+    if small == 0.0 or speed == 0.0:
+        return 0.0
+    return min(2.0, _power(costs["error"] + costs["error_exponent"] * log(small)) * (speed * farthest(times) + 1.0))
+
+
+def speed_of(rates: Sequence[float]) -> float:
+    """Return the magnitude of an angular velocity, at most the largest double (rad/s)."""
+    return min(hypot(*rates), float_info.max)
+
+
+def quickest(speed: float, moments: Sequence[float] | None) -> float:
+    """Return the angular speed (rad/s) that a method has to follow on a free motion with a speed at its start.
+
+    Parameters
+    ----------
+    speed : float
+        rad/s.
+    moments : sequence of 3 floats, optional
+        Principal moments, ascending (kg m^2); without, those of matter.
+    """
+    return speed_of([speed * _quickening(*moments)]) if speed and moments else speed
+
+
+def _quickening(a: float, b: float, c: float) -> float:
+    """Return how many times faster than it turns a body with such moments may swing about the axis of the largest.
+
+    By Euler's equations, made linear about that axis: sqrt((c - a) (c - b) / (a b)), of all three axes the most. It is
+    more than one where c > a + b, which no matter has, and then no such body comes to turn faster by a larger factor.
+    """
+    if c <= a + b:
+        return 1.0
+    # The least moment of a needle may have come out below zero.
+    return max(1.0, sqrt((c - a) / b) * sqrt((c - b) / abs(a))) if a and b else inf
+
+
+def _power(logarithm: float) -> float:
+    return exp(min(700.0, logarithm))
+
+
+def effort(method: Any, times: Any, speed: float, samples: float, members: int = 1) -> dict[str, float]:
+    """Return what is counted of a method that is run."""
+    if method is None or method.kind == "closed-form":
+        return {}
+    kind = method.kind
+    return {
+        f"runs of {kind}": members,
+        f"samples of {kind}": samples * members,
+        f"evaluations of {kind}": evaluations(method, times, speed) * members,
+    }
+
+
+def steps(times: Any, step: float) -> float:
+    """Return the steps of at most `step` from the start to every time, on either side."""
+    if isinstance(times, list):
+        ordered = sorted(set(times))
+        ahead, behind = [t for t in ordered if t > 0.0], [-t for t in reversed(ordered) if t < 0.0]
+        gaps = [b - a for side in (ahead, behind) for a, b in zip([0.0, *side], side, strict=False)]
+        return min(UNCOUNTABLE, sum(_whole(gap / step) for gap in gaps))
+    gap: float = abs(times.stop - times.start) / max(1, times.count - 1)
+    ends = _ends(times)
+    outside: float = 0.0 if min(ends) <= 0.0 <= max(ends) else min(map(abs, ends))
+    intervals: int = times.count - 1
+    return min(UNCOUNTABLE, intervals * _whole(gap / step) + (_whole(outside / step) if outside else 0.0))
+
+
+def _whole(number: float) -> float:
+    return float(ceil(number)) if number < 1e15 else min(number, UNCOUNTABLE)
+
+
+def extent(times: Any) -> float:
+    """Return how far a method marches, to both sides of the start (s)."""
+    ends = _ends(times)
+    return max(0.0, *ends) - min(0.0, *ends)
+
+
+def farthest(times: Any) -> float:
+    """Return the largest distance from the start (s)."""
+    return max(map(abs, _ends(times)))
+
+
+def extreme(times: Any) -> float:
+    """Return the time that is farthest from the start (s)."""
+    return max(_ends(times), key=abs)
+
+
+def _ends(times: Any) -> list[float]:
+    if isinstance(times, list):
+        return times
+    # A single time is the start, wherever the stop is.
+    return [times.start, times.stop] if times.count > 1 else [times.start]
+
+
+def numbers(count: float, digits: Any) -> dict[str, float]:
+    """Return what is counted of the numbers in an answer: how many, or the digits if fewer are wanted."""
+    return {"digits": count * digits} if isinstance(digits, int) else {"numbers": count}

@@ -1,0 +1,64 @@
+"""From the bytes of a question to the fields of its answer, the same in the server process and in compute processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from typing import Any
+
+import orjson
+
+from core.errors import Path
+from core.notices import Notice
+from core.systems.budget import Budget
+from service.problems import pointer_of
+from service.requests.request_reader import Limits, Reader
+from service.routing import Answer, Question
+from service.schemas import SIGNATURE
+
+
+class Answering:
+    """Reads and answers questions.
+
+    Parameters
+    ----------
+    routes : iterable of Question
+        What can be asked.
+    budget : Budget
+        What one question may cost.
+    limits : Limits
+        On documents.
+    """
+
+    def __init__(self, routes: Iterable[Question], budget: Budget, limits: Limits) -> None:
+        self._routes = tuple(routes)
+        self._budget = budget
+        self._readers = {route.path: Reader(route.question, limits).read for route in self._routes}
+
+    def read(self, route: Question, body: bytes) -> Any:
+        """Return the question that a body asks; see `Reader.read`."""
+        return self._readers[route.path](body)
+
+    def price(self, route: Question, question: Any) -> float:
+        """Return the predicted time of an answer (s), or raise `BudgetExceeded`."""
+        return route.price(question, self._budget)
+
+    def answer(self, route: Question, question: Any) -> Answer:
+        """Return the whole answer: signature, warnings, fields."""
+        answer = {"signature": SIGNATURE, "warnings": (), **route.handle(question, self._budget)}
+        answer["warnings"] = [_warning(notice) for notice in answer["warnings"]]
+        return answer
+
+    def warm(self) -> None:
+        """Answer every example once, so that no client waits for a function to be compiled or loaded."""
+        for route in self._routes:
+            for example in route.examples.values():
+                self.answer(route, self.read(route, orjson.dumps(example.question)))
+        # What its methods import when one of them is first asked for would hold up the event loop.
+        import_module("scipy.integrate")
+
+
+def _warning(notice: Notice) -> dict[str, str]:
+    path: Path = notice.path
+    entry = {"code": notice.code, "detail": notice.detail}
+    return entry | {"pointer": pointer_of(path)} if path else entry

@@ -1,0 +1,338 @@
+"""Processes that answer one request at a time over a socket of their own, and are killed and replaced one by one.
+
+They share nothing: a process that dies, at whatever moment, takes with it only the request that it had begun. Starting
+one may wait for the fork server, so that is done in threads; all else happens in the event loop, without waiting.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import multiprocessing
+import os
+import signal
+import socket
+from collections import deque
+from collections.abc import Callable, Sequence
+from functools import partial
+from multiprocessing.connection import wait
+from multiprocessing.context import ForkServerProcess
+from threading import Lock, Thread
+from time import perf_counter
+from typing import Any, cast
+
+from service.execution.daemon_thread import aside, tell
+from service.observability.logs import LOG
+
+HEADER = 8
+"""Bytes before each message that say how long it is, little end first."""
+
+PAUSE = 0.5
+"""Seconds before another attempt where a process could not be started, or did not live until it was ready."""
+
+_EXIT_CODES = Lock()
+"""Whoever starts a process asks after all others; of two who read an exit code at the same time one would find none."""
+
+
+class Died(Exception):
+    """The process died while it worked on the request."""
+
+
+class Overdue(Exception):
+    """The request was worked on for longer than it may be; its process was killed."""
+
+
+class NoTurn(Exception):
+    """No process became free for the request in time."""
+
+
+class Stopped(Exception):
+    """The processes are being stopped."""
+
+
+def framed(message: bytes) -> bytes:
+    """Return a message as it travels."""
+    return len(message).to_bytes(HEADER, "little") + message
+
+
+class Job:
+    """A request on its way.
+
+    Attributes
+    ----------
+    reply : asyncio.Future of bytes
+        Fails with `Died`, `Overdue`, `NoTurn` or `Stopped`.
+    seconds : float
+        How long the process took, once there is a reply (s).
+    """
+
+    def __init__(self, request: bytes, longest: float) -> None:
+        self.request, self.longest = request, longest
+        self.reply: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()
+        self.seconds = 0.0
+        self.since = 0.0
+        self.begun = False
+        self.timer: asyncio.TimerHandle | None = None
+        self.process: Process | None = None
+
+    def fail(self, error: Exception) -> None:
+        """Answer with an error, unless there is an answer or nobody waits for one."""
+        if not self.reply.done():
+            self.reply.set_exception(error)
+
+
+class Process(asyncio.Protocol):
+    """One process, seen from the event loop."""
+
+    def __init__(self, pool: Processes, handle: ForkServerProcess) -> None:
+        self._pool, self.handle = pool, handle
+        self._transport: asyncio.WriteTransport | None = None
+        self._received = bytearray()
+        self.ready = self.killed = False
+        self.job: Job | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Keep the connection."""
+        self._transport = cast(asyncio.WriteTransport, transport)
+
+    def give(self, job: Job) -> None:
+        """Send a request."""
+        assert self._transport is not None
+        self.job, job.process = job, self
+        self._transport.write(framed(job.request))
+
+    def data_received(self, data: bytes) -> None:
+        """Take in messages: nothing for "ready" and then for "begun", something for a reply."""
+        self._received += data
+        while len(self._received) >= HEADER:
+            end = HEADER + int.from_bytes(self._received[:HEADER], "little")
+            if len(self._received) < end:
+                return
+            message = bytes(self._received[HEADER:end])
+            del self._received[:end]
+            self._pool.heard(self, message)
+
+    def connection_lost(self, error: Exception | None) -> None:
+        """The process has ended."""
+        self._pool.ended(self)
+
+    def kill(self) -> None:
+        """End it at once, whatever it does."""
+        self.killed = True
+        # Asked by its handle, it would seem dead as soon as the fork server is, which alone tells of its end. It lives
+        # as long as its connection does.
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(self.handle.pid or 0, signal.SIGKILL)
+
+
+class Processes:
+    """A number of warm processes.
+
+    Parameters
+    ----------
+    size : int
+    main : callable
+        Runs in each process, given its end of the connection and `arguments`.
+    preload : str
+        Module that the fork server imports once for all processes.
+    lost : callable
+        Called with the exit code of a process that died by itself.
+    """
+
+    def __init__(
+        self, size: int, main: Callable[..., None], arguments: Sequence[Any], preload: str, lost: Callable[[int], None]
+    ) -> None:
+        # The fork server has everything imported, so that a process that is lost is replaced within milliseconds;
+        # forking the server process itself, with its threads and its event loop, would not be safe.
+        self._context = multiprocessing.get_context("forkserver")
+        self._context.set_forkserver_preload([preload])
+        self.size = size
+        self._main, self._arguments, self._lost = main, tuple(arguments), lost
+        self._waiting: deque[Job] = deque()
+        self._idle: deque[Process] = deque()
+        self._all: set[Process] = set()
+        self._starting: set[asyncio.Task[None]] = set()
+        self._turn = asyncio.Lock()
+        self._up = asyncio.Event()
+        self._stopping = False
+
+    @property
+    def pids(self) -> dict[int, bool]:
+        """Process ids, and whether each works on something."""
+        return {process.handle.pid or 0: process.job is not None for process in self._all}
+
+    @property
+    def ready(self) -> bool:
+        """Whether all processes are there and ready."""
+        return sum(process.ready and not process.killed for process in self._all) == self.size
+
+    @property
+    def any_ready(self) -> bool:
+        """Whether there is a process that works or waits for work."""
+        return any(process.ready and not process.killed for process in self._all)
+
+    async def start(self) -> None:
+        """Start all processes and return when each is ready."""
+        for _ in range(self.size):
+            self._replace(0.0)
+        await self._up.wait()
+
+    def submit(self, request: bytes, longest: float, patience: float) -> Job:
+        """Have a request answered.
+
+        Parameters
+        ----------
+        longest : float
+            Time after which its process is killed (s).
+        patience : float
+            Time that it may wait for its turn (s).
+        """
+        job = Job(request, longest)
+        if self._stopping:
+            job.fail(Stopped())
+            return job
+        job.timer = asyncio.get_running_loop().call_later(patience, self._impatient, job)
+        self._waiting.append(job)
+        self._hand_out()
+        return job
+
+    def drop(self, job: Job) -> None:
+        """Make sure that nothing works on a request any more."""
+        if job.timer is not None:
+            job.timer.cancel()
+        job.reply.cancel()
+        if job.process is not None:
+            job.process.job = None
+            job.process.kill()
+            job.process = None
+        elif job in self._waiting:
+            self._waiting.remove(job)
+
+    def heard(self, process: Process, message: bytes) -> None:
+        """Act on a message."""
+        job = process.job
+        if process.killed:
+            return
+        if not process.ready:
+            process.ready = True
+            if self.ready:
+                self._up.set()
+        elif job is None:
+            return
+        elif not message:
+            job.begun = True
+            return
+        else:
+            self._detach(job)
+            job.seconds = perf_counter() - job.since
+            if not job.reply.done():
+                job.reply.set_result(message)
+        self._idle.append(process)
+        self._hand_out()
+
+    def ended(self, process: Process) -> None:
+        """Answer for what a process has left, and start another."""
+        self._all.discard(process)
+        if process in self._idle:
+            self._idle.remove(process)
+        job = process.job
+        if job is not None:
+            self._detach(job)
+            if job.begun:
+                job.fail(Died())
+            elif not job.reply.done():
+                # It was on its way to a process that was dead already: it is not that request's fault.
+                job.timer = asyncio.get_running_loop().call_later(job.longest, self._impatient, job)
+                self._waiting.appendleft(job)
+        if not self._stopping:
+            self._replace(0.0 if process.ready else PAUSE)
+            self._hand_out()
+        Thread(target=self._bury, args=(process, asyncio.get_running_loop()), daemon=True).start()
+
+    async def stop(self) -> None:
+        """Refuse what waits, kill what runs."""
+        self._stopping = True
+        for task in tuple(self._starting):
+            task.cancel()
+        for job in (*self._waiting, *(process.job for process in self._all)):
+            if job is not None:
+                job.fail(Stopped())
+        self._waiting.clear()
+        for process in tuple(self._all):
+            process.kill()
+        until = perf_counter() + 5.0
+        while self._all and perf_counter() < until:
+            await asyncio.sleep(0.005)
+
+    def _hand_out(self) -> None:
+        while self._waiting and self._idle:
+            job, process = self._waiting.popleft(), self._idle.popleft()
+            if job.timer is not None:
+                job.timer.cancel()
+            job.since = perf_counter()
+            job.timer = asyncio.get_running_loop().call_later(job.longest, self._overdue, job)
+            process.give(job)
+
+    def _detach(self, job: Job) -> None:
+        if job.timer is not None:
+            job.timer.cancel()
+        if job.process is not None:
+            job.process.job = None
+            job.process = None
+
+    def _impatient(self, job: Job) -> None:
+        job.fail(NoTurn())
+        self.drop(job)
+
+    def _overdue(self, job: Job) -> None:
+        job.fail(Overdue())
+        self.drop(job)
+
+    def _replace(self, pause: float) -> None:
+        task = asyncio.ensure_future(self._begin(pause))
+        self._starting.add(task)
+        task.add_done_callback(self._starting.discard)
+
+    async def _begin(self, pause: float) -> None:
+        await asyncio.sleep(pause)
+        while True:
+            try:
+                handle, ours = await self._started()
+                break
+            # Whatever is lacking, files or threads or memory: a process that is not replaced would be missed for good.
+            except Exception:
+                LOG.exception("a compute process could not be started")
+                await asyncio.sleep(PAUSE)
+        process = Process(self, handle)
+        self._all.add(process)
+        ours.setblocking(False)
+        await asyncio.get_running_loop().create_unix_connection(lambda: process, sock=ours)
+
+    async def _started(self) -> tuple[ForkServerProcess, socket.socket]:
+        """Return a new process and our end of the connection to it."""
+        # One at a time: all wait for the same fork server.
+        async with self._turn:
+            ours, theirs = socket.socketpair()
+            try:
+                return await aside(partial(self._spawn, theirs)), ours
+            except BaseException:
+                ours.close()
+                raise
+
+    def _spawn(self, end: socket.socket) -> ForkServerProcess:
+        with end, _EXIT_CODES:
+            handle = self._context.Process(target=self._main, args=(end, *self._arguments), daemon=True)
+            handle.start()
+            return handle
+
+    def _bury(self, process: Process, loop: asyncio.AbstractEventLoop) -> None:
+        handle, killed = process.handle, process.killed
+        # The connection may have ended before the process.
+        if not wait([handle.sentinel], 1.0):
+            handle.kill()
+            wait([handle.sentinel])
+        with _EXIT_CODES:
+            code = handle.exitcode or 0
+            handle.close()
+        if not (killed or self._stopping):
+            tell(loop, self._lost, code)

@@ -1,0 +1,51 @@
+"""What is recorded of every request: an id, a measurement, for some of them a line in the log."""
+
+from __future__ import annotations
+
+import re
+import secrets
+from itertools import count
+
+from service.observability.logs import LOG
+from service.observability.metrics import Metrics
+
+_PLAIN_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
+
+
+class Records:
+    """The records of one server process.
+
+    Parameters
+    ----------
+    metrics : Metrics
+    log_requests : {"none", "failures", "all"}
+        Which requests are logged.
+    """
+
+    def __init__(self, metrics: Metrics, log_requests: str) -> None:
+        self._observe = metrics.observe
+        self.problem = metrics.problem
+        self._log_from = {"none": 1000, "failures": 500, "all": 0}[log_requests]
+        self._prefix = secrets.token_hex(6).encode()
+        self._numbers = count(1)
+
+    def id_of(self, given: bytes | None) -> bytes:
+        """Return a request's id: the client's own where it is short and plain, otherwise one that no other has."""
+        if given and _PLAIN_ID.fullmatch(given):
+            return given
+        return b"%b-%x" % (self._prefix, next(self._numbers))
+
+    def finished(self, identity: bytes, operation: str, method: str, status: int, seconds: float) -> None:
+        """Count a request, and log it if such requests are."""
+        self._observe((operation, status), seconds)
+        if status >= self._log_from:
+            LOG.info(
+                "request",
+                extra={
+                    "request_id": identity.decode(),
+                    "operation": operation,
+                    "method": method,
+                    "status": status,
+                    "milliseconds": round(1e3 * seconds, 3),
+                },
+            )

@@ -1,0 +1,184 @@
+"""The OpenAPI document, made by FastAPI from the route table, and FastAPI's own way of serving the same table."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Coroutine, Sequence
+from typing import Annotated, Any
+
+from fastapi import Body, FastAPI, Request
+from fastapi.routing import APIRoute
+from starlette.responses import JSONResponse, Response
+
+from core import bodies
+from core.quantities import members_of
+from service import VERSION
+from service.openapi.descriptions import describe
+from service.problems import MEDIA_TYPE, REGISTRY
+from service.responses import npz as archive
+from service.routing import Question, Route
+from service.schemas import ProblemDocument
+
+DESCRIPTION = """\
+The motion of rigid bodies and small constrained scenes, and how right each answer is.
+
+SI units, radians. Vectors are [x, y, z], matrices are written row by row, quaternions [w, x, y, z] turn body into
+space. Body axes are the axes in which the body was defined. Times are measured from the given state. Arrays of samples
+are rows. Every number is a finite double; a derived figure outside the range of doubles is null, with a warning.
+
+Questions with `digits` (16 to 1000) are answered in ball arithmetic: every number of the answer is a decimal string
+whose digits are proven, and numbers of the question may be decimal strings too ("0.1" is one tenth, 0.1 a double).
+
+Answers are JSON, or a numpy archive to `Accept: application/x-npz`: the same names, and the rest
+as JSON in metadata.json.
+
+Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
+"""
+
+Serve = Callable[[Route, Any, Any, Any], Coroutine[Any, Any, None]]
+
+_PROBLEMS_OF_QUESTIONS = (400, 401, 406, 413, 415, 422, 429, 500, 503)
+
+
+class _Dispatched(Response):
+    """A response that lets the dispatcher answer."""
+
+    def __init__(self, serve: Serve, route: Route) -> None:
+        super().__init__()
+        self._serve, self._route = serve, route
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        await self._serve(self._route, scope, receive, send)
+
+
+def documented(routes: Sequence[Route], serve: Serve, lifespan: Any = None) -> FastAPI:
+    """Return a FastAPI application that documents the routes and serves them through the dispatcher."""
+    app = FastAPI(
+        title="Polhode",
+        version=VERSION,
+        description=DESCRIPTION,
+        openapi_url=None,
+        docs_url=None,
+        redoc_url=None,
+        lifespan=lifespan,
+        separate_input_output_schemas=False,
+    )
+    for route in routes:
+        app.router.routes.append(_Route(route, serve))
+    return app
+
+
+def openapi(app: FastAPI) -> dict[str, Any]:
+    """Return the OpenAPI document."""
+    document = app.openapi()
+    problem = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
+    document["components"]["schemas"] |= problem.pop("$defs") | {"ProblemDocument": problem}
+    document["components"]["securitySchemes"] = {
+        "key": {"type": "http", "scheme": "bearer", "description": "Needed where the service has a file of keys."}
+    }
+    for verbs in document["paths"].values():
+        if "post" in verbs:
+            verbs["post"]["security"] = [{}, {"key": []}]
+    for reference in _told_apart(document):
+        _require_tag(document["components"]["schemas"][reference.rsplit("/", 1)[1]])
+    describe(document["components"]["schemas"], members_of(bodies.Body))
+    return document
+
+
+def _told_apart(node: Any) -> set[str]:
+    """Return the references to all members of unions that are told apart by a field."""
+    if isinstance(node, list):
+        return set().union(*map(_told_apart, node))
+    if not isinstance(node, dict):
+        return set()
+    own = node.get("discriminator", {}).get("mapping", {}) if "oneOf" in node else {}
+    return set(own.values()).union(*map(_told_apart, node.values()))
+
+
+def _require_tag(schema: dict[str, Any]) -> None:
+    """Mark the field by which the members of a union are told apart as required, which on the wire it is."""
+    kind = schema.get("properties", {}).get("kind", {})
+    if "const" in kind and "kind" not in schema.get("required", []):
+        kind.pop("default", None)
+        schema["required"] = [*schema.get("required", []), "kind"]
+
+
+class _Route(APIRoute):
+    """One route of the table, as FastAPI sees it."""
+
+    def __init__(self, route: Route, serve: Serve) -> None:
+        self._route, self._serve_it = route, serve
+        super().__init__(
+            route.path,
+            _endpoint(route),
+            methods=[route.method],
+            operation_id=route.operation_id,
+            name=route.operation_id,
+            summary=route.summary,
+            description=route.description,
+            tags=[route.tag],
+            response_model=route.answer,
+            response_description="The answer." if isinstance(route, Question) else "The document.",
+            response_class=_response_class(route),
+            responses=_representations(route)
+            | _problems(_PROBLEMS_OF_QUESTIONS if isinstance(route, Question) else (406, 500)),
+        )
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        async def handler(request: Request) -> Response:
+            return _Dispatched(self._serve_it, self._route)
+
+        return handler
+
+
+def _response_class(route: Route) -> type[Response]:
+    if isinstance(route, Question) or route.media_type == "application/json":
+        return JSONResponse
+    return type("_Media", (Response,), {"media_type": route.media_type})
+
+
+def _endpoint(route: Route) -> Callable[..., Any]:
+    """Return a function of the signature that FastAPI is to document; it is never called."""
+
+    def endpoint(**arguments: Any) -> None:
+        raise NotImplementedError
+
+    parameters = []
+    if isinstance(route, Question):
+        examples: Any = {
+            name: {"summary": example.summary, "value": dict(example.question)}
+            for name, example in route.examples.items()
+        }
+        annotation: Any = Annotated.__class_getitem__((route.question, Body(openapi_examples=examples)))  # type: ignore[attr-defined]
+        parameters = [inspect.Parameter("question", inspect.Parameter.KEYWORD_ONLY, annotation=annotation)]
+    endpoint.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    endpoint.__doc__ = None
+    return endpoint
+
+
+def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
+    """Return how an answer is documented that is not JSON; the Accept header chooses."""
+    if not isinstance(route, Question):
+        return {}
+    content: dict[str, Any] = {media: {"schema": {"type": "string"}} for media in route.representations}
+    content[archive.MEDIA_TYPE] = {
+        "schema": {
+            "type": "string",
+            "format": "binary",
+            "description": "numpy archive: each array under its name in the JSON answer (steps joined by slashes), the "
+            "rest in the member metadata.json.",
+        }
+    }
+    return {200: {"description": "The answer.", "content": content}}
+
+
+def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:
+    reference = {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
+    responses: dict[int | str, dict[str, Any]] = {}
+    for status in statuses:
+        codes = [entry.code for entry in REGISTRY.values() if entry.status == status]
+        responses[status] = {
+            "description": f"Problem: {', '.join(codes)}.",
+            "content": {MEDIA_TYPE: reference},
+        }
+    return responses

@@ -1,0 +1,307 @@
+"""What the validator finds wrong, in words for who sent it: where, which rule, what would mend it.
+
+The validator's locations name members of unions as if they were steps; left out, they are JSON pointers into what the
+client sent. Which names and kinds there would have been is read off its schema.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
+from typing import Any
+
+from core.errors import InvalidParameter
+from service.http.limits import LONGEST_KEY_SHOWN
+from service.problems import MOST_FAULTS, Fault, code_of, pointer_of
+
+Step = str | int
+Names = tuple[str, ...]
+
+OBJECT, ARRAY = "<object>", "<array>"
+"""Labels of the members of a union of an object and an array; a fault in the member not meant is dropped."""
+
+ALIKE = 0.78
+"""Share of its letters that a name must have in common with another to be taken for a slip of it."""
+
+_RULES: Mapping[str, str] = {
+    "missing": "is required",
+    "missing_argument": "is required",
+    "extra_forbidden": "is not known here",
+    "unexpected_keyword_argument": "is not known here",
+    "finite_number": "must be finite",
+    "float_type": "must be a number",
+    "float_parsing": "must be a number",
+    "int_type": "must be an integer",
+    "int_parsing": "must be an integer",
+    "int_parsing_size": "must be an integer of moderate size",
+    "int_from_float": "must be an integer",
+    "bool_type": "must be true or false",
+    "string_type": "must be a string",
+    "model_type": "must be an object",
+    "model_attributes_type": "must be an object",
+    "dataclass_type": "must be an object",
+    "dict_type": "must be an object",
+    "list_type": "must be an array",
+    "tuple_type": "must be an array",
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "literal_error": "must be {expected}",
+    "neither": "must be an object or an array",
+    "union_tag_invalid": "must be one of {expected_tags}",
+    "union_tag_not_found": "must have the key {discriminator}",
+    "string_too_long": "must have at most {max_length} characters",
+}
+_REMEDIES: Mapping[str, str] = {
+    "float_type": "write a JSON number: no quotes, no true, false or null",
+    "int_type": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
+    "int_from_float": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
+    "finite_number": "NaN, infinities and numbers beyond 1.8e308 are not read",
+    "neither": "give numbers in an array, or start, stop and count in an object",
+}
+_KNOWN = "known here: "
+_TYPES = ("model_type", "model_attributes_type", "dataclass_type", "list_type", "tuple_type")
+_OBJECTS = ("model_type", "model_attributes_type", "dataclass_type", "dict_type")
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a validator's schema says of the documents that it admits.
+
+    Attributes
+    ----------
+    tags : mapping of str to tuple of str
+        For each name of a field that holds members of a union, the tags by which they are told apart.
+    names : mapping of str to tuple of str
+        For each tag, or name of a field that holds an object, the keys of the object; for ``""`` those of the document.
+    lengths : mapping of str to int
+        For each name of a field that holds an array of fixed length, that length.
+    elsewhere : mapping of str to str
+        Keys of the document that only another question has, and tags of members that only it admits, each with the key
+        that makes it this one.
+    """
+
+    tags: Mapping[str, Names]
+    names: Mapping[str, Names]
+    lengths: Mapping[str, int]
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, schema: Any) -> Layout:
+        """Return the layout that a schema describes."""
+        walk = _Walk(schema)
+        return cls(
+            {name: tuple(found) for name, found in walk.tags.items()},
+            {name: tuple(found) for name, found in walk.names.items()},
+            walk.lengths,
+        )
+
+    def told_from(self, key: str, other: Layout) -> Layout:
+        """Return this layout of questions that have a key, told from those that do not."""
+        keys = set(other.names.get("", ())) - set(self.names.get("", ()))
+        tags = {tag for name, tags in other.tags.items() if name in self.tags for tag in tags} - set(
+            tag for tags in self.tags.values() for tag in tags
+        )
+        return replace(self, elsewhere=dict.fromkeys(keys | tags, key))
+
+    def faults(self, found: Sequence[Any]) -> tuple[list[Fault], set[str]]:
+        """Return the validator's findings as faults, no more than a problem lists, and the codes that they have."""
+        faults: list[Fault] = []
+        codes = set()
+        for entry in _of_the_member_meant(_lengths_once(found)):
+            steps, owner = self._steps(entry["loc"])
+            cause = entry.get("ctx", {}).get("error")
+            if isinstance(cause, InvalidParameter):
+                faults.append(Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy))
+                codes.add(code_of(cause))
+            else:
+                faults.append(self._fault(entry, steps, owner))
+                codes.add("invalid-parameter")
+            if len(faults) == MOST_FAULTS:
+                break
+        return _lists_once(faults), codes
+
+    def _steps(self, location: Sequence[Step]) -> tuple[tuple[Step, ...], str]:
+        """Return a location without the names of members of unions, and by what the object around its end is known."""
+        steps: list[Step] = []
+        owners = ["", ""]
+        tags = self.tags.get("", ())
+        for step in location:
+            if step in (OBJECT, ARRAY):
+                continue
+            if isinstance(step, str):
+                owners.append(step)
+                if step in tags:
+                    tags = ()
+                    continue
+                tags = self.tags.get(step, ())
+            steps.append(step)
+        return tuple(steps), owners[-2]
+
+    def _fault(self, entry: Any, steps: tuple[Step, ...], owner: str) -> Fault:
+        kind, context = entry["type"], entry.get("ctx", {})
+        if kind in _UNKNOWN:
+            return self._unknown(steps, owner)
+        if kind == "short":
+            return Fault(pointer_of(steps), f"must have {context['needs']} entries, not {context['has']}")
+        if kind == "too_long":
+            fixed = context.get("field_type") == "Tuple"
+            most = context["max_length"]
+            has = f", not {context['actual_length']}" if context.get("actual_length") else ""
+            return Fault(pointer_of(steps), f"must have {most if fixed else f'at most {most}'} entries{has}")
+        if kind == "too_short":
+            least = context["min_length"]
+            return Fault(pointer_of(steps), f"must have at least {least} entries" if least > 1 else "must not be empty")
+        rule = _RULES.get(kind)
+        # A rule of our own is worded where it is stated; other messages of the validator quote no input.
+        detail = rule.format_map(context) if rule else str(entry["msg"]).removeprefix("Value error, ")
+        named = steps[-1] if steps and isinstance(steps[-1], str) else ""
+        if kind == "union_tag_invalid":
+            tag, discriminator = str(context["tag"]), str(context["discriminator"]).strip("'")
+            near = _nearest(tag, self.tags.get(named, ()))
+            remedy = near and f"did you mean '{near}'?"
+            if tag in self.elsewhere:
+                remedy = f"'{tag}' does not go with {self.elsewhere[tag]}; leave {self.elsewhere[tag]} out for it"
+            return Fault(pointer_of((*steps, discriminator)), detail, remedy)
+        if kind == "union_tag_not_found":
+            return Fault(pointer_of(steps), detail, f"its values here: {', '.join(self.tags.get(named, ()))}")
+        if kind in _OBJECTS and named in self.tags:
+            # A client that gives a name alone meant the kind.
+            return Fault(pointer_of(steps), detail, f'write {{"kind": ...}}, one of {", ".join(self.tags[named])}')
+        if kind in _OBJECTS and named in self.names:
+            return Fault(pointer_of(steps), detail, f"its keys: {', '.join(self.names[named])}")
+        if kind == "tuple_type" and named in self.lengths:
+            detail = f"{detail} of {self.lengths[named]} entries"
+        return Fault(pointer_of(steps), detail, _REMEDIES.get(kind))
+
+    def _unknown(self, steps: tuple[Step, ...], owner: str) -> Fault:
+        key, names = str(steps[-1]), self.names.get(owner, ())
+        if len(key) > LONGEST_KEY_SHOWN:
+            return Fault(pointer_of(steps[:-1]), "has a key that is not known here", _known(names))
+        if len(steps) == 1 and key in self.elsewhere:
+            given = self.elsewhere[key]
+            return Fault(pointer_of(steps), f"does not go with {given}", f"leave out either {key} or {given}")
+        near = _nearest(key, names)
+        return Fault(pointer_of(steps), "is not known here", f"did you mean {near}?" if near else _known(names))
+
+
+def _known(names: Names) -> str | None:
+    return f"{_KNOWN}{', '.join(names)}" if names else None
+
+
+def _lists_once(faults: Sequence[Fault]) -> list[Fault]:
+    """Return the faults with every list of names told once: where many keys are unknown, it would leave no room."""
+    told: set[str | None] = set()
+    found = []
+    for fault in faults:
+        repeated = fault.remedy in told and str(fault.remedy).startswith(_KNOWN)
+        told.add(fault.remedy)
+        found.append(replace(fault, remedy=None) if repeated else fault)
+    return found
+
+
+def _nearest(given: str, names: Names) -> str | None:
+    """Return the name that a client probably meant, whatever its case and hyphens."""
+    plain = {re.sub("[^a-z0-9]", "", name): name for name in names}
+    written = re.sub("[^a-z0-9]", "", given[: 2 * LONGEST_KEY_SHOWN].lower())
+    found = get_close_matches(written, plain, 1, ALIKE)
+    return plain[found[0]] if found else None
+
+
+class _Walk:
+    """Gathers a layout, field by field."""
+
+    def __init__(self, schema: Any) -> None:
+        self.tags: dict[str, dict[str, None]] = {}
+        self.names: dict[str, dict[str, None]] = {}
+        self.lengths: dict[str, int] = {}
+        self._definitions: dict[str, Any] = {}
+        self._followed: set[tuple[str, str]] = set()
+        self._gather(schema)
+        self._walk(schema, "", "")
+
+    def _gather(self, node: Any) -> None:
+        if isinstance(node, Mapping):
+            if "ref" in node:
+                self._definitions[node["ref"]] = node
+            for value in node.values():
+                self._gather(value)
+        elif isinstance(node, (list, tuple)):
+            for value in node:
+                self._gather(value)
+
+    def _walk(self, node: Any, name: str, owner: str) -> None:
+        """Look at what a field holds that may have tags, as whose member, or an object that is known as `owner`."""
+        if isinstance(node, (list, tuple)):
+            for value in node:
+                self._walk(value, name, owner)
+        if not isinstance(node, Mapping):
+            return
+        kind = node.get("type")
+        if kind == "definition-ref":
+            reference = node["schema_ref"]
+            if (reference, owner) not in self._followed and reference in self._definitions:
+                self._followed.add((reference, owner))
+                self._walk(self._definitions[reference], name, owner)
+        elif kind == "tagged-union":
+            self.tags.setdefault(name, {}).update(dict.fromkeys(node["choices"]))
+            for tag, member in node["choices"].items():
+                self._walk(member, "", tag)
+        elif kind == "model-fields":
+            for key, value in node["fields"].items():
+                self._field(key, value, owner)
+        elif kind == "dataclass-field":
+            self._field(node["name"], node["schema"], owner)
+        else:
+            if kind == "tuple" and name and "variadic_item_index" not in node:
+                self.lengths[name] = len(node["items_schema"])
+                name = ""
+            for key, value in node.items():
+                if key not in ("definitions", "metadata"):
+                    self._walk(value, name, owner)
+
+    def _field(self, name: str, schema: Any, owner: str) -> None:
+        self.names.setdefault(owner, {})[name] = None
+        self._walk(schema, name, name)
+
+
+def _lengths_once(found: Sequence[Any]) -> Iterator[Any]:
+    """Yield the faults, those of the missing entries of one array as a single one that tells its length."""
+    length: dict[tuple[Step, ...], tuple[int, int]] = {}
+    for entry in found:
+        if _missing_entry(entry):
+            parent, at = entry["loc"][:-1], entry["loc"][-1]
+            least, most = length.get(parent, (at, at))
+            length[parent] = min(least, at), max(most, at)
+    for entry in found:
+        if not _missing_entry(entry):
+            yield entry
+        elif entry["loc"][:-1] in length:
+            has, last = length.pop(entry["loc"][:-1])
+            yield {"type": "short", "loc": entry["loc"][:-1], "ctx": {"has": has, "needs": last + 1}}
+
+
+def _missing_entry(entry: Any) -> bool:
+    return entry["type"] == "missing" and bool(entry["loc"]) and isinstance(entry["loc"][-1], int)
+
+
+def _of_the_member_meant(found: Iterator[Any]) -> Iterator[Any]:
+    """Yield the faults without those of the member of an object-or-array union that the client did not mean.
+
+    That member has a single fault, its type, and stands first or second; if both members have it, neither was meant.
+    """
+    entries = list(found)
+    other = {OBJECT: ARRAY, ARRAY: OBJECT}
+    wrong = {
+        entry["loc"] for entry in entries if entry["type"] in _TYPES and entry["loc"] and entry["loc"][-1] in other
+    }
+    for entry in entries:
+        location = entry["loc"]
+        if location not in wrong:
+            yield entry
+        elif (*location[:-1], other[location[-1]]) in wrong and location[-1] == OBJECT:
+            yield {"type": "neither", "loc": location[:-1]}

@@ -1,0 +1,1 @@
+"""From the fields of an answer to JSON, npz or SVG."""

@@ -1,0 +1,183 @@
+"""Questions about many free rotations of one body."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from core.bodies import Body
+from core.errors import InvalidParameter
+from core.notices import Notice
+from core.quantities import AngularVelocity, Energy, Tolerance
+from core.rotation.ensemble import ensemble
+from core.rotation.surfaces.initial_states import initial_states
+from core.rotation.torque_free import pinned_notices
+from core.systems.budget import Budget
+from core.systems.methods import Method
+from service.execution.cost_model import Priced, effort, extreme, numbers, speed_of
+from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
+from service.routes.bodies import counts, moments_to_foresee, properties_of, speed_to_follow
+from service.routes.rotation.surfaces import SOURCE_BODY, Count, Seed
+from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView, in_range
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
+
+OUTLINED = 16
+"""Members of an ensemble by which all of it is planned."""
+
+
+class Sample(Request):
+    """Starts of one energy, drawn uniformly over the scaled sphere."""
+
+    energy: Energy
+    count: Count
+    seed: Seed = 0
+
+
+class EnsembleRequest(Request):
+    """A body, its starts, and the times at which every motion is wanted."""
+
+    body: Body
+    angular_velocities: Annotated[list[AngularVelocity], Field(min_length=1)] | None = Field(
+        default=None, description="Starts at t = 0, in body axes (rad/s); these or a sample."
+    )
+    sample: Sample | None = None
+    times: Times
+    accuracy: Tolerance = 1e-9
+    method: Method | None = None
+    round: Digits | None = DIGITS
+
+
+class MemberView(View):
+    """One motion."""
+
+    model: ModelView
+    method: str
+    period: float | None
+    accuracy: AccuracyView
+    work: WorkView
+    ended: str
+
+
+class EnsembleAnswer(Envelope):
+    """Samples of every motion."""
+
+    error: float = Field(description="Largest stated error of any member.")
+    seed: int | None = Field(description="Of the sample, null if the starts were given.")
+    members: list[MemberView]
+    time: list[float]
+    angular_velocity: list[list[Vector]] = Field(description="(member, time, component), in body axes (rad/s).")
+
+
+def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
+    """Answer with the samples of every motion."""
+    body = properties_of(question.body)
+    times = sample_times(question.times, budget)
+    many = ensemble(
+        body, _starts(question, body), times, accuracy=question.accuracy, method=question.method, budget=budget
+    )
+    samples, added = many.angular_velocity, [0.0] * len(many.members)
+    by_rounding = []
+    outside: list[Notice] = []
+    if question.round is not None:
+        for k, member in enumerate(many.members):
+            stated = member.accuracy
+            samples[k], added[k] = rounded(samples[k], question.round, stated.error + (stated.inherited or 0.0))
+            by_rounding += [(k, notice) for notice in notices_of(stated, added[k])]
+    members = [
+        {
+            "model": member.model,
+            "method": member.method,
+            "period": in_range("period", member.period, outside),
+            "accuracy": covering(member.accuracy, more),
+            "work": member.work,
+            "ended": member.ended,
+        }
+        for member, more in zip(many.members, added, strict=True)
+    ]
+    return {
+        "error": max(member.accuracy.error + more for member, more in zip(many.members, added, strict=True)),
+        "seed": None if question.sample is None else question.sample.seed,
+        "members": members,
+        "time": many.time,
+        "angular_velocity": samples,
+        "warnings": (
+            *(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+            *many.warnings,
+            *((many.merged(by_rounding),) if by_rounding else ()),
+            *outside[:1],
+        ),
+    }
+
+
+def _starts(question: EnsembleRequest, body: Any) -> Any:
+    if (question.angular_velocities is None) == (question.sample is None):
+        raise InvalidParameter(
+            "angular_velocities",
+            "be given, or sample, and not both",
+            remedy="give one of angular_velocities and sample",
+        )
+    if question.sample is not None:
+        return initial_states(body, question.sample.energy, question.sample.count, question.sample.seed)
+    return np.array(question.angular_velocities)
+
+
+def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of an ensemble; of a sample's starts it is known how fast they are on average."""
+    starts = question.angular_velocities or []
+    members = question.sample.count if question.sample is not None else len(starts)
+    samples = sample_count(question.times, budget)
+    moments = moments_to_foresee((question.method,), question.body)
+    speed = max((speed_of(start) for start in starts), default=1.0)
+    if question.sample is not None and moments and moments[0] > 0.0:
+        # The root of the mean square over the directions of the sample.
+        speed = speed_of([sqrt(question.sample.energy / 1.5) / sqrt(moment) for moment in moments])
+    speed = speed_to_follow((question.method,), question.body, speed)
+    return {
+        **counts(question, budget),
+        "members": members,
+        "samples": samples * members,
+        "times": samples,
+        **effort(question.method, question.times, speed, samples, members),
+        **numbers(3 * samples * members, question.round),
+    }
+
+
+def ensemble_outline(question: EnsembleRequest) -> EnsembleRequest:
+    """Return the question about a few members at the farthest time alone, in closed form."""
+    changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
+    if question.method is not None and question.method.kind != "closed-form":
+        changes["accuracy"] = 0.5
+    if question.angular_velocities is not None:
+        changes["angular_velocities"] = question.angular_velocities[:OUTLINED]
+    if question.sample is not None:
+        changes["sample"] = question.sample.model_copy(update={"count": min(OUTLINED, question.sample.count)})
+    return question.model_copy(update=changes)
+
+
+ENSEMBLE = (
+    Question(
+        "/v1/rotation/ensemble",
+        "rotation_ensemble",
+        "Many free rotations of one body, from given starts or a sample of one energy",
+        "rotation",
+        EnsembleRequest,
+        EnsembleAnswer,
+        answer_ensemble,
+        Priced("rotation_ensemble", ensemble_counts),
+        ensemble_outline,
+        examples={
+            "sample": Example(
+                "three of the source's random starts",
+                {
+                    "body": SOURCE_BODY,
+                    "sample": {"energy": 1.0, "count": 3, "seed": 0},
+                    "times": {"start": 0.0, "stop": 20.0, "count": 11},
+                },
+            ),
+        },
+    ),
+)

@@ -1,0 +1,181 @@
+"""Questions about rates and angles of a free rotation; none of them integrates unless a measurement is asked for."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from core.bodies import Body
+from core.bodies.principal_inertia import Symmetry
+from core.quantities import AngularRate, AngularVelocity
+from core.rotation.precession.measurement import Measure, MeasuredPeriod, measure_period
+from core.rotation.precession.precession import Precession, Regime, precession
+from core.rotation.stability.stability import Flip, stability
+from core.rotation.torque_free import TorqueFree
+from core.systems.budget import Budget
+from service.execution.cost_model import Priced, effort, speed_of
+from service.routes.bodies import counts, properties_of, speed_to_follow
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Request, Span, Vector, View
+
+
+class PrecessionRequest(Request):
+    """A body and how it turns at t = 0."""
+
+    body: Body
+    angular_velocity: AngularVelocity = ANGULAR_VELOCITY
+    measure: Measure | None = Field(
+        default=None, description="Measure the period by an integrator, as the first return within a tolerance."
+    )
+
+
+class PrecessionAnswer(Envelope):
+    """Rates and angles; null where the motion has no such thing."""
+
+    symmetry: Symmetry
+    regime: Regime = Field(description="Of the angular velocity in the body.")
+    axis: Vector | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
+    body_rate: float | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
+    space_rate: float | None = Field(description="L/I (rad/s).")
+    period: float | None = Field(description="Of the angular velocity in the body (s).")
+    flip_interval: float | None = Field(description="Between sign changes along the middle axis (s).")
+    axis_to_angular_momentum: float | None = Field(description="rad")
+    axis_to_angular_velocity: float | None = Field(description="Half-angle of the body cone (rad).")
+    angular_momentum_to_angular_velocity: float | None = Field(description="Half-angle of the space cone (rad).")
+    order_of_directions: str | None = Field(description="Which of the three directions lies between the others.")
+    precession_per_period: float | None = Field(description="Not reduced modulo 2 pi (rad).")
+    mean_precession_rate: float | None = Field(description="Of the axis about the angular momentum (rad/s).")
+    absent: dict[str, str] = Field(description="Why a figure is null.")
+    measured: MeasuredPeriod | None = None
+
+
+RATE: Any = Field(default=1.0, description="About each principal axis in turn (rad/s).")
+DISTURBANCE: Any = Field(
+    default=None,
+    description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
+    "the interval of its flips is then answered (rad/s).",
+)
+
+
+class StabilityRequest(Request):
+    """A body, and how fast it turns about its principal axes."""
+
+    body: Body
+    rate: AngularRate = RATE
+    disturbance: tuple[AngularRate, AngularRate] | None = DISTURBANCE
+
+
+class EquilibriumView(View):
+    """A constant angular velocity, and what becomes of one near it."""
+
+    axis: Vector | None = Field(description="In body axes; null for the state of rest.")
+    moment: float | None
+    eigenvalues: list[tuple[float, float]] | None = Field(description="Real and imaginary parts (1/s).")
+    kind: Literal["center", "saddle", "degenerate"]
+    stable: bool = Field(description="In the sense of Lyapunov, of the angular velocity.")
+    growth_rate: float | None = Field(description="Exponential rate of a small disturbance (1/s).")
+    drift_rate: float | None = Field(description="Linear rate per unit of disturbance (1/s).")
+    linearly_stable: bool
+    attitude: Literal["orbital", "unstable"] = Field(description="In which sense the attitude is stable.")
+    survives_dissipation: bool
+    reason: str
+
+
+class StabilityAnswer(Envelope):
+    """Every equilibrium of a free body at one rate."""
+
+    symmetry: Symmetry
+    rate: float
+    equilibria: list[EquilibriumView]
+    flip: Flip | None
+
+
+def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
+    """Answer with the figures and, if asked for, the measurement."""
+    body = properties_of(question.body)
+    found: Precession = precession(body, question.angular_velocity)
+    answer = found._asdict()
+    if question.measure is not None:
+        start = np.array(question.angular_velocity)
+        answer["measured"] = measure_period(TorqueFree(body, start), question.measure, budget)
+    return answer
+
+
+def answer_stability(question: StabilityRequest, budget: Budget) -> Answer:
+    """Answer with every equilibrium."""
+    found = stability(properties_of(question.body), question.rate, question.disturbance)
+    return found._asdict() | {"equilibria": [equilibrium._asdict() for equilibrium in found.equilibria]}
+
+
+def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a question about rates."""
+    measure, found = question.measure, counts(question, budget)
+    if measure is None:
+        return found
+    times = Span(start=0.0, stop=measure.duration, count=measure.samples)
+    speed = speed_to_follow((measure.method,), question.body, speed_of(question.angular_velocity))
+    return found | effort(measure.method, times, speed, measure.samples)
+
+
+def precession_outline(question: PrecessionRequest) -> PrecessionRequest:
+    """Return the question without its measurement."""
+    return question.model_copy(update={"measure": None})
+
+
+PRECESSION = (
+    Question(
+        "/v1/rotation/precession",
+        "precession",
+        "Rates, period, flip interval and cones of a free rotation",
+        "rotation",
+        PrecessionRequest,
+        PrecessionAnswer,
+        answer_precession,
+        Priced("precession", precession_counts),
+        precession_outline,
+        examples={
+            "coin": Example(
+                "a spinning coin",
+                {
+                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
+                    "angular_velocity": [1.0, 1.0, 1.0],
+                },
+            ),
+            "t-handle": Example("a T-handle", {"body": T_HANDLE, "angular_velocity": [1.0, 10.0, 1.0]}),
+            "source": Example(
+                "the source's experiment: forward Euler and the first return within 0.035",
+                {
+                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
+                    "angular_velocity": [1.0, 1.0, 1.0],
+                    "measure": {
+                        "method": {"kind": "explicit-euler", "step": 0.0075037518759379685},
+                        "duration": 15.0,
+                        "samples": 2000,
+                        "tolerance": 0.035,
+                    },
+                },
+            ),
+        },
+    ),
+    Question(
+        "/v1/rotation/stability",
+        "stability",
+        "Every equilibrium of a free body: eigenvalues, kind, stability and the reason",
+        "rotation",
+        StabilityRequest,
+        StabilityAnswer,
+        answer_stability,
+        Priced("stability", counts),
+        examples={
+            "t-handle": Example(
+                "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}
+            ),
+            "coin": Example(
+                "two equal moments", {"body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]}, "rate": 1.0}
+            ),
+        },
+    ),
+)

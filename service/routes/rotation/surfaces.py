@@ -1,0 +1,264 @@
+"""Questions about the energy ellipsoid, the polhodes on it and starts drawn from it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from core.bodies import Body
+from core.bodies.mass_properties import MassProperties
+from core.errors import BudgetExceeded, InvalidParameter
+from core.quantities import AngularVelocity, Energy
+from core.rotation.surfaces.energy_surface import EnergyEllipsoid
+from core.rotation.surfaces.initial_states import initial_states
+from core.rotation.surfaces.polhodes import Polhode, polhode, separatrix
+from core.rotation.torque_free import pinned_notices
+from core.systems.budget import Budget
+from service.execution.cost_model import Priced
+from service.responses.ellipsoid_svg import ellipsoid_figure
+from service.responses.svg import SVG
+from service.routes.bodies import counts, properties_of
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Matrix, Request, Vector, View, fields_of
+
+Count = Annotated[int, Field(ge=1, le=10**9)]
+FINEST_PRICED = 1000
+Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
+
+
+class Drawn(Request):
+    """How many random starts to draw, uniformly over the scaled sphere, and the seed of the draw."""
+
+    count: Count
+    seed: Seed = 0
+
+
+class EllipsoidRequest(Request):
+    """A body and the energy of its rotation, or a state that has it."""
+
+    body: Body
+    energy: Energy | None = Field(default=None, description="Kinetic energy (J); this or angular_velocity.")
+    angular_velocity: AngularVelocity | None = Field(
+        default=None, description="A state of that energy (rad/s); its polhode is drawn unless polhodes is given."
+    )
+    resolution: Count = Field(default=16, description="Parts of an icosahedron's edge, or points from pole to pole.")
+    layout: Literal["triangles", "grid"] = "triangles"
+    polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through random starts.")
+    separatrix: bool = Field(default=False, description="Draw the separatrix.")
+    points: Count = Field(
+        default=256, description="Points of each curve; a multiple of 4 has the extreme points among them."
+    )
+
+
+class QualityView(View):
+    """How well the triangles stand for the ellipsoid."""
+
+    watertight: bool
+    euler_characteristic: int
+    volume_ratio: float = Field(description="Volume inside the triangles over that of the ellipsoid.")
+    smallest_angle: float = Field(description="Of any triangle (rad).")
+    longest_edge: float = Field(description="Of any triangle (rad/s).")
+
+
+class MeshView(View):
+    """Triangles, counter-clockwise seen from outside."""
+
+    vertices: list[Vector]
+    faces: list[Annotated[list[int], Field(min_length=3, max_length=3)]]
+    quality: QualityView
+
+
+class GridView(View):
+    """Coordinates over longitude (down) and colatitude (along), both ends included."""
+
+    x: list[list[float]]
+    y: list[list[float]]
+    z: list[list[float]]
+
+
+class PolhodeView(View):
+    """One curve; the last point is the first if it is closed."""
+
+    regime: str
+    closed: bool
+    angular_momentum: float | None = Field(description="Magnitude, the same at every point (kg m^2/s).")
+    points: list[Vector]
+
+
+class EllipsoidAnswer(Envelope):
+    """The surface w.I.w = 2E in body axes (rad/s)."""
+
+    energy: float
+    semi_axes: Vector = Field(description="sqrt(2E/I) along each of `axes` (rad/s).")
+    axes: Matrix = Field(description="Columns: the body axes if principal, else the principal axes.")
+    mesh: MeshView | None = None
+    grid: GridView | None = None
+    polhodes: list[PolhodeView] | None = None
+    separatrix: list[PolhodeView] | None = Field(default=None, description="Empty if two moments are equal.")
+
+
+class StatesRequest(Request):
+    """A body, an energy, and how many starts to draw."""
+
+    body: Body
+    energy: Energy
+    count: Count
+    seed: Seed = 0
+
+
+class StatesAnswer(Envelope):
+    """Angular velocities of one energy, in body axes."""
+
+    angular_velocities: list[Vector]
+    energy: float
+    seed: int
+
+
+def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
+    """Answer with the surface and what is asked for on it."""
+    body = properties_of(question.body)
+    surface = _surface(question, body)
+    answer: Answer = {
+        "energy": surface.energy,
+        "semi_axes": surface.semi_axes,
+        "axes": surface.axes,
+        "warnings": tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+    }
+    if question.layout == "triangles":
+        mesh = surface.triangles(question.resolution)
+        answer["mesh"] = {"vertices": mesh.vertices, "faces": mesh.faces, "quality": mesh.quality}
+    else:
+        x, y, z = surface.grid(question.resolution)
+        answer["grid"] = {"x": x, "y": y, "z": z}
+    if question.polhodes is not None:
+        starts = initial_states(body, surface.energy, question.polhodes.count, question.polhodes.seed)
+        answer["polhodes"] = [_curve(polhode(body, start, question.points)) for start in starts]
+    elif question.angular_velocity is not None:
+        answer["polhodes"] = [_curve(polhode(body, np.array(question.angular_velocity), question.points))]
+    if question.separatrix:
+        answer["separatrix"] = [_curve(curve) for curve in separatrix(body, surface.energy, question.points)]
+    return answer
+
+
+def require_one(question: Any) -> None:
+    """Raise `InvalidParameter` unless a question gives one of energy and angular velocity."""
+    if (question.energy is None) == (question.angular_velocity is None):
+        raise InvalidParameter(
+            "energy", "be given, or angular_velocity, and not both", remedy="give one of energy and angular_velocity"
+        )
+
+
+def _surface(question: EllipsoidRequest, body: MassProperties) -> EnergyEllipsoid:
+    require_one(question)
+    if question.energy is not None:
+        return EnergyEllipsoid.of(body, question.energy)
+    return EnergyEllipsoid.through(body, np.array(question.angular_velocity))
+
+
+def _curve(curve: Polhode) -> dict[str, Any]:
+    return fields_of(curve)
+
+
+def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a surface, or refuse more points than one answer may have."""
+    drawn = question.polhodes.count if question.polhodes is not None else 0
+    curves = (drawn or (question.angular_velocity is not None)) + 2 * question.separatrix
+    points = curves * question.points
+    if points > budget.samples:
+        path = ("polhodes", "count") if question.polhodes is not None else ("points",)
+        remedy = "ask for fewer curves, or for fewer points on each"
+        raise BudgetExceeded("points", points, budget.samples, path=path, remedy=remedy)
+    # Finer surfaces are refused, at no cost.
+    squares = min(question.resolution, FINEST_PRICED) ** 2
+    return {
+        **counts(question, budget),
+        "curves": curves,
+        "curve points": points,
+        f"squares of {question.layout}": squares,
+    }
+
+
+def ellipsoid_outline(question: EllipsoidRequest) -> EllipsoidRequest:
+    """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
+    changes: dict[str, Any] = {"points": min(question.points, 16)}
+    if question.resolution <= FINEST_PRICED:
+        changes["resolution"] = min(question.resolution, 4)
+    if question.polhodes is not None:
+        few = min(question.polhodes.count, 4)
+        changes["polhodes"] = question.polhodes.model_copy(update={"count": few})
+    return question.model_copy(update=changes)
+
+
+def states(question: StatesRequest, budget: Budget) -> Answer:
+    """Answer with starts of one energy."""
+    body = properties_of(question.body)
+    return {
+        "angular_velocities": initial_states(body, question.energy, question.count, question.seed),
+        "energy": question.energy,
+        "seed": question.seed,
+        "warnings": tuple(notice.inside("body") for notice in body.warnings),
+    }
+
+
+def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of starts to be drawn."""
+    return counts(question, budget) | {"numbers": 3 * question.count}
+
+
+SOURCE_BODY = {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}
+
+SURFACES = (
+    Question(
+        "/v1/rotation/energy-ellipsoid",
+        "energy_ellipsoid",
+        "The energy ellipsoid as a mesh or a grid, with polhodes and separatrix",
+        "rotation",
+        EllipsoidRequest,
+        EllipsoidAnswer,
+        energy_ellipsoid,
+        Priced("energy_ellipsoid", ellipsoid_counts),
+        ellipsoid_outline,
+        description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
+        representations={SVG: ellipsoid_figure},
+        examples={
+            "triangles": Example(
+                "a coarse mesh with five polhodes and the separatrix",
+                {
+                    "body": SOURCE_BODY,
+                    "energy": 1.0,
+                    "resolution": 2,
+                    "polhodes": {"count": 5, "seed": 1},
+                    "separatrix": True,
+                    "points": 16,
+                },
+            ),
+            "grid": Example(
+                "the source's grid and the polhode through a state",
+                {
+                    "body": SOURCE_BODY,
+                    "angular_velocity": [0.4, 1.0, 0.7],
+                    "resolution": 6,
+                    "layout": "grid",
+                    "points": 16,
+                },
+            ),
+        },
+    ),
+    Question(
+        "/v1/rotation/initial-states",
+        "initial_states",
+        "Starts of one energy, drawn uniformly over the scaled sphere",
+        "rotation",
+        StatesRequest,
+        StatesAnswer,
+        states,
+        Priced("initial_states", states_counts),
+        examples={
+            "thirty": Example(
+                "the source's thirty starts", {"body": SOURCE_BODY, "energy": 1.0, "count": 30, "seed": 0}
+            )
+        },
+    ),
+)

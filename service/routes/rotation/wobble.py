@@ -1,0 +1,68 @@
+"""Questions about the free wobble of a planet."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from core.errors import InvalidParameter
+from core.quantities import Quantity
+from core.rotation.wobble import Day, EarthFigures, from_ellipticity, from_period
+from core.systems.budget import Budget
+from service.execution.cost_model import Priced, one
+from service.routing import Answer, Example, Question
+from service.schemas import Envelope, Request
+
+
+class WobbleRequest(Request):
+    """A period, or the shape of the body."""
+
+    period: Annotated[float, Quantity("d", above=0)] | None = Field(
+        default=None, description="In days of the kind `day`."
+    )
+    day: Day = Field(default="sidereal", description="A sidereal day is one rotation.")
+    ellipticity: Annotated[float, Quantity("1", above=1)] | None = Field(
+        default=None, description="Major over minor axis, a/c; this or the period."
+    )
+
+
+class WobbleAnswer(Envelope):
+    """A wobble and the body that has it."""
+
+    period: float
+    day: Day
+    rotations: float = Field(description="The period in rotations of the body, 1/asymmetry.")
+    asymmetry: float = Field(description="(I1 - I)/I")
+    ellipticity: float = Field(description="a/c for a scaled spherically symmetric density.")
+    flattening: float = Field(description="(a - c)/a")
+    earth: EarthFigures = Field(description="The Earth's measured figures, and why they differ from a rigid body's.")
+
+
+def wobble(question: WobbleRequest, budget: Budget) -> Answer:
+    """Answer with the wobble."""
+    if question.period is not None and question.ellipticity is None:
+        found = from_period(question.period, question.day)
+    elif question.ellipticity is not None and question.period is None:
+        found = from_ellipticity(question.ellipticity, question.day)
+    else:
+        raise InvalidParameter("period", "be given, or ellipticity, and not both", remedy="give one of the two")
+    return {name: getattr(found, name) for name in found.__dataclass_fields__}
+
+
+WOBBLE = (
+    Question(
+        "/v1/rotation/wobble",
+        "wobble",
+        "The free wobble of a planet: asymmetry, ellipticity and period",
+        "rotation",
+        WobbleRequest,
+        WobbleAnswer,
+        wobble,
+        Priced("wobble", one),
+        examples={
+            "chandler": Example("the source's 430 days", {"period": 430.0, "day": "sidereal"}),
+            "shape": Example("back from the shape", {"ellipticity": 1.00336409, "day": "solar"}),
+        },
+    ),
+)

@@ -1,1 +1,0 @@
-"""Tests of the methods, on the small systems of `tests.core.integration.systems`."""

@@ -1,0 +1,168 @@
+"""Inherited errors against moved problems, solved to 50 digits with signs of the inputs that add up most."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+
+from core.bodies.mass_properties import diagonal
+from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
+from core.rotation.attitude.free_attitude import FreeAttitude
+from core.rotation.free_rotation import FreeRotation
+from core.rotation.torque_free import TorqueFree
+from core.systems.system import Floats
+from tests.oracles.cases import T_HANDLE
+from tests.oracles.perturbed import ATTITUDE, Perturbed
+from tests.oracles.uncertain_bodies import KINDS, REGIMES, Uncertain, of_moments, of_points, uncertain
+
+WHOLE = 2.0
+UNCERTAINTIES = (2.0**-53, 1e-9, 1e-4)
+
+
+def compared(case: Uncertain, times: list[float], seed: int = 0) -> list[tuple[float, float, float, float]]:
+    """Return stated and observed, of angular velocity and attitude, for every uncertainty."""
+    exact = TorqueFree(case.body(case.numbers).mass_properties(), np.array(case.start)).closed_form()
+    free = FreeAttitude(exact, np.array([float(x) for x in ATTITUDE]))
+    horizon, oracle = np.array([max(times)]), Perturbed(case, times)
+    tries = oracle.worst_signs()
+    tries.append(np.random.default_rng(seed).choice([-1, 1], len(oracle.inputs)).tolist())
+    found = []
+    for uncertainty in UNCERTAINTIES:
+        moved = [oracle.moved(Fraction(uncertainty), signs) for signs in tries]
+        rate = max(float(np.linalg.norm(change / exact.largest_rate, axis=1).max()) for change, _ in moved)
+        turn = max(float(np.linalg.norm(angle, axis=1).max()) for _, angle in moved)
+        found.append((exact.inherited(horizon, uncertainty), rate, free.inherited(horizon, uncertainty), turn))
+    return found
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_never_below_what_moved_inputs_do_and_not_far_above(kind: str) -> None:
+    ratios: list[float] = []
+    for n, regime in enumerate((*REGIMES, "ordinary", "magnitudes")):
+        case = uncertain(700_000 + 10 * n, kind, regime)
+        times = [case.horizon * share for share in (0.3, 0.6, 0.8, 0.9, 1.0)]
+        for stated, rate, turned, turn in compared(case, times, seed=n):
+            assert rate <= stated
+            assert turn <= turned
+            if stated < WHOLE and regime != "near separatrix":
+                ratios.append(stated / rate)
+    assert np.median(ratios) <= 5.0
+
+
+def given(moments: tuple[float, ...], start: tuple[float, float, float]) -> Uncertain:
+    return Uncertain("principal moments", "", moments, lambda x: PrincipalMoments(tuple(x)), of_moments, start, 1.0)
+
+
+SQUARE = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, -1.0, 1.0, 0.0, -1.0, -1.0, 0.0, 1.0, -1.0, 0.0)
+
+
+def square(start: tuple[float, float, float]) -> Uncertain:
+    return Uncertain(
+        "point masses", "", SQUARE, lambda x: PointMasses(list(x[:4]), np.array(x[4:]).reshape(-1, 3)), of_points,
+        start, 1.0,
+    )  # fmt: skip
+
+
+SPECIAL = [
+    given((1.0, 2.0, 2.5), (0.0, 0.0, 1.5)),
+    given((1.0, 2.0, 2.5), (1.5, 0.0, 0.0)),
+    given((1.0, 2.0, 2.5), (0.0, 1.5, 0.0)),
+    given((2.0, 2.0, 3.0), (0.6, -0.8, 0.0)),
+    given((2.0, 2.0, 3.0), (0.0, 0.0, 0.7)),
+    given((2.0, 2.0, 3.0), (0.6, -0.8, 0.3)),
+    given((2.0, 2.0, 3.0), (0.6, -0.8, 1e-5)),
+    given((2.0, 2.0, 2.0), (0.6, -0.8, 0.3)),
+    given((14.0, 21.0, 24.0), (6.0, 1.0, 7.0)),
+    given((14.0, 21.0, 24.0), (1e-9, 1.0, 1e-9)),
+    given(tuple(T_HANDLE), (1.0, 10.0, 1.0)),
+    square((0.5, -0.4, 0.0)),
+    square((0.0, 0.0, 0.7)),
+    square((0.5, -0.4, 0.3)),
+    square((0.5, 0.0, 0.0)),
+]
+
+
+@pytest.mark.parametrize("case", SPECIAL, ids=lambda case: f"{case.numbers[:3]}-{case.start}")
+def test_steady_symmetric_and_separating_motions_are_covered(case: Uncertain) -> None:
+    for last in (0.01, 1.0, 30.0):
+        for stated, rate, turned, turn in compared(case, [last * share for share in (0.25, 0.5, 0.75, 1.0)]):
+            assert rate <= stated
+            assert turn <= turned
+
+
+@pytest.mark.parametrize(
+    "case", [case for case in SPECIAL if case.kind == "principal moments"][:3], ids=lambda c: c.start
+)
+def test_a_steady_spin_along_an_axis_of_the_body_keeps_its_share(case: Uncertain) -> None:
+    exact = TorqueFree(case.body(case.numbers).mass_properties(), np.array(case.start)).closed_form()
+    assert exact.inherited(np.array([1e9]), 1e-6) == pytest.approx(1e-6, rel=1e-5)
+
+
+def test_the_angle_of_a_steady_spin_is_lost_when_it_is_a_radian_off() -> None:
+    rotation = TorqueFree(diagonal((1.0, 2.0, 2.5)), np.array([0.0, 0.0, 1.5])).closed_form()
+    free = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0]))
+    assert rotation.horizon_of(1e-6) is None
+    lost = free.horizon_of(1e-6)
+    assert lost is not None
+    # The angle is off by 1e-6 of 1.5 t, and no longer told by first derivatives beyond a tenth of a radian.
+    assert lost == pytest.approx(0.1 / 1.5e-6, rel=1e-3)
+
+
+def test_a_body_at_rest_inherits_the_attitude_alone() -> None:
+    rotation = TorqueFree(diagonal((1.0, 2.0, 2.5)), np.zeros(3)).closed_form()
+    free = FreeAttitude(rotation, np.array([1.0, 1.0, 0.0, 0.0]))
+    assert rotation.inherited(np.array([5.0]), 1e-3) == 0.0
+    assert free.inherited(np.array([5.0]), 1e-3) == 2e-3
+    assert free.horizon_of(1e-3) is None
+
+
+def test_exact_inputs_pass_nothing_on() -> None:
+    rotation = TorqueFree(diagonal(T_HANDLE), np.array([1.0, 10.0, 1.0])).closed_form()
+    assert rotation.inherited(np.array([5.0]), 0.0) == 0.0
+    assert FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0])).inherited(np.array([5.0]), 0.0) == 0.0
+
+
+def test_a_line_of_matter_askew_may_turn_about_itself_and_one_along_an_axis_does_not() -> None:
+    def line(direction: Floats) -> FreeRotation:
+        points = np.outer([-1.0, 1.0], direction)
+        across = np.cross(direction, [0.3, -0.2, 0.9])
+        return TorqueFree(PointMasses(1.0, points).mass_properties(), across).closed_form()
+
+    times = np.array([1.0])
+    assert line(np.array([1.0, 0.0, 0.0])).inherited(times, 1e-9) < 1e-8
+    with pytest.raises(Exception, match="three moments"):
+        line(np.array([1.0, 0.7, 0.2]))
+    askew = InertiaTensor(((0.5, -0.5, 0.0), (-0.5, 0.5, 0.0), (0.0, 0.0, 1.0))).mass_properties()
+    assert TorqueFree(askew, np.array([0.0, 0.0, 1.0])).closed_form().inherited(times, 1e-9) == WHOLE
+
+
+def test_it_grows_with_time_and_uncertainty() -> None:
+    motions = [uncertain(5, kind, regime) for kind, regime in product(KINDS, ("ordinary", "near separatrix"))]
+    for case in motions:
+        exact = TorqueFree(case.body(case.numbers).mass_properties(), np.array(case.start)).closed_form()
+        times = np.geomspace(1e-3, 1e6, 60) * case.horizon
+        for stated in (
+            [exact.inherited(np.array([t]), 1e-9) for t in times],
+            [exact.inherited(times[20:21], u) for u in np.geomspace(1e-16, 0.5, 40)],
+        ):
+            assert np.all(np.diff(stated) >= 0.0)
+
+
+@pytest.mark.parametrize(
+    "moments", [(1.0, 1.0, 2.0), (1e-150, 1.0, 2.0), (1.0, 2.0, 3.0), (1e-12, 1.0, 1.0 + 2.0**-52)]
+)
+@pytest.mark.parametrize(
+    "start", [(1.0, 1.0, 5e-324), (1e150, 1e-300, 0.3), (1e-310, 1e-310, 0.0), (1e-200, 1.0, 1e-12)]
+)
+def test_at_the_ends_of_the_double_range_it_is_a_number(
+    moments: tuple[float, float, float], start: tuple[float, float, float]
+) -> None:
+    rotation = TorqueFree(diagonal(moments), np.array(start)).closed_form()
+    free = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0]))
+    times = np.array([1e-300]) / max(1.0, rotation.largest_rate)
+    for uncertainty in (2.0**-53, 0.9):
+        assert 0.0 < rotation.inherited(times, uncertainty) <= WHOLE
+        assert 0.0 < free.inherited(times, uncertainty) <= np.pi

@@ -1,0 +1,167 @@
+"""Statements of error: what they measure, and that they are never smaller than the truth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.errors import BudgetExceeded, MechanicsError, NotApplicable
+from core.systems.budget import Budget
+from core.systems.error_statements import Errors, drifts, estimated, measured
+from core.systems.methods import (
+    ClosedFormEvaluation,
+    DormandPrince853,
+    ExplicitEuler,
+    ImplicitMidpoint,
+    Lsoda,
+    Radau,
+    RungeKutta4,
+    SymmetricSplitting,
+)
+from core.systems.solve import UNCONVERGED
+from tests.core.systems.systems import (
+    elliptic_functions,
+    kepler,
+    oscillator,
+    prey_and_predator,
+    rigid_body,
+    rigid_body_with_solution,
+)
+
+TIMES = np.array([0.0, 1.0, 2.0])
+
+
+@pytest.mark.parametrize("unit", [1.0, 2.0**-1000, 2.0**1000])
+def test_errors_are_relative_to_the_largest_norm_whatever_the_unit(unit: float) -> None:
+    reference = np.array([[3.0, 4.0], [0.0, 1.0], [0.5, 0.0]]) * unit
+    states = reference + np.array([[0.0, 0.0], [0.3, 0.4], [0.0, 0.1]]) * unit
+    errors = measured(states, reference, np.array([0.0, 1.0, -2.0]))
+    assert errors.largest == pytest.approx(0.1, rel=1e-14)
+    assert errors.final == pytest.approx(0.02, rel=1e-14)
+    assert errors.components == pytest.approx((0.1, 0.1), rel=1e-14)
+
+
+def test_rest_has_no_scale_of_its_own() -> None:
+    rest = np.zeros((3, 2))
+    assert measured(rest, rest, TIMES) == (0.0, 0.0, (0.0, 0.0))
+    wrong = rest.copy()
+    wrong[1, 0] = 1e-200
+    errors = measured(wrong, rest, TIMES)
+    assert errors.largest == pytest.approx(1.0)
+    assert errors.components == (1.0, 0.0)
+
+
+def test_a_component_that_stays_zero_is_measured_against_the_motion() -> None:
+    reference = np.array([[2.0, 0.0], [2.0, 0.0]])
+    assert measured(reference + np.array([0.0, 0.02]), reference, TIMES[:2]).components == pytest.approx((0.0, 0.01))
+
+
+def test_drift_is_not_error() -> None:
+    # Near its middle axis the phase of the body is wrong altogether while energy and momentum stay.
+    system = rigid_body((1, 2, 3), (1e-8, 1, 1.001e-8))
+    times = np.linspace(0, 100, 1000)
+    one = DormandPrince853(1e-13).integrate(system, times).states
+    other = DormandPrince853(1e-14).integrate(system, times).states
+    assert all(drift < 1e-12 for drift in drifts(system, one).values())
+    assert measured(one, other, times).largest > 0.1
+
+
+def test_drifts_of_quantities_at_the_end_of_the_double_range() -> None:
+    system = rigid_body((1, 2, 3), (1e-100, 2e-100, 1e-100))
+    states = system.initial_state * np.array([[1.0], [1.5]])
+    assert drifts(system, states) == pytest.approx({"energy": 1.25, "momentum": 0.5})
+    with np.errstate(over="ignore", invalid="ignore"):
+        huge = rigid_body((1, 2, 3), (1e200, 2e200, 1e200))
+        assert drifts(huge, np.array([[1e200, 2e200, 1e200]])) == {}
+
+
+SYSTEMS = {
+    "oscillator": (oscillator(rate=1.3), 20.0),
+    "elliptic functions": (elliptic_functions(), 20.0),
+    "rigid body": (rigid_body_with_solution(), 30.0),
+    "kepler": (kepler(0.3), 20.0),
+    "eccentric kepler": (kepler(0.8), 15.0),
+}
+METHODS = [
+    *(ExplicitEuler(step) for step in (3e-1, 1e-1, 1e-2, 1e-3)),
+    *(RungeKutta4(step) for step in (6e-1, 2e-1, 5e-2, 1e-2, 1e-3)),
+    *(ImplicitMidpoint(step) for step in (3e-1, 1e-1, 1e-2, 1e-3)),
+    *(SymmetricSplitting(step) for step in (6e-1, 1e-1, 1e-2, 1e-3)),
+    *(DormandPrince853(tolerance) for tolerance in (1e-1, 1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-14, 1e-15)),
+    *(Lsoda(tolerance) for tolerance in (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 2.3e-14)),
+    *(Radau(tolerance) for tolerance in (1e-2, 1e-4, 1e-6, 1e-8)),
+]
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_what_a_finer_run_states_is_never_below_the_truth(name: str) -> None:
+    system, horizon = SYSTEMS[name]
+    times = np.linspace(0, horizon, 101)
+    reference = system.exact.sample(times)
+    ratios = []
+    for method in METHODS:
+        try:
+            run = method.integrate(system, times)
+        except MechanicsError:
+            continue  # A method that fails states nothing.
+        stated = estimated(method, system, times, run, Budget(), 0).errors
+        true = measured(run.states, reference, times)
+        if stated.largest > UNCONVERGED:
+            continue  # `solve` takes another judge then; see there.
+        own = system.exact.bound
+        assert stated.largest + own >= true.largest, (method, stated.largest, true.largest)
+        assert all(s + own >= t for s, t in zip(stated.components, true.components, strict=True)), method
+        assert stated.final + own >= true.final, method
+        ratios.append((stated.largest + own) / max(true.largest, own))
+    assert len(ratios) > 15
+    assert np.median(ratios) < 10
+
+
+def test_the_comparison_is_charged_to_the_budget() -> None:
+    system, times = prey_and_predator(), np.array([1.0])
+    method = ExplicitEuler(1e-3)
+    run = method.integrate(system, times)
+    with pytest.raises(BudgetExceeded) as refused:
+        estimated(method, system, times, run, Budget(evaluations=2999), 1000)
+    assert (refused.value.needed, refused.value.limit) == (3000, 2999)
+    estimate = estimated(method, system, times, run, Budget(evaluations=3000), 1000)
+    assert (estimate.integration.states == ExplicitEuler(5e-4).integrate(system, times).states).all()
+
+
+def test_the_finer_run_is_finer_where_samples_lie_closer_than_the_step() -> None:
+    system, times = elliptic_functions(), np.linspace(0, 20, 101)
+    run = RungeKutta4(100.0).integrate(system, times)
+    assert run.work.steps == 100
+    estimate = estimated(RungeKutta4(100.0), system, times, run, Budget(), 0)
+    assert estimate.integration.work.steps == 200
+    assert estimate.errors.largest > measured(run.states, system.exact.sample(times), times).largest
+
+
+def test_a_method_without_a_setting_cannot_be_compared_with_itself() -> None:
+    system = oscillator()
+    run = ClosedFormEvaluation().integrate(system, TIMES)
+    with pytest.raises(NotApplicable):
+        estimated(ClosedFormEvaluation(), system, TIMES, run, Budget(), 0)
+
+
+def test_states_whose_error_has_no_square_in_range_have_an_error_all_the_same() -> None:
+    reference, times = np.array([[3.0, 4.0, 0.0]]), np.array([1.0])
+    for size in (1e150, 1e200, 1e300):
+        found = measured(np.array([[3.0, 4.0 - 5 * size, 0.0]]), reference, times)
+        assert found.largest == found.final == pytest.approx(size, rel=1e-15)
+        assert found.components[1] == pytest.approx(1.25 * size, rel=1e-15)
+        assert found.components[2] == 0.0
+    with pytest.raises(NotApplicable) as refused:
+        measured(np.array([[1e300, 0.0, 0.0]]), 1e-300 * reference, times)
+    assert refused.value.path == ("kind",)
+
+
+def test_a_component_too_small_to_measure_by_is_measured_by_the_whole() -> None:
+    found = measured(np.array([[1.0, 1.0]]), np.array([[2.0, 5e-324]]), np.array([1.0]))
+    assert found.components == (0.5, 0.5)
+
+
+def test_an_error_against_a_reference_covers_what_that_leaves_open() -> None:
+    found = Errors(1e9, 0.0, (1.0,)).beyond(1e-15)
+    assert found.largest > 1e9 * (1 + 1e-15)
+    assert (found.final, found.components[0] > 1.0 + 1e-15) == (1e-15, True)

@@ -1,0 +1,176 @@
+"""Keys: who may ask, how much, and how keys are exchanged while the service runs."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.__main__ import main
+from service.http import keys as module
+from service.http.keys import Allowance, Keys, new_key
+from tests.service.conftest import client_of, toy_service
+from tests.service.toy_routes import GOOD
+
+pytestmark = pytest.mark.anyio
+
+INLINE: dict[str, Any] = {"inline_seconds": 1e9}
+
+
+class Clock:
+    """A clock that stands until it is moved."""
+
+    def __init__(self) -> None:
+        self.now = 1000.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr(module, "monotonic", clock)
+    return clock
+
+
+def bearer(key: str) -> dict[str, str]:
+    return {"authorization": f"Bearer {key}"}
+
+
+async def test_only_known_keys_may_ask(tmp_path: Path) -> None:
+    (first, one), (second, two) = new_key("alpha"), new_key("beta")
+    file = tmp_path / "keys"
+    file.write_text(f"# who may ask\n\n{one}\n{two}\n")
+    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
+        for key in (first, second):
+            assert (await client.post("/v1/toy", json=GOOD, headers=bearer(key))).status_code == 200
+        unknown = [
+            {},
+            bearer(""),
+            bearer(first[:-1]),
+            bearer(first + "a"),
+            bearer(one.split()[1]),
+            {"authorization": first},
+            {"authorization": f"Basic {first}"},
+            {"authorization": "Bearer " + "x" * 30_000},
+        ]
+        for headers in unknown:
+            response = await client.post("/v1/toy", json=GOOD, headers=headers)
+            assert (response.status_code, response.json()["code"]) == (401, "unauthorized")
+            assert response.headers["www-authenticate"] == "Bearer"
+            assert first not in response.text
+        # What tells no result is open to all.
+        for path in ("/healthz", "/metrics", "/docs", "/v1/errors"):
+            assert (await client.get(path)).status_code == 200
+
+
+def test_keys_are_not_kept_as_they_are() -> None:
+    key, line = new_key("alpha")
+    assert key not in line
+    assert len(key) > 40
+    assert new_key("alpha")[0] != key
+    with pytest.raises(ValueError, match="letters"):
+        new_key("a b")
+
+
+def test_the_command_line_makes_keys(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    main(["--new-key", "course-7"])
+    shown, line = capsys.readouterr().out.splitlines()
+    file = tmp_path / "keys"
+    file.write_text(line.split(": ", 1)[1].strip() + "\n")
+    assert Keys(file).admit({b"authorization": b"Bearer " + shown.split(": ")[1].encode()}).name == "course-7"
+
+
+async def test_the_rate_of_each_key_is_its_own(tmp_path: Path, clock: Clock) -> None:
+    (first, one), (second, two) = new_key("alpha"), new_key("beta")
+    file = tmp_path / "keys"
+    file.write_text(f"{one.replace('- -', '0.5 -')}\n{two}\n")
+    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
+
+        async def ask(key: str) -> Any:
+            return await client.post("/v1/toy", json=GOOD, headers=bearer(key))
+
+        assert [(await ask(first)).status_code for _ in range(6)] == [200] * 5 + [429]
+        refused = await ask(first)
+        assert (refused.json()["code"], refused.headers["retry-after"]) == ("quota-exceeded", "2")
+        assert {(await ask(second)).status_code for _ in range(20)} == {200}
+        clock.now += 2.0
+        assert [(await ask(first)).status_code for _ in range(2)] == [200, 429]
+
+
+async def test_work_is_counted_by_its_price(tmp_path: Path, clock: Clock) -> None:
+    key, line = new_key("alpha")
+    file = tmp_path / "keys"
+    file.write_text(line.replace("- -", "- 0.065"))
+    # The toy's price is 1e-8 s for each sample; a minute's 0.065 s are 6.5e6 samples.
+    large = GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 1_000_000}}
+    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
+        head = bearer(key) | {"accept": "application/x-npz"}
+        found = [(await client.post("/v1/toy", json=large, headers=head)).status_code for _ in range(7)]
+        assert found == [200] * 6 + [429]
+        clock.now += 10.0
+        assert (await client.post("/v1/toy", json=large, headers=head)).status_code == 200
+
+
+def test_an_allowance_never_grows_beyond_its_most(clock: Clock) -> None:
+    allowance = Allowance(1.0, 3.0)
+    clock.now += 1e6
+    assert [allowance.take(1.0) for _ in range(4)] == [0.0, 0.0, 0.0, 1.0]
+    # More than can ever be saved up is given once all is there, and has to be paid back.
+    clock.now += 3.0
+    assert allowance.take(10.0) == 0.0
+    assert allowance.take(1.0) == pytest.approx(8.0)
+
+
+def test_keys_are_exchanged_while_the_service_runs(
+    tmp_path: Path, clock: Clock, caplog: pytest.LogCaptureFixture
+) -> None:
+    (first, one), (second, two) = new_key("alpha"), new_key("beta")
+    file = tmp_path / "keys"
+    file.write_text(one.replace("- -", "0.1 -"))
+    keys = Keys(file)
+
+    def known(key: str) -> bool:
+        try:
+            keys.admit({b"authorization": b"Bearer " + key.encode()})
+        except module.Refusal as refusal:
+            if refusal.problem.type.status == 429:
+                raise
+            return False
+        return True
+
+    assert (known(first), known(second)) == (True, False)
+    file.write_text(f"{one.replace('- -', '0.1 -')}\n{two}\n")
+    clock.now += 1.5
+    assert known(second)
+    # What a key has used stays used.
+    with pytest.raises(module.Refusal):
+        known(first)
+    file.write_text(two + "\nnonsense\n")
+    clock.now += 1.5
+    assert known(second)
+    assert "cannot be read" in caplog.text
+    os.remove(file)
+    clock.now += 1.5
+    assert known(second)
+    # Nobody writes to the pipe: whoever read it would wait for ever.
+    os.mkfifo(file)
+    clock.now += 1.5
+    assert known(second)
+    os.remove(file)
+    file.write_text("")
+    clock.now += 1.5
+    assert not known(second)
+
+
+def test_a_file_that_cannot_be_understood_stops_the_start(tmp_path: Path) -> None:
+    file = tmp_path / "keys"
+    for text in ("alpha", "alpha 00 - -", "alpha " + "g" * 64 + " - -", "alpha " + "0" * 64 + " -1 -"):
+        file.write_text(text)
+        with pytest.raises(ValueError, match="line 1"):
+            Keys(file)
+    with pytest.raises(FileNotFoundError):
+        Keys(tmp_path / "absent")

@@ -1,0 +1,177 @@
+"""The OpenAPI document of any route table, and FastAPI's way to the dispatcher."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import dataclasses
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from fastapi import FastAPI
+
+from service import VERSION
+from service.openapi.document import documented, openapi
+from service.problems import MEDIA_TYPE, REGISTRY
+from service.responses import npz as archive
+from service.routing import Page, Reply, Route
+from tests.service.conftest import client_of
+from tests.service.toy_routes import GOOD, TOY, Told
+
+pytestmark = pytest.mark.anyio
+
+DRAWN = dataclasses.replace(
+    TOY, path="/v1/drawn", operation_id="draw_toy", representations={"image/svg+xml": lambda answer: b"<svg/>"}
+)
+PAGE = Page("/hello", "hello", "Says hello", "pages", lambda: Reply(b"{}"), Told, description="In full.")
+TEXT = Page("/plain", "plain", "A text", "pages", lambda: Reply(b"", b"text/plain"), media_type="text/plain")
+ROUTES: tuple[Route, ...] = (TOY, DRAWN, PAGE, TEXT)
+
+
+async def unasked(route: Route, scope: Any, receive: Any, send: Any) -> None:
+    raise AssertionError
+
+
+@pytest.fixture(scope="module")
+def document() -> dict[str, Any]:
+    return openapi(documented(ROUTES, unasked))
+
+
+def within(node: Any) -> Iterator[dict[str, Any]]:
+    """Yield every object of a document."""
+    if isinstance(node, dict):
+        yield node
+    for entry in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
+        yield from within(entry)
+
+
+class TestDocument:
+    def test_it_is_plain_json_about_this_version(self, document: dict[str, Any]) -> None:
+        assert json.loads(json.dumps(document, allow_nan=False)) == document
+        assert (document["info"]["title"], document["info"]["version"]) == ("Polhode", VERSION)
+
+    def test_every_route_is_there_as_the_table_has_it(self, document: dict[str, Any]) -> None:
+        assert [*document["paths"]] == [route.path for route in ROUTES]
+        for route in ROUTES:
+            ((method, operation),) = document["paths"][route.path].items()
+            assert method == route.method.lower()
+            assert operation["operationId"] == route.operation_id
+            assert (operation["summary"], operation["tags"]) == (route.summary, [route.tag])
+            assert operation.get("description", "") == route.description
+
+    def test_questions_are_documented_with_their_examples(self, document: dict[str, Any]) -> None:
+        body = document["paths"]["/v1/toy"]["post"]["requestBody"]
+        assert body["required"]
+        content = body["content"]["application/json"]
+        assert content["schema"] == {"$ref": "#/components/schemas/Ask"}
+        assert content["examples"] == {"small": {"summary": "three samples", "value": GOOD}}
+        assert not [entry for entry in document["paths"]["/v1/toy"]["post"] if entry == "parameters"]
+
+    def test_answers_are_documented_in_every_form_that_they_have(self, document: dict[str, Any]) -> None:
+        for path, media in (
+            ("/v1/toy", {"application/json", archive.MEDIA_TYPE}),
+            ("/v1/drawn", {"application/json", archive.MEDIA_TYPE, "image/svg+xml"}),
+        ):
+            content = document["paths"][path]["post"]["responses"]["200"]["content"]
+            assert set(content) == media
+            assert content["application/json"]["schema"] == {"$ref": "#/components/schemas/Told"}
+        assert set(document["paths"]["/hello"]["get"]["responses"]["200"]["content"]) == {"application/json"}
+        assert set(document["paths"]["/plain"]["get"]["responses"]["200"]["content"]) == {"text/plain"}
+
+    def test_problems_name_every_code_with_their_status(self, document: dict[str, Any]) -> None:
+        responses = document["paths"]["/v1/toy"]["post"]["responses"]
+        told = {code for status, one in responses.items() if status != "200" for code in codes(one)}
+        # What depends on the path or the method alone belongs to no operation.
+        assert set(REGISTRY) - told == {"not-found", "method-not-allowed"}
+        for verbs in document["paths"].values():
+            for operation in verbs.values():
+                for status, one in operation["responses"].items():
+                    if int(status) >= 400:
+                        assert {REGISTRY[code].status for code in codes(one)} == {int(status)}
+                        reference = {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
+                        assert one["content"] == {MEDIA_TYPE: reference}
+        assert set(document["paths"]["/hello"]["get"]["responses"]) == {"200", "406", "500"}
+
+    def test_keys_are_for_questions_and_may_be_left_out(self, document: dict[str, Any]) -> None:
+        assert document["components"]["securitySchemes"]["key"]["scheme"] == "bearer"
+        assert document["paths"]["/v1/toy"]["post"]["security"] == [{}, {"key": []}]
+        assert "security" not in document["paths"]["/hello"]["get"]
+
+    def test_every_reference_leads_somewhere(self, document: dict[str, Any]) -> None:
+        references = {str(node["$ref"]) for node in within(document) if "$ref" in node}
+        references |= {
+            reference
+            for node in within(document)
+            for reference in node.get("discriminator", {}).get("mapping", {}).values()
+        }
+        assert len(references) >= 5
+        for reference in references:
+            found: Any = document
+            for step in reference.removeprefix("#/").split("/"):
+                found = found[step]
+            assert found
+
+    def test_the_field_that_tells_members_apart_is_required(self, document: dict[str, Any]) -> None:
+        schemas = document["components"]["schemas"]
+        for name in ("Moments", "Points", "Nest"):
+            assert "kind" in schemas[name]["required"]
+            assert "default" not in schemas[name]["properties"]["kind"]
+            assert schemas[name]["required"].count("kind") == 1
+
+    def test_fields_are_described_by_their_units(self, document: dict[str, Any]) -> None:
+        schemas = document["components"]["schemas"]
+        assert schemas["Moments"]["properties"]["moments"]["description"] == "(kg m^2)."
+        assert schemas["Span"]["properties"]["start"]["description"] == "(s)."
+
+    def test_it_is_the_same_each_time(self, document: dict[str, Any]) -> None:
+        app = documented(ROUTES, unasked)
+        once = copy.deepcopy(openapi(app))
+        assert openapi(app) == once == document
+
+
+def codes(response: dict[str, Any]) -> list[str]:
+    """Return the codes that a response's description lists."""
+    return str(response["description"]).removeprefix("Problem: ").removesuffix(".").split(", ")
+
+
+class TestServing:
+    async def test_every_route_is_served_by_the_dispatcher_unread(self) -> None:
+        seen: list[tuple[Route, bytes]] = []
+
+        async def serve(route: Route, scope: Any, receive: Any, send: Any) -> None:
+            seen.append((route, (await receive())["body"]))
+            await send({"type": "http.response.start", "status": 299, "headers": []})
+            await send({"type": "http.response.body", "body": b"by the dispatcher"})
+
+        async with client_of(documented(ROUTES, serve)) as client:
+            for route in ROUTES:
+                # Not even JSON: FastAPI must not have a say.
+                response = await client.request(route.method, route.path, content=b"{")
+                assert (response.status_code, response.content) == (299, b"by the dispatcher")
+        assert seen == [(route, b"{") for route in ROUTES]
+
+    async def test_it_has_no_pages_of_its_own(self) -> None:
+        app = documented(ROUTES, unasked)
+        assert isinstance(app, FastAPI)
+        async with client_of(app) as client:
+            for path in ("/docs", "/redoc", "/openapi.json", "/docs/oauth2-redirect"):
+                assert (await client.get(path)).status_code == 404
+
+    async def test_the_life_cycle_is_the_applications(self) -> None:
+        told = []
+
+        def lifespan(app: FastAPI) -> Any:
+            @contextlib.asynccontextmanager
+            async def living() -> Any:
+                told.append("up")
+                yield
+                told.append("down")
+
+            return living()
+
+        app = documented(ROUTES, unasked, lifespan)
+        async with app.router.lifespan_context(app):
+            assert told == ["up"]
+        assert told == ["up", "down"]
