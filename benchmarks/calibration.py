@@ -41,12 +41,12 @@ from core.systems.methods import (
     SymmetricSplitting,
 )
 from service.execution import cost_model as pricing
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
 from service.routes.rotation.trajectory import T_HANDLE
-from service.routing import Question
+from service.routing import PostRoute
 
 ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "service" / "calibration.json"
@@ -167,13 +167,13 @@ def variants() -> dict[str, list[dict[str, Any]]]:
     return found
 
 
-def own_price(route: Question) -> pricing.Priced | None:
+def own_price(route: PostRoute) -> pricing.CalibratedCost | None:
     """Return the price by counts of a route, also of one that has another price for numbers of many digits."""
     price = getattr(route.price, "own", route.price)
-    return price if isinstance(price, pricing.Priced) else None
+    return price if isinstance(price, pricing.CalibratedCost) else None
 
 
-def measured_cost(answering: Answering, route: Question, question: dict[str, Any]) -> tuple[float, int, float]:
+def measured_cost(answering: RequestHandler, route: PostRoute, question: dict[str, Any]) -> tuple[float, int, float]:
     """Return the time of an answer (s), its length, and the time of writing it (s).
 
     Times are those that the processor gave this thread, and the least of several: what other processes take from a
@@ -253,7 +253,7 @@ def held_out() -> list[tuple[str, dict[str, Any]]]:
 def main(*operations: str) -> None:
     """Measure, fit, write, and compare with what was not fitted; all operations unless some are named."""
     routes = {route.operation_id: route for route in questions()}
-    answering, budget = Answering(routes.values(), Budget(), Limits()), Budget()
+    answering, budget = RequestHandler(routes.values(), Budget(), Limits()), Budget()
     # What is not measured yet keeps its old costs meanwhile.
     table: dict[str, Any] = json.loads(TARGET.read_text(encoding="utf-8"))
     table["machine"] = described("numpy", "numba")
@@ -301,13 +301,13 @@ def main(*operations: str) -> None:
     compare(answering)
 
 
-def compare(answering: Answering) -> None:
+def compare(answering: RequestHandler) -> None:
     """Write and print what the plan foresees over what is measured, of questions to which nothing was fitted."""
     routes = {route.path: route for route in questions()}
     result = []
     for path, question in held_out():
         route = routes.get(path)
-        if route is None or not isinstance(route.price, pricing.Foreseen):
+        if route is None or not isinstance(route.price, pricing.CostModel):
             continue
         try:
             body = orjson.dumps({"path": path, "request": question})
@@ -338,6 +338,6 @@ def compare(answering: Answering) -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["--check"]:
-        compare(Answering(questions(), Budget(), Limits()))
+        compare(RequestHandler(questions(), Budget(), Limits()))
     else:
         main(*sys.argv[1:])

@@ -12,7 +12,7 @@ import orjson
 
 from benchmarks.machine import RESULTS, described, medians
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import chunks
 from service.routes import questions
@@ -40,7 +40,7 @@ CASES: dict[str, dict[str, Any]] = {
 def main() -> None:
     """Measure and write."""
     route = next(route for route in questions() if route.path == "/v1/rotation/trajectory")
-    answering = Answering((route,), Budget(), Limits())
+    answering = RequestHandler((route,), Budget(), Limits())
 
     def whole(more: dict[str, Any]) -> bytes:
         question = answering.read(route, orjson.dumps(QUESTION | more))

@@ -21,17 +21,17 @@ from typing import Any
 from benchmarks.machine import RESULTS, described
 from core.errors import MechanicsError
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.problems import Refusal, problem_of
 from service.requests.request_reader import Limits
 from service.routes import questions
-from service.routing import Question
+from service.routing import PostRoute
 
 SIZE = 1_500_000
 AIM_MS = 50.0
 MOST_BYTES = 2048
 ROUTES = {route.path: route for route in questions()}
-ANSWERING = Answering(ROUTES.values(), Budget(), Limits())
+ANSWERING = RequestHandler(ROUTES.values(), Budget(), Limits())
 
 
 def filled(entry: str, size: int = SIZE) -> str:
@@ -111,7 +111,7 @@ def within(question: dict[str, Any]) -> dict[str, bytes]:
     return {label: document.encode() for label, document in found.items()}
 
 
-def kinds() -> Iterator[tuple[Question, str, dict[str, Any]]]:
+def kinds() -> Iterator[tuple[PostRoute, str, dict[str, Any]]]:
     """Yield an endpoint, the name of one of its examples, and that question: one with and one without digits."""
     for route in ROUTES.values():
         seen = set()
@@ -121,7 +121,7 @@ def kinds() -> Iterator[tuple[Question, str, dict[str, Any]]]:
                 yield route, name, dict(example.question)
 
 
-def refused(route: Question, body: bytes) -> tuple[float, bytes]:
+def refused(route: PostRoute, body: bytes) -> tuple[float, bytes]:
     """Return the processor's time for a refusal (s) and its document, empty if the question is answered."""
     since = time.process_time()
     document = b""

@@ -32,7 +32,7 @@ from core.systems.budget import Budget
 from service.responses.npz import MEDIA_TYPE
 from service.routes.bodies import BODIES
 from service.routes.rotation.trajectory import ROTATION
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 
 COUNTS = (10_000, 100_000, 1_000_000)
@@ -48,7 +48,7 @@ def rows(count: int) -> np.ndarray[Any, Any]:
     return np.random.default_rng(count).normal(size=(count, 3))
 
 
-def table() -> tuple[Question, ...]:
+def table() -> tuple[PostRoute, ...]:
     """Return the route table of the benchmarks: the trajectory, constant rows, and how many points a body has."""
     constant = {count: rows(count) for count in COUNTS} if os.environ.get("POLHODE_ROWS") else {}
 

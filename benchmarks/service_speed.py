@@ -40,7 +40,7 @@ from pydantic import BaseModel, Field
 from benchmarks.machine import RESULTS, described
 from core.bodies.measured import PrincipalMoments
 from service.routes.rotation.precession import PRECESSION
-from service.routing import TABLE, Question
+from service.routing import TABLE, PostRoute
 
 QUESTION = PRECESSION[0]
 BODY = json.dumps(
@@ -53,7 +53,7 @@ REAL = TABLE
 OURS = "service.http.protocol:Protocol"
 
 
-def transport() -> tuple[Question, ...]:
+def transport() -> tuple[PostRoute, ...]:
     """Return a table with the question as the service has it, whose answer is a constant of the same content."""
     content = _content()
     (asked,) = (route for route in resolve_name(REAL)() if route.path == QUESTION.path)
@@ -62,20 +62,20 @@ def transport() -> tuple[Question, ...]:
 
 def _content() -> dict[str, Any]:
     from core.systems.budget import Budget
-    from service.execution.request_handler import Answering
+    from service.execution.request_handler import RequestHandler
     from service.requests.request_reader import Limits
 
-    answering = Answering([QUESTION], Budget(), Limits())
+    answering = RequestHandler([QUESTION], Budget(), Limits())
     return QUESTION.handle(answering.read(QUESTION, BODY), Budget())
 
 
 def _answer() -> bytes:
     from core.systems.budget import Budget
-    from service.execution.request_handler import Answering
+    from service.execution.request_handler import RequestHandler
     from service.requests.request_reader import Limits
     from service.responses.json_rows import written
 
-    answering = Answering([QUESTION], Budget(), Limits())
+    answering = RequestHandler([QUESTION], Budget(), Limits())
     return written(answering.answer(QUESTION, answering.read(QUESTION, BODY)))
 
 

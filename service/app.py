@@ -13,8 +13,8 @@ import orjson
 from fastapi import FastAPI
 
 from service.execution.admission import Compute
-from service.execution.daemon_thread import aside
-from service.execution.request_handler import Answering
+from service.execution.daemon_thread import run_in_daemon_thread
+from service.execution.request_handler import RequestHandler
 from service.http.dispatch import Dispatcher
 from service.http.limits import Receive
 from service.http.request_context import Scope, Send
@@ -25,7 +25,7 @@ from service.openapi.document import documented, openapi
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages
-from service.routing import TABLE, Question, Route
+from service.routing import TABLE, PostRoute, Route
 from service.settings import Settings
 
 
@@ -46,10 +46,10 @@ class Service:
         self.settings = settings
         self.warm = False
         self.metrics = Metrics()
-        asked: tuple[Question, ...] = resolve_name(table)()
+        asked: tuple[PostRoute, ...] = resolve_name(table)()
         self.compute = Compute(settings, self.metrics, table)
         terms = self.compute.terms
-        self._answering = Answering(asked, terms.budget, terms.limits)
+        self._answering = RequestHandler(asked, terms.budget, terms.limits)
         self.routes: tuple[Route, ...] = (
             *asked,
             *catalogues(),
@@ -93,7 +93,7 @@ class Service:
 
     async def _warm(self) -> None:
         try:
-            await asyncio.gather(aside(self._prepare), self.compute.start())
+            await asyncio.gather(run_in_daemon_thread(self._prepare), self.compute.start())
         except Exception:
             LOG.exception("the service could not get ready")
             raise

@@ -40,7 +40,7 @@ def free(question: Any, budget: Budget) -> float:
 
 
 @dataclass(frozen=True)
-class Question:
+class PostRoute:
     """POST: a question to the mechanics.
 
     Attributes
@@ -53,7 +53,7 @@ class Question:
         From question and budget to the fields of the answer; warnings under ``"warnings"``.
     price : callable
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
-    outline : callable or None
+    planning_probe : callable or None
         From a question to one that costs little and has the same model, warnings and refusals, by which it is planned;
         None if the question is that itself.
     examples : mapping
@@ -70,7 +70,7 @@ class Question:
     answer: Any
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
-    outline: Callable[[Any], Any] | None = None
+    planning_probe: Callable[[Any], Any] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
@@ -78,7 +78,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Page:
+class GetRoute:
     """GET: a document that takes no question.
 
     Attributes
@@ -100,4 +100,4 @@ class Page:
     method: str = "GET"
 
 
-Route = Question | Page
+Route = PostRoute | GetRoute

@@ -16,7 +16,7 @@ import uvicorn
 from uvicorn.config import STARTUP_FAILURE
 from uvicorn.supervisors import Multiprocess
 
-from service.execution.scratch import Scratch
+from service.execution.scratch import LockedTempDir
 
 
 class Config(uvicorn.Config):
@@ -42,7 +42,7 @@ def run(config: Config) -> None:
 
 
 def _run_several(config: Config) -> None:
-    counters = Scratch("polhode-counters-")
+    counters = LockedTempDir("polhode-counters-")
     try:
         os.environ.setdefault("PROMETHEUS_MULTIPROC_DIR", counters.name)
         Multiprocess(config, sockets=[config.bind_socket()]).run()

@@ -12,13 +12,13 @@ import jsonschema
 import pytest
 
 from service.app import create_app
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 
 SNAPSHOT = Path(__file__).parent.parent / "docs" / "openapi.json"
 SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
 DOCUMENT: dict[str, Any] = json.loads(SERVICE.openapi())
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, Question)]
+QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
 EXAMPLES = [(route, name) for route in QUESTIONS for name in route.examples]
 
 
@@ -82,7 +82,7 @@ def resolved(schema: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.mark.anyio
 @pytest.mark.parametrize(("route", "name"), EXAMPLES, ids=[f"{route.operation_id}: {name}" for route, name in EXAMPLES])
-async def test_examples_run_and_fit_their_schemas(route: Question, name: str) -> None:
+async def test_examples_run_and_fit_their_schemas(route: PostRoute, name: str) -> None:
     operation = DOCUMENT["paths"][route.path]["post"]
     question = operation["requestBody"]["content"]["application/json"]["examples"][name]["value"]
     jsonschema.validate(question, resolved(operation["requestBody"]["content"]["application/json"]["schema"]))

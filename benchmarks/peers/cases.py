@@ -21,7 +21,7 @@ class Case:
     ----------
     name : str
     moments, start : tuple of 3 floats
-        Principal moments, and the angular velocity along their axes at t = 0. Taken as exact.
+        Principal moments, and the angular velocity along their axes at t = 0. ExtractedArrays as exact.
     stop : float
         The samples are evenly spaced from 0 to here.
     note : str

@@ -39,7 +39,7 @@ class _Units(NamedTuple):
     length: int
 
 
-def moves_of_tensor(properties: MassProperties, exponent: int) -> Floats:
+def tensor_sensitivities(properties: MassProperties, exponent: int) -> Floats:
     """Return by how much each number of a body's description moves its tensor about the point of rotation.
 
     To first order, for a relative uncertainty of one of that number alone.

@@ -51,7 +51,7 @@ def bits_for(digits: int, magnitude: int = 0) -> int:
     return math.ceil(digits * math.log2(10)) + GUARD_BITS + max(0, magnitude)
 
 
-def determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
+def until_determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
     """Evaluate at `bits` of working precision, and at twice as many, and so on, until no digit is in doubt.
 
     A decision that cannot be taken at one precision, and a digit that it does not determine, both raise `Undetermined`.

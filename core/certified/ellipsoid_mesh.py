@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from flint import arb, fmpq
 
-from core.certified.adaptive_precision import bits_for, check_digits, determined, each_determined
+from core.certified.adaptive_precision import bits_for, check_digits, each_determined, until_determined
 from core.certified.decimals import decimal, decimals
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
 from core.certified.exact_start import Balls, cross_of_balls, dot
@@ -36,7 +36,7 @@ class CertifiedMesh:
 
 
 def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: int) -> CertifiedMesh:
-    """Return the triangles of `core.rotation.surfaces.energy_surface.EnergyEllipsoid.triangles`, every vertex on the ellipsoid.
+    """Return the triangles of `EnergyEllipsoid.triangles`, every vertex on the ellipsoid.
 
     Raises
     ------
@@ -84,12 +84,14 @@ def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: in
 
     rows = each_determined(vertices, len(weights), bits)
     return CertifiedMesh(
-        rows, sphere.faces, CertifiedMeshQuality(*topology(len(weights), sphere.faces), *determined(quality, bits))
+        rows,
+        sphere.faces,
+        CertifiedMeshQuality(*topology(len(weights), sphere.faces), *until_determined(quality, bits)),
     )
 
 
 def certified_grid(surface: CertifiedEllipsoid, resolution: int, digits: int) -> tuple[Rows, Rows, Rows]:
-    """Return x, y and z over longitude and colatitude, as `core.rotation.surfaces.energy_surface.EnergyEllipsoid.grid` does.
+    """Return x, y and z over longitude and colatitude, as `EnergyEllipsoid.grid` does.
 
     Raises
     ------

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from core.certified.adaptive_precision import bits_for, check_digits, determined, each_determined
+from core.certified.adaptive_precision import bits_for, check_digits, each_determined, until_determined
 from core.certified.decimals import DEEPEST, decimal, decimal_of_fraction, decimals, floor_below
 from core.certified.directions import floor_of_directions
 from core.certified.exact_inertia import ExactInertia
@@ -85,7 +85,7 @@ class CertifiedEllipsoid:
     def semi_axes(self, digits: int) -> list[str]:
         """Return sqrt(2E/I), along the body axes where these are principal, else in ascending order of moments."""
         check_digits(digits)
-        return determined(lambda: decimals(self.semi_axis_balls(), digits), bits_for(digits))
+        return until_determined(lambda: decimals(self.semi_axis_balls(), digits), bits_for(digits))
 
     def semi_axis_balls(self) -> Balls:
         """Return the semi-axes at the current precision."""
@@ -99,7 +99,7 @@ class CertifiedEllipsoid:
         """Return the axes to which the semi-axes belong as the columns of a matrix, in body axes."""
         check_digits(digits)
         floor = floor_of_directions(digits)
-        return determined(lambda: [decimals(row, digits, floor) for row in self.axis_balls()], bits_for(digits))
+        return until_determined(lambda: [decimals(row, digits, floor) for row in self.axis_balls()], bits_for(digits))
 
     def axis_balls(self) -> tuple[Balls, Balls, Balls]:
         """Return the rows of that matrix at the current precision."""
@@ -119,8 +119,8 @@ class CertifiedEllipsoid:
         """Return the polhode in the direction of an angular velocity as `count` points and the first again.
 
         The angular velocity is scaled to the energy of this surface, which scales its polhode with it. The points are
-        those of `core.rotation.surfaces.polhodes`: even steps of the amplitude, along with the motion where it is periodic. On
-        the separatrix they are those of the whole ellipse, of which the motion draws one half.
+        those of `core.rotation.surfaces.polhodes`: even steps of the amplitude, along with the motion where it is
+        periodic. On the separatrix they are those of the whole ellipse, of which the motion draws one half.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class CertifiedEllipsoid:
             raise InvalidParameter("angular_velocity", "not be zero: at rest there is no energy surface")
         ratio = self.twice_energy / own
         squared = rotation.start.squared_momentum * ratio
-        momentum = determined(lambda: decimal(enclosed(squared).sqrt(), digits), bits_for(digits))
+        momentum = until_determined(lambda: decimal(enclosed(squared).sqrt(), digits), bits_for(digits))
         regime = rotation.model.regime
         if not rotation.turns:
             start = exact_numbers(angular_velocity, ("angular_velocity",), 3)
@@ -146,7 +146,7 @@ class CertifiedEllipsoid:
                 scale = enclosed(ratio).sqrt()
                 return [decimal(scale * enclosed(w), digits) for w in start]
 
-            return CertifiedPolhode(regime, False, momentum, [determined(point, bits_for(digits))])
+            return CertifiedPolhode(regime, False, momentum, [until_determined(point, bits_for(digits))])
 
         def evaluators() -> Callable[[int], list[str]]:
             motion, scale = TurningMotion(rotation.start), enclosed(ratio).sqrt()
@@ -178,7 +178,7 @@ class CertifiedEllipsoid:
         def momentum_on_it() -> str:
             return decimal((enclosed(self.twice_energy) * principal_axes(self.inertia).moments[1]).sqrt(), digits)
 
-        momentum = determined(momentum_on_it, bits)
+        momentum = until_determined(momentum_on_it, bits)
 
         def curve(side: int) -> CertifiedPolhode:
             def evaluators() -> Callable[[int], list[str]]:

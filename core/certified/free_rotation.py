@@ -9,7 +9,7 @@ from functools import cached_property
 
 from flint import arb
 
-from core.certified.adaptive_precision import bits_for, check_digits, determined, each_determined
+from core.certified.adaptive_precision import bits_for, check_digits, each_determined, until_determined
 from core.certified.decimals import DEEPEST, FLOOR_IN_DIGITS, decimal, decimal_of_fraction, decimals, floor_below
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact_numbers
@@ -225,7 +225,7 @@ class CertifiedRotation:
             assert ball is not None
             return decimal(ball, digits)
 
-        return determined(written, self._bits(digits, ()))
+        return until_determined(written, self._bits(digits, ()))
 
     def _bits(self, digits: int, times: Sequence[Fraction]) -> int:
         """Return a first working precision: a phase that has k bits before the point loses as many behind it."""

@@ -10,7 +10,7 @@ from math import isqrt
 from flint import arb
 
 from core.bodies.principal_inertia import Symmetry
-from core.certified.adaptive_precision import bits_for, check_digits, determined
+from core.certified.adaptive_precision import bits_for, check_digits, until_determined
 from core.certified.decimals import decimal, decimal_of_fraction, decimals
 from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import Vector
@@ -73,7 +73,7 @@ def certified_precession(rotation: CertifiedRotation, digits: int) -> CertifiedP
     start, bits = rotation.start, bits_for(digits)
 
     def number(evaluate: Callable[[], arb]) -> str:
-        return determined(lambda: decimal(evaluate(), digits), bits)
+        return until_determined(lambda: decimal(evaluate(), digits), bits)
 
     def per_period() -> arb:
         angle = TurningMotion(start).precession_per_period
@@ -106,7 +106,7 @@ def certified_precession(rotation: CertifiedRotation, digits: int) -> CertifiedP
         precession_per_period=number(per_period) if periodic else None,
         mean_precession_rate=number(mean_rate) if rotation.turns else None,
     )
-    axis = determined(lambda: decimals(oriented(_axis(rotation)), digits, floor), bits) if has_axis else None
+    axis = until_determined(lambda: decimals(oriented(_axis(rotation)), digits, floor), bits) if has_axis else None
     absent = {name: _why_absent(rotation, name) for name, figure in found.items() if figure is None}
     if axis is None:
         absent["axis"] = _why_absent(rotation, "axis")
@@ -213,7 +213,7 @@ class _Symmetric:
         root = _rational_root(self.along_squared)
         if root is not None:
             return decimal_of_fraction(factor * root, digits)
-        return determined(
+        return until_determined(
             lambda: decimal(enclosed(factor) * enclosed(self.along_squared).sqrt(), digits), bits_for(digits)
         )
 

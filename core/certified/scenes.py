@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 
 from flint import arb
 
-from core.certified.adaptive_precision import bits_for, check_digits, determined, working_bits
+from core.certified.adaptive_precision import bits_for, check_digits, until_determined, working_bits
 from core.certified.decimals import Undetermined, decimal, place_of
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
 from core.certified.scene_samples import Sampler, sampler
@@ -114,7 +114,7 @@ def certified_scene(
             raise InvalidParameter(("times", i), "have a magnitude of at most 1e300 s")
     wanted = scene.wanted(outputs, timed=instants is not None)
     first = max(BITS, bits_for(digits))
-    return determined(lambda: _Question(scene, digits, first, instants, wanted).answer(times), first)
+    return until_determined(lambda: _Question(scene, digits, first, instants, wanted).answer(times), first)
 
 
 @dataclass(frozen=True)

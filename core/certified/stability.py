@@ -13,7 +13,7 @@ from fractions import Fraction
 from flint import arb
 
 from core.bodies.principal_inertia import Symmetry
-from core.certified.adaptive_precision import bits_for, check_digits, determined
+from core.certified.adaptive_precision import bits_for, check_digits, until_determined
 from core.certified.decimals import Undetermined, decimal, decimal_of_fraction, decimals
 from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import ExactInertia
@@ -21,7 +21,7 @@ from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
 from core.certified.exact_start import Balls, PrincipalState, principal_axes
 from core.certified.free_rotation import CertifiedRotation, triaxial_model
 from core.certified.turning_motion import constants_of
-from core.rotation.stability.classification import REST, Attitude, Kind, Verdict, drift, verdict
+from core.rotation.stability.classification import REST, Attitude, Kind, Verdict, classify_equilibrium, drift
 from core.rotation.stability.stability import flip_reason, no_middle_axis
 
 
@@ -105,13 +105,13 @@ def certified_stability(
         flip = _flip(inertia, spin, exact_numbers(disturbance, ("disturbance",), 2), digits)
     rational = inertia.rational_moments
     ranks = (0, 1, 2) if rational is None else [sorted(set(rational)).index(moment) for moment in rational]
-    told = [verdict(ranks, axis, spin != 0) for axis in range(3)]
+    told = [classify_equilibrium(ranks, axis, spin != 0) for axis in range(3)]
 
     def evaluate() -> tuple[CertifiedEquilibrium, ...]:
         state = principal_axes(inertia)
         return tuple(_about(state, rational, axis, spin, told[axis], digits) for axis in range(3))
 
-    equilibria = (*determined(evaluate, bits_for(digits)), _rest())
+    equilibria = (*until_determined(evaluate, bits_for(digits)), _rest())
     return CertifiedStability(inertia.symmetry, decimal_of_fraction(spin, digits), equilibria, flip)
 
 
@@ -201,5 +201,5 @@ def _flip(inertia: ExactInertia, rate: Fraction, disturbance: tuple[Fraction, ..
         rates = (enclosed(small), enclosed(rate), enclosed(large))
         return decimal(constants_of(state.moments, state.gaps, rates, side, abs(difference)).half_period, digits), side
 
-    interval, side = determined(evaluate, bits_for(digits))
+    interval, side = until_determined(evaluate, bits_for(digits))
     return CertifiedFlip(given, interval, flip_reason(True, triaxial_model(side).why))

@@ -26,8 +26,8 @@ from core.rotation.closed_form.circulation import (
 from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
 from core.rotation.closed_form.principal_frame import PrincipalFrame, Resolved
 from core.rotation.closed_form.sampling import largest_magnitude, sample_components, turn_into_body
-from core.rotation.uncertainty.input_uncertainty import WHOLE_MOTION, Inherited, lost_after
-from core.rotation.uncertainty.sensitivities import Moves
+from core.rotation.uncertainty.input_uncertainty import WHOLE_MOTION, InputUncertainty, lost_after
+from core.rotation.uncertainty.sensitivities import Sensitivities
 from core.systems.system import Floats, Model
 
 UNIT_ROUNDOFF = 2.0**-53
@@ -61,7 +61,7 @@ class FreeRotation:
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
     moves : callable, optional
-        By how much each of the numbers that describe the body moves its tensor: `core.bodies.sensitivities.moves_of_tensor`.
+        By how much each of the numbers that describe the body moves its tensor (`tensor_sensitivities`).
         Without it the principal moments are those numbers.
     """
 
@@ -210,7 +210,7 @@ class FreeRotation:
         return self.sensitivity.angular_velocity(uncertainty, horizon)
 
     @cached_property
-    def sensitivity(self) -> Inherited | None:
+    def sensitivity(self) -> InputUncertainty | None:
         """What uncertain inputs come to, where the body is not at rest.
 
         None for a line of matter askew: what turns it out of line gives it a third moment, and nothing says how small.
@@ -223,7 +223,7 @@ class FreeRotation:
         low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
         largest = math.ldexp(self.largest_rate, -rate)
         components = np.ldexp(w, -rate)
-        moves = Moves.of(
+        moves = Sensitivities.of(
             np.ldexp(i, -exponent),
             (low, high),
             components,
@@ -234,7 +234,7 @@ class FreeRotation:
             largest,
             math.ldexp(1.0, -rate),
         )
-        return Inherited(self.motion, moves, math.ldexp(1.0, rate), largest)
+        return InputUncertainty(self.motion, moves, math.ldexp(1.0, rate), largest)
 
     def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
         """Return the time after which a relative `uncertainty` of every input leaves nothing known of the phase (s).

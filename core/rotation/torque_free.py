@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.bodies.mass_properties import MassProperties
-from core.bodies.sensitivities import moves_of_tensor
+from core.bodies.sensitivities import tensor_sensitivities
 from core.compiled import kernel
 from core.notices import Notice
 from core.rotation.discrete_mechanics import moser_veselov
@@ -237,7 +237,7 @@ class TorqueFree:
     def _exact(self) -> FreeRotation:
         # Principal moments that were given as such are their own numbers; that spares the tensors of their moves.
         described = self.body.mass is not None or not self._diagonal
-        moves = partial(moves_of_tensor, self.body) if described else None
+        moves = partial(tensor_sensitivities, self.body) if described else None
         return FreeRotation(self.body.principal_of_motion, self.angular_velocity, moves)
 
     def ranges(self, states: Floats) -> Mapping[str, Range]:

@@ -37,7 +37,7 @@ class Splitting:
     parts : int
         Number of parts.
     flow : compiled function of signature `PART_FLOW`
-        Moves the state along one part, numbered from 0, for a duration that may be negative.
+        Sensitivities the state along one part, numbered from 0, for a duration that may be negative.
     """
 
     parts: int

@@ -16,22 +16,22 @@ from math import ceil
 from pathlib import Path
 from typing import Any
 
-from service.execution.scratch import Scratch
-from service.execution.worker import Asked, Failed, restored, serve, terms_of
-from service.execution.worker_pool import Died, Job, NoTurn, Overdue, Processes, Stopped
+from service.execution.scratch import LockedTempDir
+from service.execution.worker import Asked, Failed, map_shared_memory, serve, terms_of
+from service.execution.worker_pool import DeadlineExceeded, Job, Processes, QueueTimeout, Stopped, WorkerDied
 from service.http.limits import ClientGone
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.problems import Problem, Refusal
 from service.responses.json_stream import Document
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 
 MEMORY = 20.0
 """About how many of the last jobs tell how fast this machine is."""
 
 
-class Pace:
+class SpeedCorrection:
     """How long computations take on this machine, as it is loaded now, in proportion to their prices."""
 
     def __init__(self) -> None:
@@ -62,7 +62,7 @@ class Compute:
 
     Attributes
     ----------
-    pace : Pace
+    pace : SpeedCorrection
         By which prices are corrected where times are predicted.
     processes : Processes
     """
@@ -73,9 +73,9 @@ class Compute:
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
         self.processes = Processes(self.size, serve, (self.terms,), "service.execution.forkserver_preload", self._lost)
-        self._scratch: Scratch | None = None
+        self._scratch: LockedTempDir | None = None
         self._numbers = count()
-        self.pace = Pace()
+        self.pace = SpeedCorrection()
         self._promised = 0.0
         self._jobs = self._held = 0
         self._up = self._stopping = False
@@ -84,7 +84,7 @@ class Compute:
         """Start the processes and return when each is ready."""
         memory = Path("/dev/shm")
         directory = self._settings.scratch or (memory if os.access(memory, os.W_OK) else None)
-        self._scratch = Scratch("polhode-results-", directory)
+        self._scratch = LockedTempDir("polhode-results-", directory)
         await self.processes.start()
         self._up = True
 
@@ -110,7 +110,7 @@ class Compute:
             self._held -= memory
 
     async def answer(
-        self, route: Question, body: bytes, price: float, media: str | None, gone: Callable[[], Awaitable[None]]
+        self, route: PostRoute, body: bytes, price: float, media: str | None, gone: Callable[[], Awaitable[None]]
     ) -> Document:
         """Return the answer to a question, computed and composed in another process.
 
@@ -153,7 +153,7 @@ class Compute:
                 self.pace.learn(price, job.seconds)
             self._metrics.job_seconds.observe(job.seconds)
             if isinstance(result, Document):
-                return restored(result, file)
+                return map_shared_memory(result, file)
         finally:
             watch.cancel()
             self.processes.drop(job)
@@ -185,13 +185,13 @@ class Compute:
         limit = self._settings.deadline_seconds
         try:
             result: Any = pickle.loads(job.reply.result())
-        except Overdue:
+        except DeadlineExceeded:
             detail = f"the computation took longer than {limit:g} s, the limit deadline_seconds, and was stopped"
             raise Refusal("deadline-exceeded", detail) from None
-        except Died:
+        except WorkerDied:
             detail = "the process that computed this answer died; other questions are not affected"
             raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
-        except NoTurn:
+        except QueueTimeout:
             detail = "no compute process became free for this question in time; it was not begun"
             raise Refusal("not-ready", detail, headers=(("Retry-After", "1"),)) from None
         except Stopped:

@@ -52,7 +52,7 @@ def calibration() -> Calibration:
 
 
 @runtime_checkable
-class Foreseen(Protocol):
+class CostModel(Protocol):
     """A price that also foresees how long the answer will be."""
 
     def __call__(self, question: Any, budget: Budget) -> float:
@@ -65,7 +65,7 @@ class Foreseen(Protocol):
 
 
 @dataclass(frozen=True)
-class Priced:
+class CalibratedCost:
     """A route's price: the operation's name in the table, and what is counted of a question.
 
     Attributes

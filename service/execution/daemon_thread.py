@@ -9,7 +9,7 @@ from threading import Thread
 from typing import Any
 
 
-async def aside(work: Callable[[], Any]) -> Any:
+async def run_in_daemon_thread(work: Callable[[], Any]) -> Any:
     """Return what a function returns that may wait for long, in a thread that holds up nobody's exit."""
     loop = asyncio.get_running_loop()
     done: asyncio.Future[Any] = loop.create_future()
@@ -27,13 +27,13 @@ async def aside(work: Callable[[], Any]) -> Any:
             outcome, error = work(), None
         except BaseException as raised:
             outcome, error = None, raised
-        tell(loop, settle, outcome, error)
+        call_soon_if_open(loop, settle, outcome, error)
 
     Thread(target=run, daemon=True).start()
     return await done
 
 
-def tell(loop: asyncio.AbstractEventLoop, call: Callable[..., None], *arguments: Any) -> None:
+def call_soon_if_open(loop: asyncio.AbstractEventLoop, call: Callable[..., None], *arguments: Any) -> None:
     """Call something in the event loop from another thread; nobody is told any more once the loop is closed."""
     with contextlib.suppress(RuntimeError):
         loop.call_soon_threadsafe(call, *arguments)

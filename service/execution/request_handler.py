@@ -13,16 +13,16 @@ from core.notices import Notice
 from core.systems.budget import Budget
 from service.problems import pointer_of
 from service.requests.request_reader import Limits, Reader
-from service.routing import Answer, Question
+from service.routing import Answer, PostRoute
 from service.schemas import SIGNATURE
 
 
-class Answering:
+class RequestHandler:
     """Reads and answers questions.
 
     Parameters
     ----------
-    routes : iterable of Question
+    routes : iterable of PostRoute
         What can be asked.
     budget : Budget
         What one question may cost.
@@ -30,20 +30,20 @@ class Answering:
         On documents.
     """
 
-    def __init__(self, routes: Iterable[Question], budget: Budget, limits: Limits) -> None:
+    def __init__(self, routes: Iterable[PostRoute], budget: Budget, limits: Limits) -> None:
         self._routes = tuple(routes)
         self._budget = budget
         self._readers = {route.path: Reader(route.question, limits).read for route in self._routes}
 
-    def read(self, route: Question, body: bytes) -> Any:
+    def read(self, route: PostRoute, body: bytes) -> Any:
         """Return the question that a body asks; see `Reader.read`."""
         return self._readers[route.path](body)
 
-    def price(self, route: Question, question: Any) -> float:
+    def price(self, route: PostRoute, question: Any) -> float:
         """Return the predicted time of an answer (s), or raise `BudgetExceeded`."""
         return route.price(question, self._budget)
 
-    def answer(self, route: Question, question: Any) -> Answer:
+    def answer(self, route: PostRoute, question: Any) -> Answer:
         """Return the whole answer: signature, warnings, fields."""
         answer = {"signature": SIGNATURE, "warnings": (), **route.handle(question, self._budget)}
         answer["warnings"] = [_warning(notice) for notice in answer["warnings"]]

@@ -17,7 +17,7 @@ OVERHEAD = 1_000
 """Bytes of memory that an entry takes beside question and answer: its headers, its objects and its place."""
 
 
-class KeptAnswers:
+class ResponseCache:
     """The answers given last, by path and body, which with the version determine an answer to the bit.
 
     An answer is kept when its question is asked for the second time: most are asked once, and would drive out those

@@ -18,7 +18,7 @@ from pathlib import Path
 from service.observability.logs import LOG
 
 
-class Scratch:
+class LockedTempDir:
     """A directory of this process's own.
 
     Parameters

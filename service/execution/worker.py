@@ -23,12 +23,12 @@ import numpy as np
 
 from core.errors import MechanicsError
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.execution.worker_pool import HEADER, framed
 from service.problems import Problem, Refusal, problem_of
 from service.requests.request_reader import Limits
 from service.responses.json_stream import Document, Part, composed
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 
 SMALL = 65_536
@@ -92,9 +92,9 @@ class Failed:
 
 
 @cache
-def answering(terms: Terms) -> Answering:
+def answering(terms: Terms) -> RequestHandler:
     """Return this process's answering of questions, warm; inherited warm if the fork server has made it."""
-    made = Answering(_routes(terms.table).values(), terms.budget, terms.limits)
+    made = RequestHandler(_routes(terms.table).values(), terms.budget, terms.limits)
     made.warm()
     return made
 
@@ -109,7 +109,7 @@ def terms_of(settings: Settings, table: str) -> Terms:
 
 
 @cache
-def _routes(table: str) -> Mapping[str, Question]:
+def _routes(table: str) -> Mapping[str, PostRoute]:
     return {route.path: route for route in resolve_name(table)()}
 
 
@@ -144,7 +144,9 @@ def work(terms: Terms, asked: Asked) -> Document | Problem | Failed:
     route = _routes(terms.table)[asked.path]
     try:
         question = answering(terms).read(route, asked.body)
-        return kept(composed(route, answering(terms).answer(route, question), asked.media), Path(asked.file))
+        return spill_to_shared_memory(
+            composed(route, answering(terms).answer(route, question), asked.media), Path(asked.file)
+        )
     except Refusal as refusal:
         return refusal.problem
     except MechanicsError as error:
@@ -153,7 +155,7 @@ def work(terms: Terms, asked: Asked) -> Document | Problem | Failed:
         return Failed(traceback.format_exc())
 
 
-def kept(document: Document, file: Path) -> Document:
+def spill_to_shared_memory(document: Document, file: Path) -> Document:
     """Return a document as it travels: a large one with its parts in the file, or refuse it for want of room."""
     if all(not isinstance(part, np.ndarray) for part in document.parts) and sum(map(len, document.parts)) <= SMALL:
         return document
@@ -184,7 +186,7 @@ def _stored(part: Part, out: BinaryIO) -> Any:
     return stored
 
 
-def restored(document: Document, file: Path) -> Document:
+def map_shared_memory(document: Document, file: Path) -> Document:
     """Return a document whose stored parts are mapped from the file, which may be removed after that, or refuse it."""
     if not any(isinstance(part, Stored) for part in document.parts):
         return document

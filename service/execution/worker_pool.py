@@ -21,7 +21,7 @@ from threading import Lock, Thread
 from time import perf_counter
 from typing import Any, cast
 
-from service.execution.daemon_thread import aside, tell
+from service.execution.daemon_thread import call_soon_if_open, run_in_daemon_thread
 from service.observability.logs import LOG
 
 HEADER = 8
@@ -34,15 +34,15 @@ _EXIT_CODES = Lock()
 """Whoever starts a process asks after all others; of two who read an exit code at the same time one would find none."""
 
 
-class Died(Exception):
+class WorkerDied(Exception):
     """The process died while it worked on the request."""
 
 
-class Overdue(Exception):
+class DeadlineExceeded(Exception):
     """The request was worked on for longer than it may be; its process was killed."""
 
 
-class NoTurn(Exception):
+class QueueTimeout(Exception):
     """No process became free for the request in time."""
 
 
@@ -61,7 +61,7 @@ class Job:
     Attributes
     ----------
     reply : asyncio.Future of bytes
-        Fails with `Died`, `Overdue`, `NoTurn` or `Stopped`.
+        Fails with `WorkerDied`, `DeadlineExceeded`, `QueueTimeout` or `Stopped`.
     seconds : float
         How long the process took, once there is a reply (s).
     """
@@ -239,7 +239,7 @@ class Processes:
         if job is not None:
             self._detach(job)
             if job.begun:
-                job.fail(Died())
+                job.fail(WorkerDied())
             elif not job.reply.done():
                 # It was on its way to a process that was dead already: it is not that request's fault.
                 job.timer = asyncio.get_running_loop().call_later(job.longest, self._impatient, job)
@@ -281,11 +281,11 @@ class Processes:
             job.process = None
 
     def _impatient(self, job: Job) -> None:
-        job.fail(NoTurn())
+        job.fail(QueueTimeout())
         self.drop(job)
 
     def _overdue(self, job: Job) -> None:
-        job.fail(Overdue())
+        job.fail(DeadlineExceeded())
         self.drop(job)
 
     def _replace(self, pause: float) -> None:
@@ -314,7 +314,7 @@ class Processes:
         async with self._turn:
             ours, theirs = socket.socketpair()
             try:
-                return await aside(partial(self._spawn, theirs)), ours
+                return await run_in_daemon_thread(partial(self._spawn, theirs)), ours
             except BaseException:
                 ours.close()
                 raise
@@ -335,4 +335,4 @@ class Processes:
             code = handle.exitcode or 0
             handle.close()
         if not (killed or self._stopping):
-            tell(loop, self._lost, code)
+            call_soon_if_open(loop, self._lost, code)

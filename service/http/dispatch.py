@@ -13,14 +13,14 @@ from typing import Any
 from core.errors import MechanicsError
 from service import VERSION
 from service.execution.admission import Compute
-from service.execution.request_handler import Answering
-from service.execution.response_cache import KeptAnswers
+from service.execution.request_handler import RequestHandler
+from service.execution.response_cache import ResponseCache
 from service.http.cors import Cors
 from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.heads import Heads
 from service.http.keys import Keys
 from service.http.limits import ClientGone, Receive, negotiated, read_body, require_acceptable, require_json
-from service.http.request_context import VARY, Exchange, Scope, Send
+from service.http.request_context import VARY, RequestContext, Scope, Send
 from service.http.rounds import Rounds
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
@@ -28,7 +28,7 @@ from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.responses import npz as archive
 from service.responses.json_stream import Document, composed
-from service.routing import Page, Question, Route
+from service.routing import GetRoute, PostRoute, Route
 from service.settings import Settings
 
 _NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), VARY)
@@ -42,7 +42,7 @@ class Dispatcher:
     ----------
     routes : sequence of Route
         The one table.
-    answering : Answering
+    answering : RequestHandler
         Answers questions in this process.
     compute : Compute
         Answers questions in others.
@@ -52,7 +52,7 @@ class Dispatcher:
         self,
         routes: Sequence[Route],
         *,
-        answering: Answering,
+        answering: RequestHandler,
         compute: Compute,
         metrics: Metrics,
         settings: Settings,
@@ -61,7 +61,7 @@ class Dispatcher:
         self._answering, self._compute, self._metrics, self._settings = answering, compute, metrics, settings
         self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)
         self._cors = Cors(settings.cors_origins) or None
-        self._kept = KeptAnswers(settings.cached_answers, settings.cached_bytes)
+        self._kept = ResponseCache(settings.cached_answers, settings.cached_bytes)
         self._records = Records(metrics, settings.log_requests)
         self.rounds = self._made_rounds()
 
@@ -83,9 +83,9 @@ class Dispatcher:
 
     async def serve(self, route: Route, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one HTTP request that has been routed."""
-        exchange = Exchange(self._records, self._cors, route.operation_id, scope, receive, send)
+        exchange = RequestContext(self._records, self._cors, route.operation_id, scope, receive, send)
         try:
-            if isinstance(route, Question):
+            if isinstance(route, PostRoute):
                 await self._question(route, exchange)
             else:
                 await self._page(route, exchange)
@@ -109,7 +109,7 @@ class Dispatcher:
             detail = "the service failed; the failure is logged under this id"
             await exchange.problem(Problem(REGISTRY["internal-error"], detail, extra={"id": exchange.id}))
 
-    async def _question(self, route: Question, exchange: Exchange) -> None:
+    async def _question(self, route: PostRoute, exchange: RequestContext) -> None:
         settings, headers = self._settings, exchange.headers
         if self._keys is not None:
             exchange.key = self._keys.admit(headers)
@@ -138,13 +138,13 @@ class Dispatcher:
         await exchange.answer(whole)
 
     async def _stream(
-        self, document: Document, etag: bytes, exchange: Exchange, headers: Sequence[Header] = (JSON,)
+        self, document: Document, etag: bytes, exchange: RequestContext, headers: Sequence[Header] = (JSON,)
     ) -> None:
         self._metrics.samples.inc(document.numbers)
         with self._compute.holding(document.memory):
             await exchange.stream(document.pieces(), etag, self._settings.stalled_seconds, headers)
 
-    async def _document(self, route: Question, body: bytes, media: str | None, exchange: Exchange) -> Document:
+    async def _document(self, route: PostRoute, body: bytes, media: str | None, exchange: RequestContext) -> Document:
         longest = self._settings.deadline_seconds
         if len(body) <= self._settings.inline_bytes:
             question = self._answering.read(route, body)
@@ -161,14 +161,14 @@ class Dispatcher:
                 exchange.key.work(price)
         return await self._compute.answer(route, body, price, media, gone=exchange.gone)
 
-    async def _page(self, route: Page, exchange: Exchange) -> None:
+    async def _page(self, route: GetRoute, exchange: RequestContext) -> None:
         reply = route.content()
         if b"accept" in exchange.headers:
             require_acceptable(exchange.headers[b"accept"], reply.media_type.split(b";", 1)[0])
         await exchange.page(reply.body, reply.media_type, reply.status)
 
     async def _unrouted(self, scope: Scope, receive: Receive, send: Send) -> None:
-        exchange = Exchange(self._records, self._cors, "none", scope, receive, send)
+        exchange = RequestContext(self._records, self._cors, "none", scope, receive, send)
         methods = [method for method, path in self._routes if path == scope["path"]]
         preflight = self._cors.preflight(scope["method"], exchange.headers) if self._cors and methods else None
         if preflight is not None:
@@ -185,6 +185,6 @@ class Dispatcher:
         await exchange.problem(problem)
 
 
-def _etag_of_answer(route: Question, body: bytes, media: str = "application/json") -> bytes:
+def _etag_of_answer(route: PostRoute, body: bytes, media: str = "application/json") -> bytes:
     """Return the validator of an answer that is not written yet: question and version determine it to the bit."""
     return etag_of(_VERSION, route.path.encode(), media.encode(), body)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from service.http.limits import require_json
 from service.problems import Refusal
-from service.routing import Question, Route
+from service.routing import PostRoute, Route
 
 LONGEST = 2_048
 """Bytes of a head that is remembered, at most."""
@@ -37,7 +37,7 @@ _PLAIN_JSON = frozenset((b"*/*", b"application/json"))
 class Known(NamedTuple):
     """What a head was understood as."""
 
-    route: Question
+    route: PostRoute
     length: int
     """Bytes of head and body together."""
 
@@ -75,7 +75,7 @@ class Heads:
         headers = {name: value for name, value in scope["headers"] if name not in own}
         length = headers.get(b"content-length", b"")
         if (
-            isinstance(route, Question)
+            isinstance(route, PostRoute)
             and len(head) <= LONGEST
             and length.isdigit()
             and len(length) < 10

@@ -1,30 +1,17 @@
-"""What is refused before the mechanics sees it: size, media type, depth, number of keys, keys named twice."""
+"""Limits on a request before its body is read as a document: media types and size."""
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Awaitable, Callable, Iterable, Mapping, MutableMapping
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
-
-from service.problems import Fault, Refusal, pointer_of
+from service.problems import Refusal
 
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Headers = Mapping[bytes, bytes]
 
-_KEY_END = re.compile(rb'"[ \t\r\n]*:')
-_KEY = re.compile(rb'"(\w*)"[ \t\r\n]*:')
 _WEIGHT = re.compile(r"0(\.\d{0,3})?|1(\.0{0,3})?")
-_OTHER = bytes(set(range(256)) - set(b'"[]{}'))
-_STEP = np.zeros(256, np.int8)
-_STEP[list(b"[{")], _STEP[list(b"]}")] = 1, -1
-
-_FEW = 1_024
-"""Bytes of a document that holds few strings."""
-
-LONGEST_KEY_SHOWN = 40
 
 
 class ClientGone(Exception):
@@ -124,93 +111,3 @@ async def _drop(receive: Receive, most: int) -> None:
 def _too_large(limit: int) -> Refusal:
     detail = f"the body has more than {limit} bytes, the limit max_body_bytes"
     return Refusal("body-too-large", detail, headers=(("Connection", "close"),), extra={"limit": limit})
-
-
-class Limits(NamedTuple):
-    """What a document may have: levels of nesting, keys, arrays and objects, strings; rows of large arrays apart."""
-
-    nesting: int = 32
-    keys: int = 4000
-    arrays: int = 50_000
-    strings: int = 100_000
-
-
-def require_simple(body: bytes, limits: Limits) -> None:
-    """Refuse a document that is nested too deeply or has too many keys, arrays or strings, without building it."""
-    deepest, most_keys, most_arrays, most_strings = limits
-    # Each string has two quotes; what is escaped in one costs about as much to read as one more would.
-    if len(body) > 2 * most_strings and body.count(b'"') + body.count(b"\\") > 2 * most_strings:
-        raise Refusal("too-complex", f"the body has more than {most_strings} strings or escapes, the limit max_strings")
-    # A key with its value and comma takes five bytes, so a short document cannot have too many.
-    if len(body) > 5 * most_keys and body.count(b":") > most_keys and len(_KEY_END.findall(body)) > most_keys:
-        raise Refusal("too-complex", f"the body has more than {most_keys} keys, the limit max_keys")
-    opened = body.count(b"[") + body.count(b"{")
-    if opened > most_arrays:
-        raise Refusal("too-complex", f"the body has more than {most_arrays} arrays and objects, the limit max_arrays")
-    if opened > deepest and _depth(body) > deepest:
-        raise Refusal("too-complex", f"the body is nested deeper than {deepest} levels, the limit max_nesting")
-
-
-def _depth(body: bytes) -> int:
-    """Return how deeply brackets nest outside of strings; meaningless for what is not JSON, yet never an error."""
-    if b"\\" in body:
-        body = body.replace(b"\\\\", b"").replace(b'\\"', b"")
-    codes = np.frombuffer(body.translate(None, _OTHER), np.uint8)
-    inside = np.logical_xor.accumulate(codes == ord('"'))
-    steps = np.where(inside, np.int8(0), _STEP[codes])
-    return int(np.cumsum(steps, dtype=np.int64).max(initial=0))
-
-
-def require_distinct_keys(body: bytes) -> None:
-    """Refuse a valid JSON document of which an object names a key twice.
-
-    Where no string at all occurs twice in the document, as in most small questions, or no key, looking at them is
-    enough. Otherwise, and where a colon belongs to no plain name, it is read again, object by object.
-    """
-    if len(body) < _FEW and b"\\" not in body:
-        # Every second piece between quotes is a string.
-        strings = body.split(b'"')[1::2]
-        if len(set(strings)) == len(strings):
-            return
-    names = _KEY.findall(body)
-    if len(set(names)) != len(names) or len(names) != body.count(b":"):
-        try:
-            json.loads(body, object_pairs_hook=_distinct)
-        except _Twice:
-            path = _repeated(json.loads(body, object_pairs_hook=_Pairs)) or ()
-            if path and len(str(path[-1])) > LONGEST_KEY_SHOWN:
-                path = path[:-1]
-            fault = Fault(pointer_of(path), "is given twice in one object")
-            raise Refusal("duplicate-key", f"{fault.pointer} {fault.detail}", faults=[fault]) from None
-
-
-class _Pairs(list[tuple[str, Any]]):
-    """The members of an object as they were written."""
-
-
-def _distinct(pairs: list[tuple[str, Any]]) -> None:
-    if len({name for name, _ in pairs}) != len(pairs):
-        raise _Twice
-
-
-class _Twice(Exception):
-    """An object names a key twice."""
-
-
-def _repeated(node: Any, path: tuple[str | int, ...] = ()) -> tuple[str | int, ...] | None:
-    """Return the path of the first key that is named twice."""
-    if isinstance(node, _Pairs):
-        seen = set()
-        for name, value in node:
-            if name in seen:
-                return (*path, name)
-            seen.add(name)
-            found = _repeated(value, (*path, name))
-            if found is not None:
-                return found
-    elif isinstance(node, list):
-        for i, value in enumerate(node):
-            found = _repeated(value, (*path, i)) if isinstance(value, list) else None
-            if found is not None:
-                return found
-    return None

@@ -232,7 +232,7 @@ async def not_understood(said: bytes, scope: Scope, receive: ASGIReceiveCallable
 
 
 async def write_piece(cycle: RequestResponseCycle, parts: Sequence[bytes | memoryview]) -> bool:
-    """Send a chunk as its parts are, as `service.http.request_context.WritePiece` has it; large ones are copied to be joined."""
+    """Send a chunk as its parts are, as `WritePiece` has it; large ones are copied to be joined."""
     if not cycle.chunked_encoding or cycle.response_complete or cycle.scope["method"] == "HEAD":
         return False
     if cycle.flow.write_paused and not cycle.disconnected:

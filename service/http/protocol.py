@@ -1,8 +1,8 @@
 """The server's HTTP protocol: a shorter way for plain small questions.
 
 A question that has arrived whole, with a head that has been understood before, is handed to the application's rounds
-(`service.http.rounds`) as it is; for a small answer, parsing and the messages of ASGI cost as much as finding it. Everything
-else is left to `service.http.orderly_http`, and so to uvicorn: parsing, keeping alive, pipelining, back-pressure,
+(`service.http.rounds`) as it is; for a small answer, parsing and the messages of ASGI cost as much as finding it.
+Everything else is left to `service.http.orderly_http`, and so to uvicorn: parsing, pipelining, back-pressure,
 disconnection, continuation, shutdown. Where any of them has a say, or the rounds decline a question, it goes the
 ordinary way of ASGI. See docs/decisions/0009.
 """

@@ -41,7 +41,7 @@ _PAGE_HEADERS: tuple[Header, ...] = (
 )
 
 
-class Exchange:
+class RequestContext:
     """One request and its response.
 
     Parameters

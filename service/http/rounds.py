@@ -4,8 +4,8 @@ A small question takes a few microseconds at each of these stations. Carried thr
 processor's caches filled by the others; in rounds the code of a station is fetched once for all. Nor does it take a
 task, or the messages of ASGI. See docs/decisions/0009.
 
-A question gets here if it has arrived whole and plainly (`service.http.heads`). Where it then turns out to be anything but
-small and sound, it is declined, nothing having been done about it, and goes the ordinary way of `service.http.dispatch`.
+A question gets here if it has arrived whole and plainly (`service.http.heads`). Where it then turns out to be anything
+but small and sound, it is declined, nothing having been done about it, and goes the ordinary way.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from collections.abc import Callable, Iterable
 from time import perf_counter
 from typing import Any, Protocol
 
-from service.execution.request_handler import Answering
-from service.execution.response_cache import KeptAnswers
+from service.execution.request_handler import RequestHandler
+from service.execution.response_cache import ResponseCache
 from service.http.etag import Representation
 from service.http.heads import Heads
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.responses.json_rows import ONE_PIECE, array_size, written
-from service.routing import Question
+from service.routing import PostRoute
 
 ROUNDS = "polhode.rounds"
 """Name under which an application gives its rounds to the server, in the state of its lifespan."""
@@ -55,7 +55,7 @@ class _Asked:
 
     __slots__ = ("asker", "body", "identity", "route", "since", "whole", "work")
 
-    def __init__(self, asker: Asker, route: Question, body: bytes, identity: bytes | None) -> None:
+    def __init__(self, asker: Asker, route: PostRoute, body: bytes, identity: bytes | None) -> None:
         self.since = perf_counter()
         self.asker, self.route, self.body, self.identity = asker, route, body, identity
         self.work: Any = None
@@ -70,8 +70,8 @@ class Rounds:
     ----------
     heads : Heads
         Of the requests whose questions are answered here.
-    answering : Answering
-    kept : KeptAnswers
+    answering : RequestHandler
+    kept : ResponseCache
     metrics : Metrics
     records : Records
     most_seconds : float
@@ -81,8 +81,8 @@ class Rounds:
     def __init__(
         self,
         heads: Heads,
-        answering: Answering,
-        kept: KeptAnswers,
+        answering: RequestHandler,
+        kept: ResponseCache,
         metrics: Metrics,
         records: Records,
         most_seconds: float = SMALL,
@@ -91,7 +91,7 @@ class Rounds:
         self._answering, self._kept, self._metrics, self._records = answering, kept, metrics, records
         self._asked: list[_Asked] = []
 
-    def ask(self, asker: Asker, route: Question, body: bytes, identity: bytes | None = None) -> None:
+    def ask(self, asker: Asker, route: PostRoute, body: bytes, identity: bytes | None = None) -> None:
         """Have a question answered in the next round; `identity` is what its head says of it."""
         if not self._asked:
             asyncio.get_running_loop().call_soon(self._go)

@@ -16,7 +16,7 @@ from service import VERSION
 from service.openapi.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
 from service.responses import npz as archive
-from service.routing import Question, Route
+from service.routing import PostRoute, Route
 from service.schemas import ProblemDocument
 
 DESCRIPTION = """\
@@ -118,10 +118,10 @@ class _Route(APIRoute):
             description=route.description,
             tags=[route.tag],
             response_model=route.answer,
-            response_description="The answer." if isinstance(route, Question) else "The document.",
+            response_description="The answer." if isinstance(route, PostRoute) else "The document.",
             response_class=_response_class(route),
             responses=_representations(route)
-            | _problems(_PROBLEMS_OF_QUESTIONS if isinstance(route, Question) else (406, 500)),
+            | _problems(_PROBLEMS_OF_QUESTIONS if isinstance(route, PostRoute) else (406, 500)),
         )
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
@@ -132,7 +132,7 @@ class _Route(APIRoute):
 
 
 def _response_class(route: Route) -> type[Response]:
-    if isinstance(route, Question) or route.media_type == "application/json":
+    if isinstance(route, PostRoute) or route.media_type == "application/json":
         return JSONResponse
     return type("_Media", (Response,), {"media_type": route.media_type})
 
@@ -144,7 +144,7 @@ def _endpoint(route: Route) -> Callable[..., Any]:
         raise NotImplementedError
 
     parameters = []
-    if isinstance(route, Question):
+    if isinstance(route, PostRoute):
         examples: Any = {
             name: {"summary": example.summary, "value": dict(example.question)}
             for name, example in route.examples.items()
@@ -158,7 +158,7 @@ def _endpoint(route: Route) -> Callable[..., Any]:
 
 def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
     """Return how an answer is documented that is not JSON; the Accept header chooses."""
-    if not isinstance(route, Question):
+    if not isinstance(route, PostRoute):
         return {}
     content: dict[str, Any] = {media: {"schema": {"type": "string"}} for media in route.representations}
     content[archive.MEDIA_TYPE] = {

@@ -90,7 +90,7 @@ def in_numerals(hint: Any) -> Any:
                 return ForwardRef(ANY_BODY)
             if isinstance(mark, Count):
                 bounds = Field(min_length=mark.at_least, max_length=mark.at_most)
-                return _annotated(list.__class_getitem__(form_of(get_args(parts[0])[0])), bounds)
+                return _annotated(list.__class_getitem__(decimal_model_for(get_args(parts[0])[0])), bounds)
             if isinstance(mark, Quantity) and parts[0] is float:
                 return _annotated(float | str, Numeral(mark))
             if isinstance(mark, Rows):
@@ -103,7 +103,7 @@ def in_numerals(hint: Any) -> Any:
     if origin in (Union, UnionType):
         many = [mark for part in parts for mark in getattr(part, "__metadata__", ()) if isinstance(mark, Rows)]
         return _annotated(Any, OneOrMany(many[0])) if many else Union.__getitem__(tuple(map(in_numerals, parts)))
-    return form_of(hint) if isinstance(hint, type) and is_dataclass(hint) else hint
+    return decimal_model_for(hint) if isinstance(hint, type) and is_dataclass(hint) else hint
 
 
 def _annotated(bare: Any, mark: Any) -> Any:
@@ -120,7 +120,7 @@ def fields_in_numerals(cls: Any) -> dict[str, Any]:
 
 
 @cache
-def form_of(cls: type[Any]) -> type[Request]:
+def decimal_model_for(cls: type[Any]) -> type[Request]:
     """Return the form of a dataclass of core."""
     own = fields_in_numerals(cls)
     if "kind" in own:
@@ -129,7 +129,7 @@ def form_of(cls: type[Any]) -> type[Request]:
     return made
 
 
-def given(form: BaseModel, *left_out: str) -> Mapping[str, Any]:
+def explicit_fields(form: BaseModel, *left_out: str) -> Mapping[str, Any]:
     """Return what a client gave, without defaults, which are doubles, and without some fields."""
     return form.model_dump(exclude_unset=True, exclude=set(left_out))
 
@@ -137,11 +137,11 @@ def given(form: BaseModel, *left_out: str) -> Mapping[str, Any]:
 def _bodies() -> Any:
     """Return the union of the forms of bodies that can be summed exactly: all but meshes."""
     members = (PrincipalMoments, InertiaTensor, PointMasses, *UNIFORM.values(), Composite)
-    forms = tuple(form_of(member) for member in members_of(Body) if member in members)
+    forms = tuple(decimal_model_for(member) for member in members_of(Body) if member in members)
     union = _annotated(Union.__getitem__(forms), Field(discriminator="kind"))
     # A composite holds parts and a part any body, composites among them.
-    form_of(Part).model_rebuild(_types_namespace={ANY_BODY: union})
-    form_of(Composite).model_rebuild()
+    decimal_model_for(Part).model_rebuild(_types_namespace={ANY_BODY: union})
+    decimal_model_for(Composite).model_rebuild()
     return union
 
 
@@ -172,7 +172,7 @@ TimesInNumerals = Annotated[
 def body_of(body: BaseModel) -> ExactMass:
     """Return a question's body; faults are told as seen from the question."""
     try:
-        return exact_body(given(body))
+        return exact_body(explicit_fields(body))
     except InvalidParameter as fault:
         raise fault.inside("body") from None
     except NotApplicable as fault:

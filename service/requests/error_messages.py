@@ -13,8 +13,8 @@ from difflib import get_close_matches
 from typing import Any
 
 from core.errors import InvalidParameter
-from service.http.limits import LONGEST_KEY_SHOWN
 from service.problems import MOST_FAULTS, Fault, code_of, pointer_of
+from service.requests.document_limits import LONGEST_KEY_SHOWN
 
 Step = str | int
 Names = tuple[str, ...]

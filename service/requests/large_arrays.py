@@ -32,7 +32,7 @@ _TOKEN = token_hex(16)
 """Part of every token; a client does not know it and so cannot name an array that it did not send."""
 
 
-class Taken:
+class ExtractedArrays:
     """The arrays that were taken out of a document, by their tokens.
 
     Attributes
@@ -71,7 +71,7 @@ class Taken:
         return len(self._placed) == len(self._arrays)
 
 
-def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken | None]:
+def extract_arrays(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, ExtractedArrays | None]:
     """Return a JSON document with tokens in place of the large arrays of some fields, and these arrays if it has any.
 
     A document that is not JSON stays so, as tokens are JSON strings and stand where an array stood.
@@ -84,7 +84,7 @@ def take_out(document: bytes, fields: Mapping[str, Rows]) -> tuple[bytes, Taken 
     # Where nothing is escaped, a name in quotes before a colon cannot be part of a string.
     if len(document) < LEAST_BYTES or not fields or b"\\" in document:
         return document, None
-    taken = Taken()
+    taken = ExtractedArrays()
     parts, done, unreadable = [], 0, 0
     for match in islice(_opening(tuple(fields)).finditer(document), MOST):
         start = match.end() - 1
@@ -116,7 +116,7 @@ def _opening(names: tuple[str, ...]) -> re.Pattern[bytes]:
     return re.compile(rb'"(%s)"[ \t\r\n]*:[ \t\r\n]*\[' % b"|".join(name.encode() for name in names))
 
 
-def taking(schema: Any, fields: dict[str, Rows]) -> Any:
+def placeholder_schema(schema: Any, fields: dict[str, Rows]) -> Any:
     """Return a validator's schema whose array fields take arrays for tokens; their names are put into `fields`."""
 
     def walked(node: Any, name: str) -> Any:

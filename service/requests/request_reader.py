@@ -16,21 +16,21 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
 from core.rows import Rows
-from service.http.limits import Limits, require_distinct_keys, require_simple
 from service.problems import Fault, Refusal
+from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 from service.requests.error_messages import Layout
-from service.requests.large_arrays import LEAST_BYTES, Taken, take_out, taking
+from service.requests.large_arrays import LEAST_BYTES, ExtractedArrays, extract_arrays, placeholder_schema
 
 Q = TypeVar("Q")
 
 LARGE = 65_536
 """Bytes of a document from which on objects are made by the ten thousand."""
 WITHOUT, WITH = "<without>", "<with>"
-"""Labels of the two questions that a `ByPresence` tells apart."""
+"""Labels of the two questions that a `DiscriminatedByKey` tells apart."""
 
 
 @dataclass(frozen=True)
-class ByPresence:
+class DiscriminatedByKey:
     """Mark of a union of two questions: the second is meant where the document has a key, otherwise the first.
 
     Attributes
@@ -78,7 +78,7 @@ class Reader(Generic[Q]):
     Parameters
     ----------
     question : type
-        A pydantic model, which may hold dataclasses of core; or a union of two that a `ByPresence` tells apart.
+        A pydantic model, which may hold dataclasses of core; or a union of two that a `DiscriminatedByKey` tells apart.
     limits : Limits
         On the document.
     advised : callable
@@ -89,14 +89,14 @@ class Reader(Generic[Q]):
         self, question: type[Q], limits: Limits, advised: Callable[[Fault], Fault] = lambda fault: fault
     ) -> None:
         self._arrays: dict[str, Rows] = {}
-        schema = _failing_fast(taking(TypeAdapter(question).core_schema, self._arrays))
+        schema = _failing_fast(placeholder_schema(TypeAdapter(question).core_schema, self._arrays))
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
         self._layout = Layout.of(schema)
-        marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, ByPresence)]
+        marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, DiscriminatedByKey)]
         self._key = ""
         # The discriminator of the union would have the whole document built to look for a key.
-        self._told_apart: tuple[ByPresence, Reader[Q], Reader[Q]] | None = None
+        self._told_apart: tuple[DiscriminatedByKey, Reader[Q], Reader[Q]] | None = None
         for mark in marks:
             without, having = [
                 Reader(member, limits, partial(mark.advised, having=having))
@@ -135,13 +135,13 @@ class Reader(Generic[Q]):
             raise self._refusal(error) from None
 
     def _read(self, body: bytes) -> Q:
-        return self._told(body, *take_out(body, self._arrays))
+        return self._told(body, *extract_arrays(body, self._arrays))
 
-    def _told(self, body: bytes, rest: bytes, taken: Taken | None) -> Q:
+    def _told(self, body: bytes, rest: bytes, taken: ExtractedArrays | None) -> Q:
         """Return the question of a document, from which arrays may have been taken out."""
         if self._told_apart is not None:
             mark, without, having = self._told_apart
-            require_simple(rest, self._limits)
+            enforce_document_limits(rest, self._limits)
             if mark.may_be_in(rest):
                 try:
                     return having._read(body)
@@ -159,8 +159,8 @@ class Reader(Generic[Q]):
                     raise self._refusal(error) from None
         return self._plain(body)
 
-    def _validated(self, document: bytes, taken: Taken | None = None) -> Q:
-        require_simple(document, self._limits)
+    def _validated(self, document: bytes, taken: ExtractedArrays | None = None) -> Q:
+        enforce_document_limits(document, self._limits)
         question: Q = self._validate(document, strict=True, context=taken)
         require_distinct_keys(document)
         return question
@@ -209,4 +209,4 @@ def _failing_fast(schema: Any) -> Any:
     return schema
 
 
-__all__ = ["ByPresence", "Limits", "Reader"]
+__all__ = ["DiscriminatedByKey", "Limits", "Reader"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from service.responses import npz as archive
 from service.responses.json_rows import ONE_PIECE, array_size, parts, require_finite, rows, written
-from service.routing import Answer, Question
+from service.routing import Answer, PostRoute
 
 SLICE = 131_072
 """Bytes of text that are sent at a time."""
@@ -61,7 +61,7 @@ class Document:
         return first if len(self.parts) == 1 and isinstance(first, bytes) else b"".join(self.pieces())
 
 
-def composed(route: Question, answer: Answer, media: str | None) -> Document:
+def composed(route: PostRoute, answer: Answer, media: str | None) -> Document:
     """Return the document of an answer; `media` is None for JSON.
 
     Raises

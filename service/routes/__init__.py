@@ -15,10 +15,10 @@ from service.routes.rotation.trajectory import ROTATION
 from service.routes.rotation.wobble import WOBBLE
 from service.routes.scenes import questions as about_scenes
 from service.routes.work_precision import WORK_PRECISION
-from service.routing import Question
+from service.routing import PostRoute
 
 
-def questions() -> tuple[Question, ...]:
+def questions() -> tuple[PostRoute, ...]:
     """Return every question that can be asked, in the order of the documentation."""
     plain = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())
     in_digits = {

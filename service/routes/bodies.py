@@ -17,8 +17,8 @@ from core.bodies.principal_inertia import EPSILON, PrincipalInertia, Symmetry
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
 from core.systems.budget import Budget
-from service.execution.cost_model import Priced, quickest, speed_of
-from service.routing import Answer, Example, Question
+from service.execution.cost_model import CalibratedCost, quickest, speed_of
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Matrix, Request, Vector, View
 
 LOOKED_INTO = 8_000
@@ -147,7 +147,7 @@ def _extents(kind: Any) -> tuple[str, ...]:
 
 
 BODIES = (
-    Question(
+    PostRoute(
         "/v1/bodies/mass-properties",
         "mass_properties",
         "Mass, centre of mass, inertia, principal axes, symmetry and validity of a body",
@@ -155,7 +155,7 @@ BODIES = (
         MassPropertiesRequest,
         MassPropertiesAnswer,
         mass_properties,
-        Priced("mass_properties", counts),
+        CalibratedCost("mass_properties", counts),
         examples={
             "principal-moments": Example(
                 "a body known by its principal moments",

@@ -16,7 +16,7 @@ from core.systems.methods import Method
 from core.systems.methods.method import AbstractMethod, Family, Invariance
 from service.problems import registry
 from service.routes.scenes import CATALOGUE
-from service.routing import Page, Reply
+from service.routing import GetRoute, Reply
 from service.schemas import SIGNATURE, View
 
 
@@ -95,10 +95,10 @@ def constant(build: Callable[[], Any]) -> Callable[[], Reply]:
     return content
 
 
-def catalogues() -> tuple[Page, ...]:
+def catalogues() -> tuple[GetRoute, ...]:
     """Return the catalogues' routes."""
     return (
-        Page(
+        GetRoute(
             "/v1/errors",
             "list_errors",
             "Every problem that can be answered",
@@ -106,7 +106,7 @@ def catalogues() -> tuple[Page, ...]:
             constant(lambda: {"errors": registry()}),
             Errors,
         ),
-        Page(
+        GetRoute(
             "/v1/methods",
             "list_methods",
             "Every method that can be asked for, and when to use it",

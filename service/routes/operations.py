@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from service.observability.metrics import CONTENT_TYPE, Metrics
 from service.problems import MEDIA_TYPE, REGISTRY, Problem
-from service.routing import Page, Reply
+from service.routing import GetRoute, Reply
 from service.schemas import View
 
 
@@ -20,14 +20,14 @@ _ALIVE = Reply(b'{"status":"alive"}')
 _READY = Reply(b'{"status":"ready"}')
 
 
-def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[Page, ...]:
+def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[GetRoute, ...]:
     """Return the routes for operation."""
     preparing = Problem(REGISTRY["not-ready"], "kernels are being compiled and compute processes started")
     waiting = Reply(preparing.body(), MEDIA_TYPE.encode(), 503)
 
     return (
-        Page("/healthz", "get_health", "Whether the process answers", "operations", lambda: _ALIVE, Status),
-        Page(
+        GetRoute("/healthz", "get_health", "Whether the process answers", "operations", lambda: _ALIVE, Status),
+        GetRoute(
             "/readyz",
             "get_readiness",
             "Whether every kernel is compiled and the compute processes are up",
@@ -35,7 +35,7 @@ def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[Page, ..
             lambda: _READY if ready() else waiting,
             Status,
         ),
-        Page(
+        GetRoute(
             "/metrics",
             "get_metrics",
             "Counters in Prometheus' text format",

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
-from service.routing import Page, Reply
+from service.routing import GetRoute, Reply
 
 FOLDER = Path(__file__).parent.parent / "page"
 
@@ -19,9 +19,9 @@ _FILES = {
 }
 
 
-def pages(openapi: Callable[[], bytes]) -> tuple[Page, ...]:
+def pages(openapi: Callable[[], bytes]) -> tuple[GetRoute, ...]:
     """Return the routes of the pages."""
-    document = Page(
+    document = GetRoute(
         "/openapi.json",
         "get_openapi",
         "The OpenAPI document",
@@ -31,9 +31,9 @@ def pages(openapi: Callable[[], bytes]) -> tuple[Page, ...]:
     return (document, *(_page(path, *entry) for path, entry in _FILES.items()))
 
 
-def _page(path: str, name: str, media_type: str, operation_id: str, summary: str) -> Page:
+def _page(path: str, name: str, media_type: str, operation_id: str, summary: str) -> GetRoute:
     @cache
     def content() -> Reply:
         return Reply((FOLDER / name).read_bytes(), f"{media_type}; charset=utf-8".encode())
 
-    return Page(path, operation_id, summary, "pages", content, media_type=media_type)
+    return GetRoute(path, operation_id, summary, "pages", content, media_type=media_type)

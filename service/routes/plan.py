@@ -15,18 +15,18 @@ from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods import Method
 from service.execution import cost_model as pricing
-from service.execution.cost_model import Foreseen, Priced, one
+from service.execution.cost_model import CalibratedCost, CostModel, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.responses.json_rows import written
 from service.routes.bodies import speed_to_follow
 from service.routes.rotation.trajectory import T_HANDLE, ModelView
-from service.routing import Answer, Example, Question
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, View
 
 WITHIN = "/request"
 CHEAP = 0.02
-"""A question without an outline of its own is looked into only if it takes less than this (s)."""
+"""A question without an planning_probe of its own is looked into only if it takes less than this (s)."""
 
 
 class PlanRequest(Request):
@@ -77,9 +77,9 @@ class PlanAnswer(Envelope):
     errors: list[FaultView]
 
 
-def planning(routes: Sequence[Question]) -> Question:
+def planning(routes: Sequence[PostRoute]) -> PostRoute:
     """Return the route that plans questions to `routes`."""
-    table: Mapping[str, Question] = {route.path: route for route in routes}
+    table: Mapping[str, PostRoute] = {route.path: route for route in routes}
 
     @cache
     def reader(path: str) -> Reader[Any]:
@@ -99,7 +99,7 @@ def planning(routes: Sequence[Question]) -> Question:
         except MechanicsError as error:
             return _refused(route.path, problem_of(error), WITHIN)
 
-    return Question(
+    return PostRoute(
         "/v1/plan",
         "plan",
         "Model, method, cost, error and refusals of any other question, which is not answered",
@@ -107,25 +107,25 @@ def planning(routes: Sequence[Question]) -> Question:
         PlanRequest,
         PlanAnswer,
         plan,
-        Priced("plan", one),
+        CalibratedCost("plan", one),
         description="Always answered with 200: what the request would be refused for stands under `errors`.",
         examples=EXAMPLES,
     )
 
 
-def _planned(route: Question, asked: Any, budget: Budget) -> Answer:
+def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
     seconds = route.price(asked, budget)
     method = getattr(asked, "method", None)
     evaluations = _evaluations(asked, budget)
     fields: Answer = {}
-    if route.outline is not None or seconds < CHEAP:
+    if route.planning_probe is not None or seconds < CHEAP:
         try:
-            fields = route.handle(asked if route.outline is None else route.outline(asked), budget)
+            fields = route.handle(asked if route.planning_probe is None else route.planning_probe(asked), budget)
         except AccuracyUnreachable as fault:
             # Times and accuracies that are beyond the closed form do not keep a method that is named from its run.
             if method is None or method.kind == "closed-form" or fault.path[:1] not in (("times",), ("accuracy",)):
                 raise
-    length = route.price.size(asked, budget) if isinstance(route.price, Foreseen) else 0.0
+    length = route.price.size(asked, budget) if isinstance(route.price, CostModel) else 0.0
     length -= _spared(route, asked, fields)
     model, stated = fields.get("model"), _stated(fields)
     if model is None and fields.get("members"):
@@ -156,12 +156,12 @@ def _planned(route: Question, asked: Any, budget: Budget) -> Answer:
     }
 
 
-def _spared(route: Question, asked: Any, fields: Answer) -> float:
-    """Return by how many bytes an answer is shorter because nothing changes: every row is the outline's only one."""
+def _spared(route: PostRoute, asked: Any, fields: Answer) -> float:
+    """Return by how many bytes an answer is shorter because nothing changes: every row is the probe's only one."""
     rows, model, samples = fields.get("angular_velocity"), fields.get("model"), _samples(asked)
     if not isinstance(rows, np.ndarray) or rows.shape != (1, 3) or model is None or model.degrees_of_freedom != 0:
         return 0.0
-    if samples is None or not isinstance(route.price, Priced) or asked.round is not None:
+    if samples is None or not isinstance(route.price, CalibratedCost) or asked.round is not None:
         return 0.0
     usual = pricing.calibration().bytes[route.price.operation]
     row = len(written(rows[0])) + LENGTH_OF_A_TIME
@@ -172,7 +172,7 @@ LENGTH_OF_A_TIME = 20
 """Characters of a time that has all its digits, with a comma."""
 
 OF_THE_OUTLINE = ("accuracy-not-reached", "rounded-beyond-accuracy")
-"""Warnings about a method or digits that the outline of a question leaves out."""
+"""Warnings about a method or digits that the planning_probe of a question leaves out."""
 
 
 def _stated(fields: Answer) -> dict[str, Any] | None:

@@ -15,10 +15,10 @@ from core.scenes import Scene
 from core.scenes.answer import ConstrainedSystem
 from core.scenes.answer import SceneAnswer as SceneFound
 from core.systems.budget import Budget
-from service.execution.cost_model import Priced, numbers
+from service.execution.cost_model import CalibratedCost, numbers
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView
-from service.routing import Answer, Example, Page, Question, Reply
+from service.routing import Answer, Example, GetRoute, PostRoute, Reply
 from service.schemas import SIGNATURE, Envelope, Request, Times, View, sample_count, sample_times
 
 TIMES: Any = Field(default=None, description="Measured from the given state, of either sign, in any order (s).")
@@ -215,7 +215,7 @@ def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
     }
 
 
-def scene_outline(question: Any) -> Any:
+def scene_probe(question: Any) -> Any:
     """Return the question about the earliest and the latest time alone."""
     if question.times is None:
         return question
@@ -223,10 +223,10 @@ def scene_outline(question: Any) -> Any:
     return question.model_copy(update={"times": [min(times), max(times)], "round": None})
 
 
-def questions() -> tuple[Question, ...]:
+def questions() -> tuple[PostRoute, ...]:
     """Return one route for each scene."""
     return tuple(
-        Question(
+        PostRoute(
             f"/v1/scenes/{name_of(scene)}",
             "scene_" + name_of(scene).replace("-", "_"),
             summary_of(scene),
@@ -234,8 +234,8 @@ def questions() -> tuple[Question, ...]:
             request_of(scene),
             SceneAnswer,
             answering(scene),
-            Priced("scene_" + name_of(scene).replace("-", "_"), scene_counts),
-            scene_outline,
+            CalibratedCost("scene_" + name_of(scene).replace("-", "_"), scene_counts),
+            scene_probe,
             examples=EXAMPLES[name_of(scene)],
         )
         for scene in members()
@@ -258,6 +258,6 @@ def catalogue() -> Reply:
     return Reply(orjson.dumps({"signature": SIGNATURE, "scenes": entries}))
 
 
-CATALOGUE = Page(
+CATALOGUE = GetRoute(
     "/v1/scenes", "list_scenes", "Every constrained scene and what it answers", "catalogues", catalogue, Scenes
 )

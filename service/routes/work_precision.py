@@ -14,11 +14,11 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation, Method
 from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
-from service.execution.cost_model import Priced, effort, extreme, speed_of
+from service.execution.cost_model import CalibratedCost, effort, extreme, speed_of
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE, TIMES
-from service.routing import Answer, Example, Question
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
 
 
@@ -114,7 +114,7 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     return found
 
 
-def work_precision_outline(question: WorkPrecisionRequest) -> WorkPrecisionRequest:
+def work_precision_probe(question: WorkPrecisionRequest) -> WorkPrecisionRequest:
     """Return the question about the closed form at the farthest time alone."""
     changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
     return question.model_copy(update=changes)
@@ -140,7 +140,7 @@ def _points(measurements: tuple[Measurement, ...]) -> list[tuple[float, float]]:
 
 
 WORK_PRECISION = (
-    Question(
+    PostRoute(
         "/v1/work-precision",
         "work_precision",
         "What error each method buys for which work, on a motion of your own",
@@ -148,8 +148,8 @@ WORK_PRECISION = (
         WorkPrecisionRequest,
         WorkPrecisionAnswer,
         answer_work_precision,
-        Priced("work_precision", work_precision_counts),
-        work_precision_outline,
+        CalibratedCost("work_precision", work_precision_counts),
+        work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
         examples={
             "t-handle": Example(

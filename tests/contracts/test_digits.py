@@ -9,14 +9,14 @@ import orjson
 import pytest
 
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
 from service.routes.certified.questions import EitherPrice
 
 ROUTES = {route.path: route for route in questions() if isinstance(route.price, EitherPrice)}
-ANSWERING = Answering(ROUTES.values(), Budget(), Limits())
+ANSWERING = RequestHandler(ROUTES.values(), Budget(), Limits())
 FREE = "/v1/rotation/"
 EXACT = Context(prec=60)
 

@@ -11,18 +11,20 @@ import pytest
 from service.app import create_app
 from service.http.rounds import FEW, SHORT, SMALL
 from service.responses.json_rows import array_size
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 from tests.service.http.test_rounds import Asker
 
 pytestmark = pytest.mark.anyio
 
 SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
-EXAMPLES = [(route, name) for route in SERVICE.routes if isinstance(route, Question) for name in sorted(route.examples)]
+EXAMPLES = [
+    (route, name) for route in SERVICE.routes if isinstance(route, PostRoute) for name in sorted(route.examples)
+]
 PASSING = ("x-request-id", "server-timing")
 
 
-async def asked_of(app: object, route: Question, body: bytes) -> tuple[dict[str, str], bytes]:
+async def asked_of(app: object, route: PostRoute, body: bytes) -> tuple[dict[str, str], bytes]:
     transport = httpx.ASGITransport(app)  # type: ignore[arg-type]
     async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
         response = await client.post(route.path, content=body, headers={"content-type": "application/json"})
@@ -37,7 +39,7 @@ def warm() -> None:
 
 
 @pytest.mark.parametrize(("route", "name"), EXAMPLES, ids=[f"{route.operation_id}: {name}" for route, name in EXAMPLES])
-async def test_every_way_answers_the_same(route: Question, name: str) -> None:
+async def test_every_way_answers_the_same(route: PostRoute, name: str) -> None:
     body = orjson.dumps(route.examples[name].question)
     headers, text = await asked_of(SERVICE, route, body)
     assert await asked_of(SERVICE.documented, route, body) == (headers, text)

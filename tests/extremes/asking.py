@@ -11,16 +11,16 @@ from pydantic import TypeAdapter
 
 from core.errors import MechanicsError
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routing import Question
+from service.routing import PostRoute
 
-ROUTES: dict[str, Question] = {route.path: route for route in questions()}
+ROUTES: dict[str, PostRoute] = {route.path: route for route in questions()}
 BUDGET = Budget(samples=2_000_000, evaluations=5_000)
-ANSWERING = Answering(ROUTES.values(), BUDGET, Limits())
+ANSWERING = RequestHandler(ROUTES.values(), BUDGET, Limits())
 
 Asked = dict[str, Any]
 

@@ -14,9 +14,9 @@ from mpmath import mp, mpf
 
 from core.systems.budget import Budget
 from service.app import create_app
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 from tests.oracles.free_rotation import flip_interval, period, reference_angular_velocity, reference_attitude
 from tests.service.conftest import Server, client_of
@@ -414,8 +414,8 @@ async def test_the_key_may_be_written_with_escapes() -> None:
 
 
 def test_none_runs_in_the_server_and_long_ones_cost_more() -> None:
-    routes = [route for route in SERVICE.routes if isinstance(route, Question)]
-    answering = Answering(routes, Budget(), Limits())
+    routes = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+    answering = RequestHandler(routes, Budget(), Limits())
     asking = [
         (route, dict(example.question))
         for route in routes

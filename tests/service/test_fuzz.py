@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from service.app import create_app
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 from tests.service.http.test_dispatch import receiving, scope, sending
 
@@ -24,7 +24,7 @@ EXAMPLES = int(os.environ.get("POLHODE_FUZZ", "12"))
 SERVICE = create_app(
     Settings(cached_answers=0, inline_seconds=1e9, inline_bytes=10**9, max_samples=500, max_evaluations=20_000)
 )
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, Question)]
+QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
 
 NUMBERS = [
     0,
@@ -102,7 +102,7 @@ def refuse_constant(name: str) -> None:
     suppress_health_check=[HealthCheck.too_slow],
 )
 @given(data=st.data())
-def test_spoilt_questions_are_answered_or_refused(route: Question, data: st.DataObject) -> None:
+def test_spoilt_questions_are_answered_or_refused(route: PostRoute, data: st.DataObject) -> None:
     name = data.draw(st.sampled_from(sorted(route.examples)))
     question = spoilt(route.examples[name].question, data.draw(SPOILS))
     messages: list[dict[str, Any]] = []

@@ -11,7 +11,7 @@ import pytest
 from core.systems.methods import Method
 from service.app import create_app
 from service.routes import questions
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 from tests.service.conftest import client_of
 
@@ -43,7 +43,7 @@ async def asked(path: str, request: Any) -> Any:
 
 
 @pytest.mark.parametrize(("route", "name"), PLANNED, ids=[f"{route.path}: {name}" for route, name in PLANNED])
-async def test_a_plan_foresees_the_answer(route: Question, name: str) -> None:
+async def test_a_plan_foresees_the_answer(route: PostRoute, name: str) -> None:
     request = dict(route.examples[name].question)
     plan, response = await planned(route.path, request), await asked(route.path, request)
     answer = response.json()

@@ -14,7 +14,7 @@ from core.errors import AccuracyUnreachable, MechanicsError, UnphysicalInertia
 from core.notices import Notice
 from core.quantities import AngularVelocity, Mass, MomentOfInertia, Position, TaggedBy, check
 from core.systems.budget import Budget
-from service.routing import Example, Question
+from service.routing import Example, PostRoute
 from service.schemas import Envelope, Request, Times, Vector, sample_count, sample_times
 
 
@@ -97,7 +97,7 @@ class Unlisted(MechanicsError):
     """An error that the table of problems does not name."""
 
 
-TOY = Question(
+TOY = PostRoute(
     "/v1/toy",
     "ask_toy",
     "A toy",
@@ -110,5 +110,5 @@ TOY = Question(
 )
 
 
-def table() -> tuple[Question, ...]:
+def table() -> tuple[PostRoute, ...]:
     return (TOY,)

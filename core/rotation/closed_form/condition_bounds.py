@@ -18,7 +18,7 @@ from core.compiled import kernel
 from core.elliptic.integrals import one_less_e_over_k
 
 
-class Sensitivity(NamedTuple):
+class ConditionBounds(NamedTuple):
     """The three bounds as functions of the time t >= 0.
 
     start + rate t + growth exp(exponent t),   even_start + even_rate t + even_quadratic t^2,
@@ -68,30 +68,32 @@ def _exponential(factor: float, power: float) -> float:
     return factor * math.exp(power) if power < 700.0 else math.inf
 
 
-NONE = Sensitivity(0.0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
+NONE = ConditionBounds(0.0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
 
 
 @kernel()
-def steady_sensitivity(A: float, B: float, C: float, axis: int, largest: float) -> Sensitivity:
-    """Sensitivity of a steady rotation at the rate `largest`, along a principal axis or, axis being -1, in a plane.
+def steady_sensitivity(A: float, B: float, C: float, axis: int, largest: float) -> ConditionBounds:
+    """ConditionBounds of a steady rotation at the rate `largest`, along a principal axis or, axis being -1, in a plane.
 
     An error of the start out of the middle axis grows exponentially; were two equal moments not quite equal, a spin in
     their plane would drift in proportion to t (the Jordan block of this equilibrium) and turn in proportion to t^2.
     """
     equal_low, equal_high = A == B, B == C
     if equal_low and equal_high:
-        return Sensitivity(2.0, 4.0 * largest, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
+        return ConditionBounds(2.0, 4.0 * largest, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
     if equal_low or equal_high:
         pair, single = (A, C) if equal_low else (C, A)
         drift = 4.0 * largest * max(1.0, pair / single if single > 0.0 else 1.0)
         turn = 4.0 * largest * abs(1.0 - single / pair)
-        return Sensitivity(math.inf, 0.0, 0.0, 0.0, 2.0, drift + turn, drift * turn, 0.0, math.inf)
+        return ConditionBounds(math.inf, 0.0, 0.0, 0.0, 2.0, drift + turn, drift * turn, 0.0, math.inf)
     if axis == 1:
         # The eigenvalue of the saddle; the eigenvectors' lengths along the two axes differ by a factor of this root.
         escape = math.sqrt((B - A) / C * ((C - B) / A))
         skew = math.sqrt((B - A) / C / ((C - B) / A))
-        return Sensitivity(2.0, 0.0, 4.0 * max(skew, 1.0 / skew), escape * largest, math.inf, 0.0, 0.0, 0.0, math.inf)
-    return Sensitivity(2.0, 4.0 * largest, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
+        return ConditionBounds(
+            2.0, 0.0, 4.0 * max(skew, 1.0 / skew), escape * largest, math.inf, 0.0, 0.0, 0.0, math.inf
+        )
+    return ConditionBounds(2.0, 4.0 * largest, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
 
 
 @kernel()
@@ -109,8 +111,8 @@ def inherited_sensitivity(
     A: float, B: float, C: float, wa: float, wb: float, wc: float, am: float, bm: float, cm: float,
     m: float, m1: float, p: float, K: float, sn: float, cn: float, dn: float,
     difference: float, missed: float, largest: float, rate: float,
-) -> Sensitivity:  # fmt: skip
-    """Sensitivity to all six inputs; here c is the circled axis, a the other extreme, b the middle.
+) -> ConditionBounds:  # fmt: skip
+    """ConditionBounds to all six inputs; here c is the circled axis, a the other extreme, b the middle.
 
     Each term is the sum of the absolute relative sensitivities of one constant: p, the modulus, u0, the amplitudes.
     `difference` is the relative uncertainty of D_B per unit uncertainty of the inputs; `missed` that of m1 on the
@@ -141,7 +143,7 @@ def inherited_sensitivity(
         even_start, even_rate, even_quadratic = 2.0, linear + turn, linear * turn
     steepest = max(abs(C - B) / A, abs(C - A) / B, abs(B - A) / C)
     relative_error = max((C + B) / A, (C + A) / B, (B + A) / C)
-    return Sensitivity(
+    return ConditionBounds(
         (slope * start + amplitudes) / largest, slope * drift / largest, growth, p,
         even_start, even_rate, even_quadratic, 2.0 * relative_error * rate, 2.0 * steepest * rate,
     )  # fmt: skip
@@ -151,16 +153,18 @@ def inherited_sensitivity(
 def computed_sensitivity(
     am: float, bm: float, cm: float, m: float, m1: float, p: float, K: float, sn: float, cn: float, dn: float,
     u0: float, cancellation: float, largest: float,
-) -> Sensitivity:  # fmt: skip
-    """Sensitivity to the rounding with which the constants themselves are formed from exact inputs.
+) -> ConditionBounds:  # fmt: skip
+    """ConditionBounds to the rounding with which the constants themselves are formed from exact inputs.
 
     Every constant is a product or a sum of positive terms, within a few units, but D_B, which carries `cancellation`.
     """
     slope = math.sqrt(max(am * am, bm * bm) + 0.25 * (m * cm) ** 2) / largest
     if K == 0.0:
         # Away from u = 0 the slope falls as sech u, faster than the error of u grows.
-        return Sensitivity(8.0 * slope * (1.0 + 2.0 * abs(u0)) + 4.0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
+        return ConditionBounds(
+            8.0 * slope * (1.0 + 2.0 * abs(u0)) + 4.0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf
+        )
     relative = 8.0 * (min(m / m1, cancellation) if m1 > 0.0 else cancellation)
     shift = 0.5 * _e_minus_m1_k(m, m1, K) * relative
     start = slope * (8.0 * abs(sn * cn) / dn + 8.0 * abs(u0) + shift) + 4.0
-    return Sensitivity(start, slope * p * (8.0 + shift / K), 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)
+    return ConditionBounds(start, slope * p * (8.0 + shift / K), 0.0, 0.0, math.inf, 0.0, 0.0, 0.0, math.inf)

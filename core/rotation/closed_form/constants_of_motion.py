@@ -5,8 +5,8 @@ In principal axes with moments A <= B <= C the motion is
     w_c = A_c cn u,   w_b = s A_b sn u,   w_d = s A_d dn u,   u = u0 + p t,
 
 where d is the extreme axis that the motion circles, c the other extreme, b the middle and s the sign of w_d;
-`core.rotation.closed_form.circulation` decides which and forms the amplitudes, so that neither cancellation nor the range of
-doubles enters. Right for ascending moments in a right-handed frame, in which time never runs backwards.
+`core.rotation.closed_form.circulation` decides which and forms the amplitudes, so that neither cancellation nor the
+range of doubles enters. Right for ascending moments in a right-handed frame, in which time never runs backwards.
 
 References
 ----------
@@ -51,7 +51,7 @@ from core.rotation.closed_form.circulation import (
 )
 from core.rotation.closed_form.condition_bounds import (
     NONE,
-    Sensitivity,
+    ConditionBounds,
     computed_sensitivity,
     inherited_sensitivity,
     steady_sensitivity,
@@ -93,9 +93,9 @@ class Motion(NamedTuple):
     start: float
     start_tail: float
     """Quarter periods at t = 0: start_quarter + start; on the separatrix, u at t = 0."""
-    inherited: Sensitivity
+    inherited: ConditionBounds
     """With u = 1: for uncertainties of moments and start, as the rounding of derived ones is."""
-    computed: Sensitivity
+    computed: ConditionBounds
     """With u = 1: for the rounding of 2^-104 with which these constants were formed."""
 
     def mirrored(self, c: float, b: float, d: float) -> Motion:
@@ -124,7 +124,7 @@ def _weights(ac: Pair, ab: Pair, ad: Pair, lat: Lattice) -> Weights:
 
 
 @kernel()
-def _motionless(regime: int, inherited: Sensitivity) -> Motion:
+def _motionless(regime: int, inherited: ConditionBounds) -> Motion:
     return Motion(
         regime, 2, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         0.0, 0.0, 1.0, 0.0, 0.0, 0.0, inherited, NONE,

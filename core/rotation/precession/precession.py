@@ -209,7 +209,7 @@ _LOST: Mapping[float, tuple[str, str]] = {
 """What is said of figures that exist and cannot be stated."""
 
 
-class _Told(NamedTuple):
+class RegimeReport(NamedTuple):
     """What one kind of motion is called, and what is said of the figures that it does not have."""
 
     regime: Regime
@@ -234,15 +234,15 @@ _BEYOND = (
 )
 _NEVER_RETURNS = missing_reasons.ON_THE_SEPARATRIX, _OF_A_CHANGE[:-1]
 _TRIAXIAL = {
-    STEADY: _Told("steady", None, _absent(_THREE, (missing_reasons.STEADY_BY_AXIS, _OF_A_CHANGE))),
-    PERIODIC: _Told("periodic", None, _absent(_THREE)),
-    SEPARATRIX: _Told("separatrix", None, _absent(_THREE, _NEVER_RETURNS)),
+    STEADY: RegimeReport("steady", None, _absent(_THREE, (missing_reasons.STEADY_BY_AXIS, _OF_A_CHANGE))),
+    PERIODIC: RegimeReport("periodic", None, _absent(_THREE)),
+    SEPARATRIX: RegimeReport("separatrix", None, _absent(_THREE, _NEVER_RETURNS)),
 }
 _UNLIKE_SYMMETRIC = {
-    PERIODIC: _Told("periodic", None, _absent(_BEYOND)),
-    SEPARATRIX: _Told("separatrix", None, _absent(_BEYOND, _NEVER_RETURNS)),
+    PERIODIC: RegimeReport("periodic", None, _absent(_BEYOND)),
+    SEPARATRIX: RegimeReport("separatrix", None, _absent(_BEYOND, _NEVER_RETURNS)),
 }
-_CONSTANT = _Told(
+_CONSTANT = RegimeReport(
     "steady",
     None,
     _absent(
@@ -260,15 +260,15 @@ def order_of_directions(symmetry: Symmetry) -> str:
     return "prolate: the angular velocity lies between the axis and the angular momentum"
 
 
-def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], _Told]:
+def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], RegimeReport]:
     """Return what is told by symmetry, regime and whether a symmetric body does not move as one."""
-    found: dict[tuple[Symmetry, int, bool], _Told] = {
+    found: dict[tuple[Symmetry, int, bool], RegimeReport] = {
         ("triaxial", regime, False): told for regime, told in _TRIAXIAL.items()
     }
     symmetric: tuple[Symmetry, ...] = ("oblate", "prolate", "linear")
     for symmetry in symmetric:
         found[symmetry, STEADY, False] = _CONSTANT
-        found[symmetry, PERIODIC, False] = _Told("periodic", order_of_directions(symmetry), _NO_MIDDLE_AXIS)
+        found[symmetry, PERIODIC, False] = RegimeReport("periodic", order_of_directions(symmetry), _NO_MIDDLE_AXIS)
         found |= {(symmetry, regime, True): told for regime, told in _UNLIKE_SYMMETRIC.items()}
     return found
 

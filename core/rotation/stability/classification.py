@@ -31,7 +31,7 @@ class Verdict(NamedTuple):
     reason: str
 
 
-def verdict(ranks: Sequence[int], axis: int, turns: bool) -> Verdict:
+def classify_equilibrium(ranks: Sequence[int], axis: int, turns: bool) -> Verdict:
     """Return what is proved about the rotation about a principal axis.
 
     Parameters

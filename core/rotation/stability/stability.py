@@ -25,7 +25,7 @@ from core.quantities import AngularRate, check_value
 from core.rotation.closed_form.principal_frame import RESOLUTION, PrincipalFrame
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.figures import OUT_OF_RANGE, oriented
-from core.rotation.stability.classification import REST, Attitude, Kind, verdict
+from core.rotation.stability.classification import REST, Attitude, Kind, classify_equilibrium
 from core.rotation.stability.linearised import LinearRates, linear_rates
 from core.rotation.torque_free import inherited_notices
 from core.systems.system import Floats
@@ -165,7 +165,7 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
 
 def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, inertia: PrincipalInertia) -> Equilibrium:
     distinct = sorted(set(moments))
-    told = verdict([distinct.index(moment) for moment in moments], axis, rates.turning != 0.0)
+    told = classify_equilibrium([distinct.index(moment) for moment in moments], axis, rates.turning != 0.0)
     size = None if rates.size == OUT_OF_RANGE else rates.size
     pair: tuple[Eigenvalue, Eigenvalue] | None = None
     growth: float | None = 0.0

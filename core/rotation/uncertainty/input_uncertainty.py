@@ -18,7 +18,7 @@ from core.rotation.closed_form.circulation import SEPARATRIX, STEADY
 from core.rotation.closed_form.constants_of_motion import Motion
 from core.rotation.uncertainty import constant_sensitivities as moved
 from core.rotation.uncertainty.phase_sensitivities import largest_until
-from core.rotation.uncertainty.sensitivities import FIRST_ORDER, Moves
+from core.rotation.uncertainty.sensitivities import FIRST_ORDER, Sensitivities
 
 Floats = NDArray[np.float64]
 
@@ -36,13 +36,13 @@ _HUGE = 1e290
 
 
 @dataclass(frozen=True, eq=False)
-class Inherited:
+class InputUncertainty:
     """Bounds for one motion and a relative uncertainty of one, in scaled units.
 
     Attributes
     ----------
     motion : Motion
-    moves : Moves
+    moves : Sensitivities
         Of moments and start, with the sums over the inputs.
     unit : float
         The rate that scaled rates are measured in, a power of two (rad/s).
@@ -51,7 +51,7 @@ class Inherited:
     """
 
     motion: Motion
-    moves: Moves
+    moves: Sensitivities
     unit: float
     largest: float
 

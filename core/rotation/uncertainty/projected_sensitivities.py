@@ -1,4 +1,4 @@
-"""Moves of principal moments and of components along the axes, from those of a tensor, compiled.
+"""Sensitivities of principal moments and of components along the axes, from those of a tensor, compiled.
 
 With principal axes v and P = v^T dI v, the moments move by P_jj, and the axes turn by P_jk/(I_k - I_j) in the plane of
 j and k (perturbation theory: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., sections 7.2.2 and 8.1).

@@ -29,7 +29,7 @@ _PLANES = ((0, 1), (1, 2), (2, 0))
 
 
 @dataclass(frozen=True, eq=False)
-class Moves:
+class Sensitivities:
     """First-order moves of one motion for a relative uncertainty of one, in units in which figures are of order one.
 
     Attributes
@@ -76,7 +76,7 @@ class Moves:
         motion: Motion,
         largest: float,
         unit: float,
-    ) -> Moves:
+    ) -> Sensitivities:
         """Project the moves of a tensor, shape (n, 3, 3), in body axes, or of the moments themselves where it is None.
 
         Parameters

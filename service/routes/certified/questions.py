@@ -16,10 +16,10 @@ from core.certified.exact_inputs import exact
 from core.certified.exact_mass import ExactMass
 from core.notices import Notice
 from core.systems.budget import Budget
-from service.execution.cost_model import Foreseen, Priced
+from service.execution.cost_model import CalibratedCost, CostModel
 from service.requests.decimal_models import SpanInNumerals, instants
-from service.requests.request_reader import ByPresence
-from service.routing import Answer, Example, Question
+from service.requests.request_reader import DiscriminatedByKey
+from service.routing import Answer, Example, PostRoute
 from service.schemas import View, sample_count
 
 BESIDE: Mapping[str, str] = {
@@ -103,7 +103,7 @@ class Cost:
 
 
 @dataclass(frozen=True)
-class PricedInDigits:
+class CertifiedCost:
     """Price of a question with ``digits``, by what is counted of it."""
 
     cost: Callable[[Any, Budget], Cost]
@@ -128,20 +128,20 @@ class InDigits:
     ----------
     question, answer : type
         Pydantic models.
-    handle, price, outline, examples
-        As in `Question`.
+    handle, price, planning_probe, examples
+        As in `PostRoute`.
     """
 
     question: type[BaseModel]
     answer: type[BaseModel]
     handle: Callable[[Any, Budget], Answer]
-    price: Foreseen
-    outline: Callable[[Any], Any] | None = None
+    price: CostModel
+    planning_probe: Callable[[Any], Any] | None = None
     examples: Mapping[str, Example] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class EitherPrice(Priced):
+class EitherPrice(CalibratedCost):
     """Price of a route that answers two questions: its own, and another in so many digits."""
 
     other: InDigits
@@ -159,25 +159,25 @@ class EitherPrice(Priced):
         return super().size(question, budget)
 
 
-def with_digits(route: Question, other: InDigits) -> Question:
+def with_digits(route: PostRoute, other: InDigits) -> PostRoute:
     """Return a route that answers its own question and, where that has ``digits``, the other."""
 
     def handle(question: Any, budget: Budget) -> Answer:
         return (other if isinstance(question, other.question) else route).handle(question, budget)
 
-    def outline(question: Any) -> Any:
-        found = (other if isinstance(question, other.question) else route).outline
+    def planning_probe(question: Any) -> Any:
+        found = (other if isinstance(question, other.question) else route).planning_probe
         return question if found is None else found(question)
 
-    assert isinstance(route.price, Priced)
+    assert isinstance(route.price, CalibratedCost)
     either = Union.__getitem__((route.question, other.question))
     return replace(
         route,
-        question=Annotated.__class_getitem__((either, ByPresence("digits", BESIDE, REMEDIES))),  # type: ignore[attr-defined]
+        question=Annotated.__class_getitem__((either, DiscriminatedByKey("digits", BESIDE, REMEDIES))),  # type: ignore[attr-defined]
         answer=Union.__getitem__((route.answer, other.answer)),
         handle=handle,
         price=EitherPrice(route.price.operation, route.price.counts, other),
-        outline=outline,
+        planning_probe=planning_probe,
         examples={**route.examples, **other.examples},
     )
 

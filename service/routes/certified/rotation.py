@@ -25,10 +25,10 @@ from service.requests.decimal_models import (
 )
 from service.routes.certified.questions import (
     AccuracyInDigits,
+    CertifiedCost,
     Cost,
     InDigits,
     PerSample,
-    PricedInDigits,
     accuracy,
     affordable,
     ends,
@@ -226,7 +226,7 @@ def trajectory_cost(question: TrajectoryInDigits, budget: Budget) -> Cost:
     return Cost(samples, numbers + ("time" in wanted), each, summing(question.body))
 
 
-def trajectory_outline(question: TrajectoryInDigits) -> TrajectoryInDigits:
+def trajectory_probe(question: TrajectoryInDigits) -> TrajectoryInDigits:
     """Return the question about the farthest time alone."""
     return question.model_copy(update={"times": [max(ends(question.times), key=abs)]})
 
@@ -247,8 +247,8 @@ TRAJECTORY_IN_DIGITS = InDigits(
     TrajectoryInDigits,
     TrajectoryAnswerInDigits,
     answer_trajectory,
-    PricedInDigits(trajectory_cost),
-    trajectory_outline,
+    CertifiedCost(trajectory_cost),
+    trajectory_probe,
     {
         "digits": Example(
             "the T-handle to 50 digits, every one of them proven",
@@ -276,7 +276,7 @@ PRECESSION_IN_DIGITS = InDigits(
     PrecessionInDigits,
     PrecessionAnswerInDigits,
     answer_precession,
-    PricedInDigits(precession_cost),
+    CertifiedCost(precession_cost),
     examples={
         "digits": Example(
             "a spinning coin, 100 digits of its precession",
@@ -293,6 +293,6 @@ STABILITY_IN_DIGITS = InDigits(
     StabilityInDigits,
     StabilityAnswerInDigits,
     answer_stability,
-    PricedInDigits(stability_cost),
+    CertifiedCost(stability_cost),
     examples={"digits": Example("a T-handle, 40 digits", {"body": EXACT_T_HANDLE, "rate": "10", "digits": 40})},
 )

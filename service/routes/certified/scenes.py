@@ -13,13 +13,13 @@ from core.errors import InvalidParameter
 from core.scenes.answer import ConstrainedSystem
 from core.systems.budget import Budget
 from core.systems.trajectory import Work
-from service.requests.decimal_models import DigitCount, TimesInNumerals, fields_in_numerals, given, instants
+from service.requests.decimal_models import DigitCount, TimesInNumerals, explicit_fields, fields_in_numerals, instants
 from service.routes.certified.questions import (
     AccuracyInDigits,
+    CertifiedCost,
     Cost,
     InDigits,
     PerSample,
-    PricedInDigits,
     accuracy,
     affordable,
     ends,
@@ -113,7 +113,7 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
     def answer(question: Any, budget: Budget) -> Answer:
         digits = question.digits
         samples = _samples(question, budget)
-        system = exact_scene(scene, given(question, *QUESTION))
+        system = exact_scene(scene, explicit_fields(question, *QUESTION))
         times = None if question.times is None else instants(question.times)
         wanted = None if question.outputs is None else frozenset(question.outputs)
         try:
@@ -144,7 +144,7 @@ def _samples(question: Any, budget: Budget) -> int:
     return 0 if question.times is None else affordable(question.times, question.digits, COLUMNS, budget)
 
 
-def outline(question: Any) -> Any:
+def planning_probe(question: Any) -> Any:
     """Return the question about the earliest and the latest time alone."""
     return question if question.times is None else question.model_copy(update={"times": list(ends(question.times))})
 
@@ -163,5 +163,10 @@ def _in_digits(scene: type[ConstrainedSystem]) -> InDigits:
 
     example = Example("50 digits, every one of them proven", EXAMPLES[name_of(scene)])
     return InDigits(
-        request_of(scene), SceneAnswerInDigits, answering(scene), PricedInDigits(cost), outline, {"digits": example}
+        request_of(scene),
+        SceneAnswerInDigits,
+        answering(scene),
+        CertifiedCost(cost),
+        planning_probe,
+        {"digits": example},
     )

@@ -205,7 +205,7 @@ class EllipsoidPrice:
         return 600.0 + faces + (8 + _numbers(question)) * (question.digits + 5.5)
 
 
-def outline(question: EllipsoidInDigits) -> EllipsoidInDigits:
+def planning_probe(question: EllipsoidInDigits) -> EllipsoidInDigits:
     """Return the question about a coarse surface and few points."""
     changes: dict[str, Any] = {"points": min(question.points, 16)}
     if question.resolution is not None and question.resolution <= 200:
@@ -222,7 +222,7 @@ ELLIPSOID_IN_DIGITS = InDigits(
     EllipsoidAnswerInDigits,
     energy_ellipsoid,
     EllipsoidPrice(),
-    outline,
+    planning_probe,
     {
         "digits": Example(
             "semi-axes, a polhode and the separatrix to 40 digits, every point on both quadrics",

@@ -17,12 +17,12 @@ from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.torque_free import pinned_notices
 from core.systems.budget import Budget
 from core.systems.methods import Method
-from service.execution.cost_model import Priced, effort, extreme, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, moments_to_foresee, properties_of, speed_to_follow
 from service.routes.rotation.surfaces import SOURCE_BODY, Count, Seed
 from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView, in_range
-from service.routing import Answer, Example, Question
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
 
 OUTLINED = 16
@@ -146,7 +146,7 @@ def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, floa
     }
 
 
-def ensemble_outline(question: EnsembleRequest) -> EnsembleRequest:
+def ensemble_probe(question: EnsembleRequest) -> EnsembleRequest:
     """Return the question about a few members at the farthest time alone, in closed form."""
     changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
     if question.method is not None and question.method.kind != "closed-form":
@@ -159,7 +159,7 @@ def ensemble_outline(question: EnsembleRequest) -> EnsembleRequest:
 
 
 ENSEMBLE = (
-    Question(
+    PostRoute(
         "/v1/rotation/ensemble",
         "rotation_ensemble",
         "Many free rotations of one body, from given starts or a sample of one energy",
@@ -167,8 +167,8 @@ ENSEMBLE = (
         EnsembleRequest,
         EnsembleAnswer,
         answer_ensemble,
-        Priced("rotation_ensemble", ensemble_counts),
-        ensemble_outline,
+        CalibratedCost("rotation_ensemble", ensemble_counts),
+        ensemble_probe,
         examples={
             "sample": Example(
                 "three of the source's random starts",

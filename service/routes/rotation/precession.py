@@ -15,10 +15,10 @@ from core.rotation.precession.precession import Precession, Regime, precession
 from core.rotation.stability.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
-from service.execution.cost_model import Priced, effort, speed_of
+from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE
-from service.routing import Answer, Example, Question
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, Span, Vector, View
 
 
@@ -120,13 +120,13 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     return found | effort(measure.method, times, speed, measure.samples)
 
 
-def precession_outline(question: PrecessionRequest) -> PrecessionRequest:
+def precession_probe(question: PrecessionRequest) -> PrecessionRequest:
     """Return the question without its measurement."""
     return question.model_copy(update={"measure": None})
 
 
 PRECESSION = (
-    Question(
+    PostRoute(
         "/v1/rotation/precession",
         "precession",
         "Rates, period, flip interval and cones of a free rotation",
@@ -134,8 +134,8 @@ PRECESSION = (
         PrecessionRequest,
         PrecessionAnswer,
         answer_precession,
-        Priced("precession", precession_counts),
-        precession_outline,
+        CalibratedCost("precession", precession_counts),
+        precession_probe,
         examples={
             "coin": Example(
                 "a spinning coin",
@@ -160,7 +160,7 @@ PRECESSION = (
             ),
         },
     ),
-    Question(
+    PostRoute(
         "/v1/rotation/stability",
         "stability",
         "Every equilibrium of a free body: eigenvalues, kind, stability and the reason",
@@ -168,7 +168,7 @@ PRECESSION = (
         StabilityRequest,
         StabilityAnswer,
         answer_stability,
-        Priced("stability", counts),
+        CalibratedCost("stability", counts),
         examples={
             "t-handle": Example(
                 "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}

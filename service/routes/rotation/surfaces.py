@@ -16,11 +16,11 @@ from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.surfaces.polhodes import Polhode, polhode, separatrix
 from core.rotation.torque_free import pinned_notices
 from core.systems.budget import Budget
-from service.execution.cost_model import Priced
+from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.bodies import counts, properties_of
-from service.routing import Answer, Example, Question
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Matrix, Request, Vector, View, fields_of
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
@@ -180,7 +180,7 @@ def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, fl
     }
 
 
-def ellipsoid_outline(question: EllipsoidRequest) -> EllipsoidRequest:
+def ellipsoid_probe(question: EllipsoidRequest) -> EllipsoidRequest:
     """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
     changes: dict[str, Any] = {"points": min(question.points, 16)}
     if question.resolution <= FINEST_PRICED:
@@ -210,7 +210,7 @@ def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
 SOURCE_BODY = {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}
 
 SURFACES = (
-    Question(
+    PostRoute(
         "/v1/rotation/energy-ellipsoid",
         "energy_ellipsoid",
         "The energy ellipsoid as a mesh or a grid, with polhodes and separatrix",
@@ -218,8 +218,8 @@ SURFACES = (
         EllipsoidRequest,
         EllipsoidAnswer,
         energy_ellipsoid,
-        Priced("energy_ellipsoid", ellipsoid_counts),
-        ellipsoid_outline,
+        CalibratedCost("energy_ellipsoid", ellipsoid_counts),
+        ellipsoid_probe,
         description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
         representations={SVG: ellipsoid_figure},
         examples={
@@ -246,7 +246,7 @@ SURFACES = (
             ),
         },
     ),
-    Question(
+    PostRoute(
         "/v1/rotation/initial-states",
         "initial_states",
         "Starts of one energy, drawn uniformly over the scaled sphere",
@@ -254,7 +254,7 @@ SURFACES = (
         StatesRequest,
         StatesAnswer,
         states,
-        Priced("initial_states", states_counts),
+        CalibratedCost("initial_states", states_counts),
         examples={
             "thirty": Example(
                 "the source's thirty starts", {"body": SOURCE_BODY, "energy": 1.0, "count": 30, "seed": 0}

@@ -19,10 +19,10 @@ from core.systems.methods import ClosedFormEvaluation, Method
 from core.systems.solve import solve
 from core.systems.system import Floats
 from core.systems.trajectory import How
-from service.execution.cost_model import Priced, effort, extreme, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routing import Answer, Example, Question
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, QuaternionRow, Request, Times, Vector, View, sample_count, sample_times
 
 Output = Literal["time", "angular_velocity", "attitude"]
@@ -231,7 +231,7 @@ def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, 
     return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
 
 
-def trajectory_outline(question: TrajectoryRequest) -> TrajectoryRequest:
+def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
     """Return the question about the farthest time alone, in closed form."""
     if "attitude" in _outputs(question):
         _require_closed_form(question)
@@ -245,7 +245,7 @@ def trajectory_outline(question: TrajectoryRequest) -> TrajectoryRequest:
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
 
 ROTATION = (
-    Question(
+    PostRoute(
         "/v1/rotation/trajectory",
         "rotation_trajectory",
         "The free rotation of a body: angular velocity and, if asked, attitude at given times",
@@ -253,8 +253,8 @@ ROTATION = (
         TrajectoryRequest,
         TrajectoryAnswer,
         trajectory,
-        Priced("rotation_trajectory", trajectory_counts),
-        trajectory_outline,
+        CalibratedCost("rotation_trajectory", trajectory_counts),
+        trajectory_probe,
         examples={
             "t-handle": Example(
                 "a T-handle that tumbles",

@@ -10,8 +10,8 @@ from core.errors import InvalidParameter
 from core.quantities import Quantity
 from core.rotation.wobble import Day, EarthFigures, from_ellipticity, from_period
 from core.systems.budget import Budget
-from service.execution.cost_model import Priced, one
-from service.routing import Answer, Example, Question
+from service.execution.cost_model import CalibratedCost, one
+from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request
 
 
@@ -51,7 +51,7 @@ def wobble(question: WobbleRequest, budget: Budget) -> Answer:
 
 
 WOBBLE = (
-    Question(
+    PostRoute(
         "/v1/rotation/wobble",
         "wobble",
         "The free wobble of a planet: asymmetry, ellipticity and period",
@@ -59,7 +59,7 @@ WOBBLE = (
         WobbleRequest,
         WobbleAnswer,
         wobble,
-        Priced("wobble", one),
+        CalibratedCost("wobble", one),
         examples={
             "chandler": Example("the source's 430 days", {"period": 430.0, "day": "sidereal"}),
             "shape": Example("back from the shape", {"ellipticity": 1.00336409, "day": "solar"}),

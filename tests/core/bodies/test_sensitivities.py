@@ -1,4 +1,4 @@
-"""Moves of tensors against differences of tensors formed in rational numbers, and of the bodies themselves."""
+"""Sensitivities of tensors against differences of tensors formed in rational numbers, and of the bodies themselves."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from core.bodies.composite import Composite, Part
 from core.bodies.measured import InertiaTensor, PointMasses
 from core.bodies.mesh import Mesh
-from core.bodies.sensitivities import moves_of_tensor
+from core.bodies.sensitivities import tensor_sensitivities
 from core.bodies.solids import Ball, Cone, Cuboid, Torus
 from core.systems.system import Floats
 from tests.oracles.uncertain_bodies import FACES, KINDS, REGIMES, uncertain
@@ -45,7 +45,7 @@ def test_moves_are_derivatives_of_the_tensor(kind: str, regime: str) -> None:
         expected.append(
             [[float((p - q) / unit) for p, q in zip(*rows, strict=True)] for rows in zip(after, before, strict=True)]
         )
-    found = moves_of_tensor(case.body(case.numbers).mass_properties(), exponent)
+    found = tensor_sensitivities(case.body(case.numbers).mass_properties(), exponent)
     assert_same_rows(found, np.array(expected), 1e-8)
 
 
@@ -99,7 +99,7 @@ BODIES: list[tuple[Callable[[Any], Any], list[float]]] = [
 
 @pytest.mark.parametrize(("body", "numbers"), BODIES)
 def test_moves_of_densities_holes_and_nested_parts(body: Callable[[Any], Any], numbers: list[float]) -> None:
-    assert_same_rows(moves_of_tensor(body(numbers).mass_properties(), 0), differences(body, numbers), 1e-7)
+    assert_same_rows(tensor_sensitivities(body(numbers).mass_properties(), 0), differences(body, numbers), 1e-7)
 
 
 def test_a_pinned_body_moves_about_its_pin() -> None:
@@ -108,5 +108,5 @@ def test_a_pinned_body_moves_about_its_pin() -> None:
 
     numbers = [1.0, 2.0, 0.5, 0.7, *VERTICES]
     assert_same_rows(
-        moves_of_tensor(body(numbers).mass_properties(), 0), differences(body, numbers, about_origin=True), 1e-7
+        tensor_sensitivities(body(numbers).mass_properties(), 0), differences(body, numbers, about_origin=True), 1e-7
     )

@@ -5,8 +5,8 @@ from core.certified.adaptive_precision import (
     MOST_BITS,
     bits_for,
     check_digits,
-    determined,
     each_determined,
+    until_determined,
     working_bits,
 )
 from core.certified.decimals import Undetermined, decimal
@@ -32,13 +32,13 @@ def test_precision_is_raised_until_a_cancellation_is_overcome():
         return decimal((1 + arb(10) ** -200) ** 2 - 1 - 2 * arb(10) ** -200, 20)
 
     before = ctx.prec
-    assert determined(small, bits_for(20)) == "1.0000000000000000000e-400"
+    assert until_determined(small, bits_for(20)) == "1.0000000000000000000e-400"
     assert ctx.prec == before
 
 
 def test_a_hidden_zero_is_refused_with_the_limit():
     with pytest.raises(BudgetExceeded) as caught:
-        determined(lambda: decimal(arb(2).sqrt() ** 2 - 2, 20), bits_for(20))
+        until_determined(lambda: decimal(arb(2).sqrt() ** 2 - 2, 20), bits_for(20))
     assert caught.value.limit == MOST_BITS
 
 

@@ -14,8 +14,8 @@ import orjson
 import pytest
 
 from service.app import Service
-from service.execution.admission import Pace
-from service.execution.worker import Stored, restored
+from service.execution.admission import SpeedCorrection
+from service.execution.worker import Stored, map_shared_memory
 from service.problems import Refusal
 from service.responses.json_stream import Document
 from tests.service.conftest import client_of, toy_service
@@ -245,7 +245,7 @@ async def test_an_answer_without_room_is_refused_as_that(client: httpx.AsyncClie
     assert response.headers["retry-after"] == "1"
     assert scratch.name not in response.text
     with pytest.raises(Refusal):
-        restored(Document(1, (Stored(0, (1,), "<f8", text=False),)), Path(scratch.name, "none"))  # type: ignore[arg-type]
+        map_shared_memory(Document(1, (Stored(0, (1,), "<f8", text=False),)), Path(scratch.name, "none"))  # type: ignore[arg-type]
 
 
 async def test_all_kinds_of_documents_come_from_processes_as_from_here(client: httpx.AsyncClient) -> None:
@@ -265,7 +265,7 @@ async def test_more_work_than_can_be_done_in_time_is_refused_at_once(
 ) -> None:
     # What earlier jobs told of this machine is forgotten, so that what is accepted follows from the prices alone:
     # before the fifth, 4 x 0.6 s over two processes are 1.2 s, more than the limit of 1 s.
-    service.compute.pace = Pace()
+    service.compute.pace = SpeedCorrection()
     tasks = [asyncio.create_task(client.post("/v1/toy", json=sleeping(0.6))) for _ in range(5)]
     await asyncio.sleep(0.2)
     since = time.perf_counter()

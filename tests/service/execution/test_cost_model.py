@@ -21,8 +21,8 @@ from core.systems.budget import Budget
 from core.systems.methods import Method
 from service.execution.cost_model import (
     UNCOUNTABLE,
-    Foreseen,
-    Priced,
+    CalibratedCost,
+    CostModel,
     calibration,
     effort,
     error_of,
@@ -37,15 +37,15 @@ from service.execution.cost_model import (
     speed_of,
     steps,
 )
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.problems import Refusal
 from service.requests.request_reader import Limits
 from service.routes import questions
-from service.routing import Question
+from service.routing import PostRoute
 from service.schemas import Span
 
 ROUTES = {route.path: route for route in questions()}
-ANSWERING = Answering(ROUTES.values(), Budget(), Limits())
+ANSWERING = RequestHandler(ROUTES.values(), Budget(), Limits())
 METHODS = {method.kind: method for method in get_args(get_args(Method)[0])}
 INTEGRATORS = {kind: method for kind, method in METHODS.items() if kind != "closed-form"}
 OPERATIONS = sorted(calibration().seconds)
@@ -78,7 +78,7 @@ def pairs(draw: st.DrawFn) -> tuple[Any, Any]:
 class TestTable:
     def test_it_knows_every_operation_and_every_method(self) -> None:
         priced = [getattr(route.price, "own", route.price) for route in ROUTES.values()]
-        operations = [price.operation for price in priced if isinstance(price, Priced)]
+        operations = [price.operation for price in priced if isinstance(price, CalibratedCost)]
         assert len(operations) >= 10
         for operation in operations:
             assert calibration().seconds[operation]
@@ -99,8 +99,8 @@ class TestTable:
             assert costs.get("exponent", -1.0) < 0.0
 
     @pytest.mark.parametrize("route", ROUTES.values(), ids=ROUTES)
-    def test_every_question_has_a_price_that_foresees(self, route: Question) -> None:
-        assert isinstance(route.price, Foreseen)
+    def test_every_question_has_a_price_that_foresees(self, route: PostRoute) -> None:
+        assert isinstance(route.price, CostModel)
 
 
 class TestPriced:
@@ -111,15 +111,15 @@ class TestPriced:
         count = st.floats(0.0, UNCOUNTABLE)
         few = {name: data.draw(count) for name in costs}
         many = few | {name: data.draw(st.floats(few[name], UNCOUNTABLE)) for name in costs}
-        price = Priced(operation, lambda counts, budget: counts)
+        price = CalibratedCost(operation, lambda counts, budget: counts)
         assert 0.0 <= price(few, Budget()) <= price(many, Budget()) < inf
         assert 0.0 <= price.size(few, Budget()) <= price.size(many, Budget()) < inf
 
     def test_it_is_the_sum_of_costs_times_counts(self) -> None:
         costs, length = calibration().seconds["wobble"], calibration().bytes["wobble"]
-        price = Priced("wobble", lambda counts, budget: counts)
-        assert Priced("wobble", one)(None, Budget()) == costs["question"] > 0.0
-        assert Priced("wobble", one).size(None, Budget()) == length["question"] > 0.0
+        price = CalibratedCost("wobble", lambda counts, budget: counts)
+        assert CalibratedCost("wobble", one)(None, Budget()) == costs["question"] > 0.0
+        assert CalibratedCost("wobble", one).size(None, Budget()) == length["question"] > 0.0
         assert price({"question": 3.0}, Budget()) == 3.0 * costs["question"]
         # What has no cost of its own is part of the others.
         assert price({"question": 1.0, "unheard of": 1e9}, Budget()) == costs["question"]
@@ -135,11 +135,11 @@ class TestPriced:
 
 class TestQuestions:
     @pytest.mark.parametrize("route", ROUTES.values(), ids=ROUTES)
-    def test_every_example_has_a_price(self, route: Question) -> None:
+    def test_every_example_has_a_price(self, route: PostRoute) -> None:
         for shown in route.examples.values():
             asked = ANSWERING.read(route, json.dumps(shown.question).encode())
             seconds = route.price(asked, Budget())
-            assert isinstance(route.price, Foreseen)
+            assert isinstance(route.price, CostModel)
             length = route.price.size(asked, Budget())
             assert 0.0 < seconds < inf
             assert 0.0 < length < inf
@@ -172,7 +172,7 @@ class TestQuestions:
         except (MechanicsError, Refusal):
             assume(False)
         assert 0.0 < seconds < inf
-        assert isinstance(route.price, Foreseen)
+        assert isinstance(route.price, CostModel)
         assert 0.0 < route.price.size(asked, Budget()) < inf
         assert 0.0 <= error_of(asked.method, asked.times, speed_of(rate)) <= 2.0
 

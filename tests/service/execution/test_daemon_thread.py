@@ -5,14 +5,14 @@ import threading
 
 import pytest
 
-from service.execution.daemon_thread import aside, tell
+from service.execution.daemon_thread import call_soon_if_open, run_in_daemon_thread
 
 pytestmark = pytest.mark.anyio
 
 
 async def test_the_result_and_the_loop_goes_on_meanwhile() -> None:
     allowed = threading.Event()
-    task = asyncio.create_task(aside(lambda: (allowed.wait(20), threading.current_thread().daemon)))
+    task = asyncio.create_task(run_in_daemon_thread(lambda: (allowed.wait(20), threading.current_thread().daemon)))
     await asyncio.sleep(0)
     assert not task.done()
     allowed.set()
@@ -21,12 +21,12 @@ async def test_the_result_and_the_loop_goes_on_meanwhile() -> None:
 
 async def test_a_failure_is_told_as_it_was() -> None:
     with pytest.raises(KeyError, match="lost"):
-        await aside(lambda: {}["lost"])
+        await run_in_daemon_thread(lambda: {}["lost"])
 
 
 async def test_what_is_given_up_disturbs_nobody() -> None:
     allowed, ended = threading.Event(), threading.Event()
-    task = asyncio.create_task(aside(lambda: (allowed.wait(20), ended.set())))
+    task = asyncio.create_task(run_in_daemon_thread(lambda: (allowed.wait(20), ended.set())))
     await asyncio.sleep(0)
     task.cancel()
     with pytest.raises(asyncio.CancelledError):
@@ -43,5 +43,5 @@ def test_a_loop_that_is_closed_is_told_nothing() -> None:
     loop = asyncio.new_event_loop()
     loop.close()
     told: list[int] = []
-    tell(loop, told.append, 1)
+    call_soon_if_open(loop, told.append, 1)
     assert told == []

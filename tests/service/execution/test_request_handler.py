@@ -15,11 +15,11 @@ from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.notices import Notice
 from core.systems.budget import Budget
 from service import VERSION
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.problems import Refusal
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
-from service.routing import Example, Question
+from service.routing import Example, PostRoute
 from tests.service.conftest import ROOT
 from tests.service.toy_routes import GOOD, TOY, Ask
 
@@ -35,8 +35,8 @@ METHOD = json.dumps(
 )
 
 
-def answering(*routes: Question, **limits: int) -> Answering:
-    return Answering(routes or (TOY, OTHER), Budget(samples=5), Limits()._replace(**limits))
+def answering(*routes: PostRoute, **limits: int) -> RequestHandler:
+    return RequestHandler(routes or (TOY, OTHER), Budget(samples=5), Limits()._replace(**limits))
 
 
 def body(**changes: Any) -> bytes:
@@ -149,11 +149,11 @@ def test_nothing_is_imported_for_a_question_any_more_once_it_is_warm() -> None:
     program = f"""
 import sys
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.routing import TABLE
 from pkgutil import resolve_name
-answering = Answering(resolve_name(TABLE)(), Budget(), Limits())
+answering = RequestHandler(resolve_name(TABLE)(), Budget(), Limits())
 answering.warm()
 before = set(sys.modules)
 (route,) = (route for route in resolve_name(TABLE)() if route.path == "/v1/rotation/trajectory")

@@ -12,15 +12,15 @@ from pathlib import Path
 import pytest
 
 from service.execution import scratch
-from service.execution.scratch import Scratch
+from service.execution.scratch import LockedTempDir
 from tests.service.conftest import ROOT, Server
 
 KIND = "polhode-results-"
 OWNER = f"""
 import sys, time
 from pathlib import Path
-from service.execution.scratch import Scratch
-own = Scratch({KIND!r}, Path(sys.argv[1]))
+from service.execution.scratch import LockedTempDir
+own = LockedTempDir({KIND!r}, Path(sys.argv[1]))
 Path(own.name, "answer").write_bytes(bytes(1000))
 print(own.name, flush=True)
 time.sleep(60)
@@ -28,7 +28,7 @@ time.sleep(60)
 
 
 def test_it_is_there_until_it_is_removed(tmp_path: Path) -> None:
-    own = Scratch(KIND, tmp_path)
+    own = LockedTempDir(KIND, tmp_path)
     Path(own.name, "answer").write_bytes(b"1")
     assert [Path(own.name)] == list(tmp_path.iterdir())
     assert Path(own.name).stat().st_mode & 0o777 == 0o700
@@ -38,7 +38,7 @@ def test_it_is_there_until_it_is_removed(tmp_path: Path) -> None:
 
 
 def test_without_a_place_it_is_among_temporary_files() -> None:
-    own = Scratch("polhode-test-")
+    own = LockedTempDir("polhode-test-")
     assert Path(own.name).parent == Path(tempfile.gettempdir())
     own.remove()
 
@@ -47,13 +47,13 @@ def test_what_an_owner_leaves_who_is_killed_is_removed_by_the_next_and_not_befor
     with subprocess.Popen([sys.executable, "-c", OWNER, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE) as owner:
         assert owner.stdout is not None
         theirs = Path(owner.stdout.readline().decode().strip())
-        first = Scratch(KIND, tmp_path)
+        first = LockedTempDir(KIND, tmp_path)
         assert {path.name for path in tmp_path.iterdir()} == {theirs.name, Path(first.name).name}
         assert Path(theirs, "answer").exists()
         owner.send_signal(signal.SIGKILL)
         owner.wait()
     assert Path(theirs, "answer").exists()
-    second = Scratch(KIND, tmp_path)
+    second = LockedTempDir(KIND, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {Path(first.name).name, Path(second.name).name}
     first.remove()
     second.remove()
@@ -68,16 +68,16 @@ def test_what_is_not_surely_abandoned_is_left_alone(tmp_path: Path, monkeypatch:
     (place / f"{KIND}link").symlink_to(elsewhere)
     (place / f"{KIND}file").touch()
     (place / "polhode-of-another-kind").mkdir()
-    Scratch(KIND, place).remove()
+    LockedTempDir(KIND, place).remove()
     assert len(list(place.iterdir())) == 3
     assert (elsewhere / "kept").exists()
     of_another_user = place / f"{KIND}theirs"
     of_another_user.mkdir()
     with monkeypatch.context() as patched:
         patched.setattr(scratch.os, "geteuid", lambda: os.getuid() + 1)
-        Scratch(KIND, place).remove()
+        LockedTempDir(KIND, place).remove()
     assert of_another_user.exists()
-    Scratch(KIND, place).remove()
+    LockedTempDir(KIND, place).remove()
     assert not of_another_user.exists()
 
 
@@ -106,7 +106,7 @@ def test_one_that_is_taken_for_abandoned_while_it_is_made_is_made_anew(
         return lock
 
     monkeypatch.setattr(scratch, "_locked", interfered)
-    own = Scratch(KIND, tmp_path)
+    own = LockedTempDir(KIND, tmp_path)
     assert own.name != taken[0]
     assert [Path(own.name)] == list(tmp_path.iterdir())
     own.remove()
@@ -117,7 +117,7 @@ def test_where_nothing_can_be_locked_it_is_made_all_the_same(tmp_path: Path, mon
         raise OSError(95, "Operation not supported")
 
     monkeypatch.setattr(scratch, "_locked", refused)
-    first, second = Scratch(KIND, tmp_path), Scratch(KIND, tmp_path)
+    first, second = LockedTempDir(KIND, tmp_path), LockedTempDir(KIND, tmp_path)
     assert {Path(first.name), Path(second.name)} == set(tmp_path.iterdir())
     first.remove()
     second.remove()
@@ -126,7 +126,7 @@ def test_where_nothing_can_be_locked_it_is_made_all_the_same(tmp_path: Path, mon
 
 def test_many_at_once_do_not_take_each_others(tmp_path: Path) -> None:
     with ThreadPoolExecutor(8) as threads:
-        made = list(threads.map(lambda _: Scratch(KIND, tmp_path), range(200)))
+        made = list(threads.map(lambda _: LockedTempDir(KIND, tmp_path), range(200)))
     assert {Path(own.name) for own in made} == set(tmp_path.iterdir())
     assert len({own.name for own in made}) == 200
     for own in made:

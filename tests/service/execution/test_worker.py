@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.execution.worker import SMALL, Stored, kept, restored
+from service.execution.worker import SMALL, Stored, map_shared_memory, spill_to_shared_memory
 from service.responses.json_rows import array_size, written
 from service.responses.json_stream import Document, composed
 from service.routes import questions
@@ -18,9 +18,9 @@ NUMBERS = np.random.default_rng(7).normal(size=(3, SMALL)).T
 
 
 def through_a_file(document: Document, file: Path) -> Document:
-    travelling = kept(document, file)
+    travelling = spill_to_shared_memory(document, file)
     assert any(isinstance(part, Stored) for part in travelling.parts)
-    return restored(travelling, file)
+    return map_shared_memory(travelling, file)
 
 
 @pytest.mark.parametrize("media", [None, "application/x-npz"])

@@ -21,7 +21,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.execution.worker_pool import Died, Job, NoTurn, Overdue, Process, Processes, Stopped, framed
+from service.execution.worker_pool import (
+    DeadlineExceeded,
+    Job,
+    Process,
+    Processes,
+    QueueTimeout,
+    Stopped,
+    WorkerDied,
+    framed,
+)
 from tests.service.toy_processes import main
 
 pytestmark = pytest.mark.anyio
@@ -215,7 +224,7 @@ class TestQueue:
         async with warm(place) as (processes, _):
             ahead, hasty = ask(processes, b"wait a"), ask(processes, b"echo b", patience=0.05)
             patient = ask(processes, b"echo c")
-            with pytest.raises(NoTurn):
+            with pytest.raises(QueueTimeout):
                 await hasty.reply
             assert not ahead.reply.done()
             (place / "gate").touch()
@@ -257,7 +266,7 @@ class TestLoss:
             bystander = ask(processes, b"wait b")
             await until(lambda: bystander.begun)
             dying, waiting = ask(processes, request_), ask(processes, b"echo c")
-            with pytest.raises(Died):
+            with pytest.raises(WorkerDied):
                 await dying.reply
             assert await waiting.reply == b"c"
             assert not bystander.reply.done()
@@ -278,7 +287,7 @@ class TestLoss:
         async with warm(place, 4) as (processes, lost):
             jobs = [ask(processes, b"exit 7") for _ in range(24)]
             outcomes = await asyncio.gather(*(job.reply for job in jobs), return_exceptions=True)
-            assert {type(outcome) for outcome in outcomes} == {Died}
+            assert {type(outcome) for outcome in outcomes} == {WorkerDied}
             await until(lambda: len(lost) == 24)
             assert set(lost) == {7}
 
@@ -316,7 +325,7 @@ class TestLoss:
             kill_unnoticed(pid)
             job, behind = ask(processes, b"echo a", longest=0.05), ask(processes, b"echo b", patience=0.05)
             for one in (job, behind):
-                with pytest.raises(NoTurn):
+                with pytest.raises(QueueTimeout):
                     await one.reply
             assert begun(place) == []
             assert not processes.any_ready
@@ -326,7 +335,7 @@ class TestLoss:
             before = set(processes.pids)
             os.kill(forkserver._forkserver._forkserver_pid, signal.SIGKILL)  # type: ignore[attr-defined]
             for job in [ask(processes, b"wait %d" % i, longest=0.1) for i in range(2)]:
-                with pytest.raises(Overdue):
+                with pytest.raises(DeadlineExceeded):
                     await job.reply
             await until(lambda: not any(map(running, before)))
             assert await ask(processes, b"echo a").reply == b"a"
@@ -356,11 +365,11 @@ class TestLoss:
                 outcomes = await asyncio.gather(*(job.reply for _, job in jobs), return_exceptions=True)
             for i, ((word, _), outcome) in enumerate(zip(jobs, outcomes, strict=True)):
                 if isinstance(outcome, BaseException):
-                    assert isinstance(outcome, (Died, asyncio.CancelledError))
+                    assert isinstance(outcome, (WorkerDied, asyncio.CancelledError))
                 else:
                     assert outcome == b"%d" % i
                     assert word not in (b"die", b"tear")
-            assert {type(outcome) for outcome in outcomes} == {bytes, Died, asyncio.CancelledError}
+            assert {type(outcome) for outcome in outcomes} == {bytes, WorkerDied, asyncio.CancelledError}
             found = begun(place)
             assert len(set(found)) == len(found)
             await until(lambda: holds_together(processes))
@@ -372,14 +381,14 @@ class TestKilled:
         async with warm(place, 2) as (processes, lost):
             late = ask(processes, b"wait a", longest=0.05)
             (pid,) = (pid for pid, works in processes.pids.items() if works)
-            with pytest.raises(Overdue):
+            with pytest.raises(DeadlineExceeded):
                 await late.reply
             await until(lambda: not running(pid) and holds_together(processes))
             assert pid not in processes.pids
             assert await ask(processes, b"echo b").reply == b"b"
             # It is not reported as a loss: nobody need look for its reason. One that comes later is.
             assert lost == []
-            with pytest.raises(Died):
+            with pytest.raises(WorkerDied):
                 await ask(processes, b"exit 7").reply
             await until(lambda: lost)
             assert lost == [7]
@@ -396,7 +405,7 @@ class TestKilled:
             assert await following.reply == b"b"
             assert not running(pid)
             assert pid not in processes.pids
-            with pytest.raises(Died):
+            with pytest.raises(WorkerDied):
                 await ask(processes, b"exit 7").reply
             await until(lambda: lost)
             assert lost == [7]

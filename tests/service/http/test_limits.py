@@ -4,8 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.http.limits import Limits, require_acceptable, require_distinct_keys, require_simple
+from service.http.limits import require_acceptable
 from service.problems import Refusal
+from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 
 
 def code(call: object, *arguments: object) -> str | None:
@@ -35,7 +36,7 @@ def depth(node: object) -> int:
 @settings(deadline=None, derandomize=True, max_examples=300)
 def test_depth_is_that_of_the_document(document: object, limit: int, spaced: bool) -> None:
     body = json.dumps(document, indent=1 if spaced else None).encode()
-    assert (code(require_simple, body, Limits(nesting=limit)) == "too-complex") == (depth(document) > limit)
+    assert (code(enforce_document_limits, body, Limits(nesting=limit)) == "too-complex") == (depth(document) > limit)
 
 
 @given(documents)
@@ -65,15 +66,15 @@ def test_repeated_keys_are_found(body: bytes, pointer: str) -> None:
 
 def test_keys_are_counted_without_building_the_document() -> None:
     body = json.dumps({f"k{i}": 0 for i in range(50)}).encode()
-    assert code(require_simple, body, Limits(keys=50)) is None
-    assert code(require_simple, body, Limits(keys=49)) == "too-complex"
+    assert code(enforce_document_limits, body, Limits(keys=50)) is None
+    assert code(enforce_document_limits, body, Limits(keys=49)) == "too-complex"
 
 
 @pytest.mark.parametrize("document", [["a"] * 50, ["\n" * 49], {"k": ["a"] * 49}])
 def test_strings_and_escapes_are_counted_without_building_the_document(document: object) -> None:
     body = json.dumps(document).encode()
-    assert code(require_simple, body, Limits(strings=50)) is None
-    assert code(require_simple, body, Limits(strings=49 - body.count(b"n"))) == "too-complex"
+    assert code(enforce_document_limits, body, Limits(strings=50)) is None
+    assert code(enforce_document_limits, body, Limits(strings=49 - body.count(b"n"))) == "too-complex"
 
 
 @pytest.mark.parametrize("accept", [b"*/*", b"application/json", b"text/html, application/*;q=0.2", b""])

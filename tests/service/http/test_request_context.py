@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from service.http.cors import Cors
 from service.http.etag import JSON, Representation, etag_of
 from service.http.limits import ClientGone
-from service.http.request_context import PIECES, SHORT, VARY, Exchange
+from service.http.request_context import PIECES, SHORT, VARY, RequestContext
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem
@@ -59,7 +59,7 @@ class Wire:
         if pieces is not None:
             scope["extensions"] = {PIECES: pieces}
             pieces.sent = self.messages
-        self.exchange = Exchange(
+        self.exchange = RequestContext(
             Records(self.metrics, "none"), Cors(cors) or None, "ask_toy", scope, self.receive, self.send
         )
 

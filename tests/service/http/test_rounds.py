@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
-from service.execution.response_cache import KeptAnswers
+from service.execution.request_handler import RequestHandler
+from service.execution.response_cache import ResponseCache
 from service.http.etag import etag_of
 from service.http.heads import Heads
 from service.http.rounds import FEW, SMALL, TOGETHER, Rounds
@@ -45,8 +45,8 @@ class Room:
     """Rounds, and what they are made of."""
 
     def __init__(self, cached: int = 0, most_seconds: float = 1.0) -> None:
-        self.metrics, self.kept = Metrics(), KeptAnswers(cached, 10**6)
-        self.answering = Answering([TOY], Budget(), Limits())
+        self.metrics, self.kept = Metrics(), ResponseCache(cached, 10**6)
+        self.answering = RequestHandler([TOY], Budget(), Limits())
         heads = Heads({("POST", TOY.path): TOY}, 10**6)
         records = Records(self.metrics, "none")
         self.rounds = Rounds(heads, self.answering, self.kept, self.metrics, records, most_seconds)

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from service.observability.logs import LOG, JsonLines, configure
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 LINES = JsonLines()
 
 

@@ -18,7 +18,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from service.observability.metrics import CONTENT_TYPE, Metrics, Tally, Timings
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 ENDS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
 EDGES = [near for end in ENDS for near in (nextafter(end, 0.0), end, nextafter(end, inf))]
 SECONDS = st.sampled_from([0.0, *EDGES, 1e9]) | st.floats(0.0, 100.0)

@@ -16,7 +16,7 @@ from service import VERSION
 from service.openapi.document import documented, openapi
 from service.problems import MEDIA_TYPE, REGISTRY
 from service.responses import npz as archive
-from service.routing import Page, Reply, Route
+from service.routing import GetRoute, Reply, Route
 from tests.service.conftest import client_of
 from tests.service.toy_routes import GOOD, TOY, Told
 
@@ -25,8 +25,8 @@ pytestmark = pytest.mark.anyio
 DRAWN = dataclasses.replace(
     TOY, path="/v1/drawn", operation_id="draw_toy", representations={"image/svg+xml": lambda answer: b"<svg/>"}
 )
-PAGE = Page("/hello", "hello", "Says hello", "pages", lambda: Reply(b"{}"), Told, description="In full.")
-TEXT = Page("/plain", "plain", "A text", "pages", lambda: Reply(b"", b"text/plain"), media_type="text/plain")
+PAGE = GetRoute("/hello", "hello", "Says hello", "pages", lambda: Reply(b"{}"), Told, description="In full.")
+TEXT = GetRoute("/plain", "plain", "A text", "pages", lambda: Reply(b"", b"text/plain"), media_type="text/plain")
 ROUTES: tuple[Route, ...] = (TOY, DRAWN, PAGE, TEXT)
 
 

@@ -10,7 +10,7 @@ from math import inf, nextafter
 from typing import Any
 
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter, ValidationError
 
@@ -29,8 +29,8 @@ from service.requests.decimal_models import (
     TimeInNumerals,
     TimesInNumerals,
     body_of,
+    decimal_model_for,
     fields_in_numerals,
-    form_of,
     instants,
 )
 from service.requests.decimal_models import (
@@ -212,8 +212,8 @@ def in_strings(value: Any) -> Any:
 class TestForms:
     @pytest.mark.parametrize("member", IN_NUMERALS, ids=lambda member: member.__name__)
     def test_a_form_has_the_fields_of_its_dataclass(self, member: Any) -> None:
-        form = form_of(member)
-        assert form is form_of(member)
+        form = decimal_model_for(member)
+        assert form is decimal_model_for(member)
         assert form.__name__ == f"{member.__name__}InNumerals"
         assert (
             [*form.model_fields]
@@ -253,7 +253,7 @@ class TestForms:
             BODY.validate_json(json.dumps(CUBOID | change), strict=True)
 
     def test_what_was_not_given_is_left_out(self) -> None:
-        form = form_of(Cuboid).model_validate_json(json.dumps(CUBOID))
+        form = decimal_model_for(Cuboid).model_validate_json(json.dumps(CUBOID))
         assert given_in(form) == CUBOID | {"edges": (1.0, 2.0, 0.5)}
         assert given_in(form, "mass", "kind") == {"edges": (1.0, 2.0, 0.5)}
 

@@ -6,13 +6,13 @@ from typing import Any
 import pytest
 
 from core.systems.budget import Budget
-from service.execution.request_handler import Answering
+from service.execution.request_handler import RequestHandler
 from service.problems import MOST_BYTES, Refusal
 from service.requests.request_reader import Limits
 from service.routes import questions
 
 ROUTES = {route.path: route for route in questions()}
-ANSWERING = Answering(ROUTES.values(), Budget(), Limits())
+ANSWERING = RequestHandler(ROUTES.values(), Budget(), Limits())
 TRAJECTORY = {
     "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
     "angular_velocity": [0.1, 1.0, 0.1],

@@ -10,7 +10,7 @@ from core.bodies.measured import PointMasses
 from core.decimal_rows import read_rows
 from service.problems import Refusal
 from service.requests import large_arrays
-from service.requests.large_arrays import take_out
+from service.requests.large_arrays import extract_arrays
 from service.requests.request_reader import Limits, Reader
 from service.routes.bodies import MassPropertiesRequest
 from service.routes.rotation.trajectory import TrajectoryRequest
@@ -31,7 +31,7 @@ def without_this_path(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_points_arrive_to_the_bit() -> None:
-    _, taken = take_out(document(), READER._arrays)
+    _, taken = extract_arrays(document(), READER._arrays)
     assert taken is not None
     assert len(taken) == 2
     body = READER.read(document()).body
@@ -125,7 +125,7 @@ def test_a_text_is_not_gone_through_once_for_each_array(text: bytes, monkeypatch
         return read_rows(document, start, whole=whole)
 
     monkeypatch.setattr(large_arrays, "read_rows", looking)
-    take_out(text, READER._arrays)
+    extract_arrays(text, READER._arrays)
     assert 1 <= len(looked) <= large_arrays.UNREADABLE
 
 

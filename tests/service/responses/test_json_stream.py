@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from service.responses import npz as archive
 from service.responses.json_rows import CHUNK, ONE_PIECE, NotFinite, array_size, written
 from service.responses.json_stream import ONE_TEXT, SLICE, Document, composed
-from service.routing import Question
+from service.routing import PostRoute
 from tests.service.toy_routes import TOY
 
 RNG = np.random.default_rng(20261121)
@@ -34,7 +34,7 @@ def drawn(question: dict[str, Any]) -> bytes:
     return b"<svg>%d</svg>" % len(question)
 
 
-DRAWN = Question("/x", "x", "", "", None, None, lambda q, b: {}, representations={"image/svg+xml": drawn})
+DRAWN = PostRoute("/x", "x", "", "", None, None, lambda q, b: {}, representations={"image/svg+xml": drawn})
 
 
 @st.composite

@@ -14,12 +14,12 @@ import pytest
 from service.app import create_app
 from service.responses.json_rows import NotFinite
 from service.responses.npz import CHUNK, MEDIA_TYPE, METADATA, archive
-from service.routing import Question
+from service.routing import PostRoute
 from service.settings import Settings
 from tests.service.conftest import client_of
 
 SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, Question)]
+QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
 NPZ = {"accept": MEDIA_TYPE}
 
 pytestmark = pytest.mark.anyio
@@ -45,7 +45,7 @@ def unpacked(content: bytes) -> Any:
 
 
 @pytest.mark.parametrize("route", QUESTIONS, ids=lambda route: route.operation_id)
-async def test_every_example_says_the_same_both_ways(route: Question) -> None:
+async def test_every_example_says_the_same_both_ways(route: PostRoute) -> None:
     question = next(iter(route.examples.values())).question
     async with client_of(SERVICE) as client:
         plain = await client.post(route.path, json=dict(question))

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.rotation.stability.classification import REST, drift, verdict
+from core.rotation.stability.classification import REST, classify_equilibrium, drift
 
 ORDERS = {
     (0, 1, 2): (Fraction(2), Fraction(3), Fraction(5)),
@@ -54,7 +54,7 @@ def couplings(moments, axis: int) -> tuple[Fraction, Fraction]:
 
 @pytest.mark.parametrize(("ranks", "axis"), CASES)
 def test_stability_is_that_of_the_energy_on_the_momentum_sphere(ranks, axis) -> None:
-    moments, found = ORDERS[ranks], verdict(ranks, axis, True)
+    moments, found = ORDERS[ranks], classify_equilibrium(ranks, axis, True)
     own, around = energies(moments, axis)
     strict = all(e > own for e in around) or all(e < own for e in around)
     flat = all(e == own for e in around)
@@ -67,7 +67,7 @@ def test_stability_is_that_of_the_energy_on_the_momentum_sphere(ranks, axis) -> 
 @pytest.mark.parametrize(("ranks", "axis"), CASES)
 def test_kind_is_that_of_the_linear_equation(ranks, axis) -> None:
     first, second = couplings(ORDERS[ranks], axis)
-    found = verdict(ranks, axis, True)
+    found = classify_equilibrium(ranks, axis, True)
     square = first * second
     assert found.kind == ("center" if square < 0 else "saddle" if square > 0 else "degenerate")
     # Eigenvalues on the imaginary axis do not grow; zero ones only without a Jordan block.
@@ -77,7 +77,7 @@ def test_kind_is_that_of_the_linear_equation(ranks, axis) -> None:
 
 @pytest.mark.parametrize(("ranks", "axis"), CASES)
 def test_reasons_name_what_holds(ranks, axis) -> None:
-    found = verdict(ranks, axis, True)
+    found = classify_equilibrium(ranks, axis, True)
     own, around = energies(ORDERS[ranks], axis)
     if found.kind == "center":
         assert ("strictly least" in found.reason) == (min(around) > own)
@@ -89,8 +89,8 @@ def test_reasons_name_what_holds(ranks, axis) -> None:
 
 @pytest.mark.parametrize(("ranks", "axis"), CASES)
 def test_rest_is_told_apart_from_every_rotation(ranks, axis) -> None:
-    assert verdict(ranks, axis, False) is REST
-    assert verdict(ranks, axis, True) != REST
+    assert classify_equilibrium(ranks, axis, False) is REST
+    assert classify_equilibrium(ranks, axis, True) != REST
 
 
 positive = st.fractions(Fraction(1, 1000), 1000)

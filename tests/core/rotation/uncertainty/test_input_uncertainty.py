@@ -1,4 +1,4 @@
-"""Inherited errors against moved problems, solved to 50 digits with signs of the inputs that add up most."""
+"""InputUncertainty errors against moved problems, solved to 50 digits with signs of the inputs that add up most."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Moves of principal moments and components against eigenvalues and eigenvectors of the moved tensor, at 60 digits."""
+"""Sensitivities of principal moments and components against those of the moved tensor, at 60 digits."""
 
 from __future__ import annotations
 
