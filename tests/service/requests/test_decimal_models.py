@@ -10,7 +10,7 @@ from math import inf, nextafter
 from typing import Any
 
 import pytest
-from hypothesis import assume, example, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter, ValidationError
 
