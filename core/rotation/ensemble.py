@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -103,7 +103,9 @@ def ensemble(
     for k, start in enumerate(angular_velocities):
         try:
             rest = rest_of(budget, spent)
-            member = solve(TorqueFree(body, start), instants, accuracy=accuracy, method=method, budget=rest)
+            system = TorqueFree(body, start)
+            member = solve(system, instants, accuracy=accuracy, method=method, budget=rest)
+            member = replace(member, warnings=(*member.warnings, *system.moment_notices))
             spent += member.work.evaluations + member.work.evaluations_for_error
             members.append(member)
         except MechanicsError as fault:

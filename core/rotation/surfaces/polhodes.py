@@ -119,7 +119,7 @@ def _shares(principal: PrincipalInertia) -> tuple[float, float] | None:
         return scaled(float(a[j] - a[k]), float((a[j] - (a[j] - a[k])) - a[k] + (b[j] - b[k])), 0)
 
     low, high, whole = difference(1, 0), difference(2, 1), difference(2, 0)
-    if low.high == 0.0 or high.high == 0.0:
+    if not all(principal.apart):
         return None
 
     def share(step: Scaled, outer: Scaled) -> float:

@@ -14,7 +14,7 @@ from core.notices import Notice
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.surfaces.initial_states import initial_states
-from core.rotation.torque_free import pinned_notices
+from core.rotation.torque_free import inherited_notices
 from core.systems.budget import Budget
 from core.systems.methods import Method
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
@@ -105,7 +105,7 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         "time": many.time,
         "angular_velocity": samples,
         "warnings": (
-            *(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+            *inherited_notices(body),
             *many.warnings,
             *((many.merged(by_rounding),) if by_rounding else ()),
             *outside[:1],

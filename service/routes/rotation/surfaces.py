@@ -11,10 +11,11 @@ from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.quantities import AngularVelocity, Energy
+from core.rotation.equal_moments import curve_notices
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.surfaces.polhodes import Polhode, polhode, separatrix
-from core.rotation.torque_free import pinned_notices
+from core.rotation.torque_free import inherited_notices
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
@@ -124,7 +125,7 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
         "energy": surface.energy,
         "semi_axes": surface.semi_axes,
         "axes": surface.axes,
-        "warnings": tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+        "warnings": inherited_notices(body),
     }
     if question.layout == "triangles":
         mesh = surface.triangles(question.resolution)
@@ -139,6 +140,8 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
         answer["polhodes"] = [_curve(polhode(body, np.array(question.angular_velocity), question.points))]
     if question.separatrix:
         answer["separatrix"] = [_curve(curve) for curve in separatrix(body, surface.energy, question.points)]
+    if "polhodes" in answer or "separatrix" in answer:
+        answer["warnings"] += curve_notices(body.principal_of_motion)
     return answer
 
 
