@@ -16,12 +16,16 @@ from core.bodies.validity import Condition
 from core.errors import InvalidParameter, Path, UnphysicalInertia
 from core.notices import Notice
 from core.quantities import Position, Quaternion, check, members_of
+from core.work import spend
 
 MOST_PARTS = 1000
 """Bodies of a composite, composites among the parts opened."""
 
 DEEPEST = 8
 """Levels of composites within composites, the outermost included."""
+
+WORK_OF_A_PART = 100
+"""Units of work (`core.work`): a part is turned, moved and added in rational numbers."""
 
 
 @dataclass(frozen=True)
@@ -186,6 +190,7 @@ def _moments_of_parts(composite: Composite) -> _Moments:
     warnings: list[Notice] = []
     conditions: list[Condition] = []
     for i, part in enumerate(composite.parts):
+        spend(WORK_OF_A_PART)
         try:
             moments, share, noticed, reported = _moments(part.body)
         except InvalidParameter as fault:

@@ -17,9 +17,13 @@ from core.systems.methods.method import AbstractMethod
 from core.systems.solve import checked_times, solve
 from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
+from core.work import spend
 
 MOST_NAMED = 8
 """Members that a warning names by their indices."""
+
+WORK_OF_A_MEMBER = 20
+"""Units of work (`core.work`): the constants of a motion are set up for each member."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +105,7 @@ def ensemble(
     members: list[Trajectory] = []
     spent = 0
     for k, start in enumerate(angular_velocities):
+        spend(WORK_OF_A_MEMBER)
         try:
             rest = rest_of(budget, spent)
             system = TorqueFree(body, start)

@@ -17,10 +17,13 @@ from core.notices import Notice
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding, sign
 from core.systems.system import Floats, Model
 from core.systems.trajectory import Accuracy, Work
+from core.work import spend
 
 HORIZON = "horizon"
 SMALLEST_SAMPLE = 1e-290
 """Columns of smaller numbers than this would lose digits below the normal range of doubles."""
+WORK_OF_A_SCENE = 100
+"""Units of work (`core.work`): the set-up of a scene and of its motion in balls, at one precision."""
 MOTION = ("events", "ended", "trajectory")
 """Outputs that need the motion, in every scene."""
 
@@ -246,6 +249,7 @@ class ConstrainedSystem(ABC):
 
     def _compute(self, times: Floats | None, wanted: frozenset[str], accuracy: float) -> tuple[SceneAnswer, bool]:
         """Return the answer at the present precision, and whether that precision was enough."""
+        spend(WORK_OF_A_SCENE + (0 if times is None else times.size))
         horizon = math.inf if times is None else float(np.max(times, initial=0.0))
         rounded = Rounding()
         table = dict(self.figures())

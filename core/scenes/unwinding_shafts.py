@@ -22,6 +22,7 @@ from core.quantities import (
     check,
 )
 from core.scenes.answer import ConstrainedSystem, Motion
+from core.scenes.bounces import as_answered
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.scenes.friction import Friction, with_friction
 from core.scenes.string_phases import Law, Limit, follow, settled
@@ -161,7 +162,7 @@ class UnwindingShafts(ConstrainedSystem):
                     "start": phase.start.time,
                     "end": phase.ends,
                     "impulse": phase.impulse,
-                    "jerks": phase.jerks,
+                    "jerks": as_answered(phase.jerks),
                     "dissipated": phase.dissipated,
                 }
                 for phase in motion.phases.phases
