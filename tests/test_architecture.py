@@ -19,12 +19,12 @@ ALLOWED: dict[str, set[str]] = {
     "balls": set(),
     "notices": {"errors"},
     "quantities": {"errors"},
-    "rows": {"quantities", "errors"},
+    "work": set(),
+    "rows": {"quantities", "errors", "work"},
     "double_double": {"compiled"},
-    "decimal_rows": {"double_double", "compiled"},
     "elliptic": {"double_double", "compiled", "errors"},
-    "bodies": {"double_double", "compiled", "rows", "quantities", "notices", "errors"},
-    "systems": {"double_double", "compiled", "quantities", "notices", "errors"},
+    "bodies": {"double_double", "compiled", "rows", "quantities", "notices", "errors", "work"},
+    "systems": {"double_double", "compiled", "quantities", "notices", "errors", "work"},
 }
 ALLOWED["rotation"] = {"systems", "bodies", "elliptic"} | ALLOWED["bodies"] | ALLOWED["elliptic"]
 ALLOWED["scenes"] = {"systems", "elliptic", "balls"} | ALLOWED["systems"] | ALLOWED["elliptic"]
