@@ -53,6 +53,7 @@ class MethodEntry(View):
     order: int | None = Field(description="The error falls with this power of the step; null: no fixed order.")
     family: Family
     preserves: list[Invariance]
+    between_steps: str = Field(description="How samples come about whose times lie between the ends of steps.")
     when_to_use: str
     record: list[RecordView]
 
@@ -78,6 +79,7 @@ def methods() -> list[dict[str, Any]]:
             "order": member.order,
             "family": member.family,
             "preserves": member.preserves,
+            "between_steps": member.between_steps,
             "when_to_use": member.when_to_use,
             "record": sorted(measured.get(member.kind, []), key=lambda shown: shown["tolerance"]),
         }

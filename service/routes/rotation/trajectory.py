@@ -104,9 +104,12 @@ class WorkView(View):
 
     samples: int
     evaluations: int = Field(description="Of equations of motion, for the samples; a closed form needs none.")
-    steps: int
+    steps: int = Field(description="Of a method with a fixed step, those of its grid from t = 0.")
     rejected_steps: int = Field(description="Steps that a method with a tolerance took and threw away.")
     evaluations_for_error: int = Field(description="Of equations of motion, to find the error.")
+    step: float | None = Field(
+        description="Length of the steps from t = 0 (s), the one asked for; null for methods that choose their steps."
+    )
 
 
 class TrajectoryAnswer(Envelope):
