@@ -57,9 +57,9 @@ OVERFLOW, NO_CONVERGENCE, OUT_OF_BUDGET = 1, 2, 3
 
 @kernel(types.float64(_doubles, types.float64, types.int64, _table, _table, _counts))
 def lay_out(targets: Floats, step: float, parts: int, begin: Floats, length: Floats, count: Integers) -> float:
-    """Lay out the steps to `targets`, of one sign and growing magnitude, each divided into `parts`; return their number.
+    """Lay out the steps to `targets`, of one sign and growing magnitude, and return their number.
 
-    Above 2**53 the layout is not complete: grid points cannot be numbered there.
+    Each step is divided into `parts`. With more than 2**53 steps the layout is not complete: they cannot be numbered.
     """
     done, further = 0.0, 0.0
     for i in range(targets.size):
