@@ -30,7 +30,7 @@ class DecimalString(str):
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> dict[str, Any]:
-        return {"type": "str", "pattern": r"^-?[0-9]+(\.[0-9]+)?(e-?[0-9]+)?$"}
+        return {"type": "str"}
 
 
 N = TypeVar("N")

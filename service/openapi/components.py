@@ -28,21 +28,49 @@ def named(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def tidied(document: dict[str, Any]) -> None:
-    """Name every schema by its title, and leave out what says nothing: titles of fields, defaults that are null."""
+    """Write fields so that generators make the plainest types of them, and name what they make classes of.
+
+    Titles of fields and defaults that are null say nothing; a vector is an array of equal items; a number or an array
+    that may be null has two types.
+    """
     for name, schema in document["components"]["schemas"].items():
-        schema["title"] = name
         for node in _within(schema):
-            for field in node.get("properties", {}).values():
-                field.pop("title", None)
-                if "default" in field and field["default"] is None:
-                    del field["default"]
+            for field_name, field in node.get("properties", {}).items():
+                _tidy_field(field_name, field)
             entries = node.get("prefixItems")
             if isinstance(entries, list) and all(entry == entries[0] for entry in entries):
                 node["items"] = entries[0]
                 del node["prefixItems"]
-            if node.get("type") == "integer":
+            if "integer" in _types(node):
                 # Whole numbers are counts.
                 node.setdefault("x-unit", "1")
+        schema["title"] = name
+
+
+def _tidy_field(name: str, field: dict[str, Any]) -> None:
+    field.pop("title", None)
+    if "default" in field and field["default"] is None:
+        del field["default"]
+    title = "".join(word.capitalize() for word in name.split("_"))
+    members = field.get("anyOf", [field])
+    for member in members:
+        kind, items = member.get("type"), member.get("items", {})
+        if kind == "object" or "enum" in member:
+            member["title"] = title
+        elif kind == "array" and "enum" in items:
+            items["title"] = title.removesuffix("s")
+        elif kind == "array" and {"type": "null"} not in members and len(members) > 1:
+            member["title"] = f"{title}List"
+    plain = members[0].get("type") in ("number", "integer", "string", "array") and "enum" not in members[0]
+    if len(members) == 2 and members[1] == {"type": "null"} and plain:
+        field.update(members[0])
+        field["type"] = [members[0]["type"], "null"]
+        del field["anyOf"]
+
+
+def _types(schema: dict[str, Any]) -> set[str]:
+    found = schema.get("type", [])
+    return {found} if isinstance(found, str) else set(found)
 
 
 def require_tags(document: dict[str, Any]) -> None:

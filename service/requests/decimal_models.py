@@ -57,8 +57,8 @@ class Numeral:
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         unit = {"x-unit": self.quantity.unit}
-        text = {"type": "string", "maxLength": LONGEST_NUMERAL, "pattern": f"^(?:{NUMERAL})$"}
-        return {"anyOf": [{"type": "number"} | unit, text | unit]}
+        # A pattern, which would be repeated for each number, has generators make a class of each.
+        return {"anyOf": [{"type": "number"} | unit, {"type": "string"} | unit]}
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from core.systems.accuracy import record
 from core.systems.methods import Method
 from core.systems.methods.method import AbstractMethod, Family, Invariance
 from service.problems import registry
-from service.routes.scenes import Scenes, scenes
+from service.routes.scenes import SceneCatalogue, scenes
 from service.routing import GetRoute, Reply
 from service.schemas import SIGNATURE, Ratio, Signed, View
 
@@ -30,7 +30,7 @@ class ProblemEntry(View):
     meaning: str = Field(description="When it happens and what to do about it.")
 
 
-class Errors(Signed):
+class ProblemRegistry(Signed):
     """The registry of problems."""
 
     errors: list[ProblemEntry]
@@ -56,7 +56,7 @@ class MethodEntry(View):
     record: list[MethodRecord]
 
 
-class Methods(Signed):
+class MethodCatalogue(Signed):
     """The catalogue of methods."""
 
     methods: list[MethodEntry]
@@ -100,9 +100,9 @@ def _catalogue(path: str, operation_id: str, summary: str, answer: type[Signed],
 def catalogues() -> tuple[GetRoute, ...]:
     """Return the catalogues' routes."""
     return (
-        _catalogue("/v1/errors", "list_errors", "Every problem that can be answered", Errors, registry),
+        _catalogue("/v1/errors", "list_errors", "Every problem that can be answered", ProblemRegistry, registry),
         _catalogue(
-            "/v1/methods", "list_methods", "Every method that can be chosen, and when to use it", Methods, methods
+            "/v1/methods", "list_methods", "Every method that can be chosen, and when to use it", MethodCatalogue, methods
         ),
-        _catalogue("/v1/scenes", "list_scenes", "Every constrained scene and what it answers", Scenes, scenes),
+        _catalogue("/v1/scenes", "list_scenes", "Every constrained scene and what it answers", SceneCatalogue, scenes),
     )

@@ -57,7 +57,7 @@ class SceneEntry(View):
     example: dict[str, Any] = Field(description="A question.")
 
 
-class Scenes(Signed):
+class SceneCatalogue(Signed):
     """The catalogue of scenes."""
 
     scenes: list[SceneEntry]
