@@ -66,7 +66,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
         host=settings.host,
         port=settings.port,
         workers=settings.workers,
-        http="service.http.protocol:Protocol",
         log_config=None,
         access_log=False,
         server_header=False,

@@ -15,10 +15,10 @@ from fastapi import FastAPI
 from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.execution.request_handler import RequestHandler
+from service.execution.supervision import end_with_supervisor
 from service.http.dispatch import Dispatcher
 from service.http.limits import Receive
 from service.http.request_context import Scope, Send
-from service.http.rounds import ROUNDS
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.openapi.document import documented, openapi
@@ -53,7 +53,7 @@ class Service:
         self.routes: tuple[Route, ...] = (
             *asked,
             *catalogues(),
-            *operations(ready=lambda: self.warm and self.compute.processes.any_ready, metrics=self.metrics),
+            *operations(ready=lambda: self.warm and self.compute.any_ready, metrics=self.metrics),
             *pages(self.openapi),
         )
         self.dispatcher = Dispatcher(
@@ -79,13 +79,16 @@ class Service:
         return self._openapi
 
     @contextlib.asynccontextmanager
-    async def lifespan(self, app: Any = None) -> AsyncIterator[dict[str, Any]]:
+    async def lifespan(self, app: Any = None) -> AsyncIterator[None]:
         """Get ready in the background, while health is already answered; stop the compute processes at the end."""
         warming = asyncio.create_task(self._warm())
+        publishing = asyncio.create_task(self._publish())
+        end_with_supervisor()
         try:
-            yield {ROUNDS: self.dispatcher.rounds}
+            yield
         finally:
             self.warm = False
+            publishing.cancel()
             warming.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await warming
@@ -102,6 +105,11 @@ class Service:
         gc.freeze()
         self.warm = True
         LOG.info("ready", extra={"compute_processes": self.compute.size})
+
+    async def _publish(self) -> None:
+        while self.metrics.shared is not None:
+            self.metrics.shared.publish()
+            await asyncio.sleep(1.0)
 
     def _prepare(self) -> None:
         self._answering.warm()

@@ -7,7 +7,6 @@ has started would leave its directories behind, and who watches it would see it 
 from __future__ import annotations
 
 import contextlib
-import os
 import signal
 import sys
 from types import FrameType
@@ -16,7 +15,7 @@ import uvicorn
 from uvicorn.config import STARTUP_FAILURE
 from uvicorn.supervisors import Multiprocess
 
-from service.execution.scratch import LockedTempDir
+from service.observability.shared_counts import sharing
 
 
 class Config(uvicorn.Config):
@@ -42,12 +41,8 @@ def run(config: Config) -> None:
 
 
 def _run_several(config: Config) -> None:
-    counters = LockedTempDir("polhode-counters-")
-    try:
-        os.environ.setdefault("PROMETHEUS_MULTIPROC_DIR", counters.name)
+    with sharing():
         Multiprocess(config, sockets=[config.bind_socket()]).run()
-    finally:
-        counters.remove()
 
 
 def _leave(number: int, frame: FrameType | None) -> None:

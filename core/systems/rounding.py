@@ -15,12 +15,16 @@ import numpy as np
 from core.notices import Notice
 from core.systems.system import Floats
 from core.systems.trajectory import Accuracy
+from core.work import spend
 
 ROUND_TRIP = 17
 """Significant digits that tell every double from every other."""
 
 EXACT_POWERS = 22
 """Powers of ten up to this are doubles without rounding."""
+
+NUMBERS_PER_UNIT = 4
+"""Numbers that are rounded in a unit of work (`core.work`)."""
 
 NEAREST = 2.0**-53
 """From a decimal to the double nearest to it."""
@@ -41,6 +45,8 @@ def rounded(values: Floats, digits: Digits, error: float, scale: float | None = 
     scale : float, optional
         Largest norm of the motion; the largest magnitude in `values` if omitted, which errs to more digits.
     """
+    # Most are rounded all at once, but any may have to go through its decimals.
+    spend(values.size / NUMBERS_PER_UNIT)
     if digits == "meaningful":
         largest = _largest(values) if scale is None else scale
         if not (0.0 < error < inf and 0.0 < largest < inf):

@@ -7,27 +7,26 @@ cost several times what a small question costs.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine, Sequence
+from collections.abc import Coroutine, Hashable, Sequence
 from typing import Any
 
 from core.errors import MechanicsError
 from service import VERSION
-from service.execution.admission import Compute
+from service.execution.admission import Compute, Sender
+from service.execution.executor import Executor
 from service.execution.request_handler import RequestHandler
 from service.execution.response_cache import ResponseCache
 from service.http.cors import Cors
 from service.http.etag import JSON, Header, Representation, etag_of
-from service.http.heads import Heads
 from service.http.keys import Keys
-from service.http.limits import ClientGone, Receive, negotiated, read_body, require_acceptable, require_json
+from service.http.limits import ClientGone, Receive, negotiated, read_body, require_acceptable, require_readable
 from service.http.request_context import VARY, RequestContext, Scope, Send
-from service.http.rounds import Rounds
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.responses import npz as archive
-from service.responses.json_stream import Document, composed
+from service.responses.json_stream import Document
 from service.routing import GetRoute, PostRoute, Route
 from service.settings import Settings
 
@@ -58,20 +57,12 @@ class Dispatcher:
         settings: Settings,
     ) -> None:
         self._routes: dict[tuple[str, str], Route] = {(route.method, route.path): route for route in routes}
-        self._answering, self._compute, self._metrics, self._settings = answering, compute, metrics, settings
+        self._compute, self._metrics, self._settings = compute, metrics, settings
         self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)
         self._cors = Cors(settings.cors_origins) or None
+        self._executor = Executor(answering, compute, metrics, settings)
         self._kept = ResponseCache(settings.cached_answers, settings.cached_bytes)
         self._records = Records(metrics, settings.log_requests)
-        self.rounds = self._made_rounds()
-
-    def _made_rounds(self) -> Rounds | None:
-        """Return the rounds in which plain small questions are answered, or None where each request is looked at."""
-        if self._keys is not None or self._cors is not None:
-            return None
-        settings = self._settings
-        heads = Heads(self._routes, min(settings.max_body_bytes, settings.inline_bytes))
-        return Rounds(heads, self._answering, self._kept, self._metrics, self._records, settings.inline_seconds)
 
     def __call__(self, scope: Scope, receive: Receive, send: Send) -> Coroutine[Any, Any, None]:
         """Serve one HTTP request, when awaited."""
@@ -113,7 +104,7 @@ class Dispatcher:
         settings, headers = self._settings, exchange.headers
         if self._keys is not None:
             exchange.key = self._keys.admit(headers)
-        require_json(headers)
+        npz = require_readable(headers)
         media = None
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":
@@ -123,7 +114,8 @@ class Dispatcher:
         if whole is not None:
             self._metrics.cache_hits.inc()
         else:
-            document = await self._document(route, body, media, exchange)
+            sender = Sender(self._client_of(exchange), exchange.key, exchange.gone)
+            document = await self._executor.answer(route, body, npz, media, sender)
             if media == archive.MEDIA_TYPE:
                 await self._stream(document, _etag_of_answer(route, body, media), exchange, _NPZ)
                 return
@@ -137,29 +129,19 @@ class Dispatcher:
             self._kept.put(route.path, body, whole)
         await exchange.answer(whole)
 
+    def _client_of(self, exchange: RequestContext) -> Hashable:
+        """Return by what clients are told apart: their keys, or their addresses."""
+        if exchange.key is not None:
+            return exchange.key.name
+        address = exchange.scope.get("client")
+        return address and address[0]
+
     async def _stream(
         self, document: Document, etag: bytes, exchange: RequestContext, headers: Sequence[Header] = (JSON,)
     ) -> None:
         self._metrics.samples.inc(document.numbers)
         with self._compute.holding(document.memory):
             await exchange.stream(document.pieces(), etag, self._settings.stalled_seconds, headers)
-
-    async def _document(self, route: PostRoute, body: bytes, media: str | None, exchange: RequestContext) -> Document:
-        longest = self._settings.deadline_seconds
-        if len(body) <= self._settings.inline_bytes:
-            question = self._answering.read(route, body)
-            # Nothing computes for longer than the deadline, whatever was predicted.
-            price = min(self._answering.price(route, question), longest)
-            if exchange.key is not None:
-                exchange.key.work(price)
-            if price <= self._settings.inline_seconds:
-                return composed(route, self._answering.answer(route, question), media)
-        else:
-            # What has not been read has no price yet; reading alone takes about this long.
-            price = min(4e-8 * len(body), longest)
-            if exchange.key is not None:
-                exchange.key.work(price)
-        return await self._compute.answer(route, body, price, media, gone=exchange.gone)
 
     async def _page(self, route: GetRoute, exchange: RequestContext) -> None:
         reply = route.content()

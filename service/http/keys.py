@@ -60,6 +60,11 @@ class Allowance:
         self._left -= amount
         return 0.0
 
+    def charge(self, amount: float) -> None:
+        """Take an amount, whatever is left, or give it back if it is negative."""
+        if self._rate != inf:
+            self._left = min(self._most, self._left - amount)
+
 
 class Key:
     """One key's name, hash and what is left of its limits."""
@@ -77,6 +82,10 @@ class Key:
     def work(self, seconds: float) -> None:
         """Count predicted computation (s), or refuse it."""
         self._take(self._work, seconds, "work")
+
+    def charge(self, seconds: float) -> None:
+        """Count computation (s) that was done, or give back what was counted too much."""
+        self._work.charge(seconds)
 
     def _take(self, allowance: Allowance, amount: float, what: str) -> None:
         wait = allowance.take(amount)

@@ -18,13 +18,21 @@ class ClientGone(Exception):
     """The client closed the connection; there is nobody to answer."""
 
 
-def require_json(headers: Headers) -> None:
-    """Refuse a body that is not declared to be plain JSON."""
+MOST_ACCEPT_BYTES = 1024
+"""Of an Accept header: each of its entries is looked at."""
+
+
+def require_readable(headers: Headers) -> bool:
+    """Return whether a body is declared as a numpy archive; refuse one that is not, nor as JSON."""
     declared = headers.get(b"content-type", b"")
-    if declared != b"application/json" and declared.split(b";", 1)[0].strip().lower() != b"application/json":
-        raise Refusal("unsupported-media-type", "the body must be declared as Content-Type: application/json")
+    if declared != b"application/json":
+        declared = declared.split(b";", 1)[0].strip().lower()
+        if declared not in (b"application/json", b"application/x-npz"):
+            detail = "the body must be declared as Content-Type: application/json, or application/x-npz"
+            raise Refusal("unsupported-media-type", detail)
     if headers.get(b"content-encoding", b"identity").lower() != b"identity":
         raise Refusal("unsupported-media-type", "compressed bodies are not read; send the body as it is")
+    return declared == b"application/x-npz"
 
 
 def require_acceptable(accept: bytes, offered: bytes = b"application/json") -> None:
@@ -43,6 +51,8 @@ def negotiated(accept: bytes, others: Iterable[str]) -> str | None:
     Refusal
         406 if it admits none.
     """
+    if len(accept) > MOST_ACCEPT_BYTES:
+        raise Refusal("not-acceptable", f"the Accept header has more than {MOST_ACCEPT_BYTES} bytes")
     weights = dict(_weighted(entry) for entry in accept.decode("latin-1").lower().split(",") if entry.strip())
 
     def weight(media: str) -> float:

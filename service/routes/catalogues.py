@@ -102,7 +102,11 @@ def catalogues() -> tuple[GetRoute, ...]:
     return (
         _catalogue("/v1/errors", "list_errors", "Every problem that can be answered", ProblemRegistry, registry),
         _catalogue(
-            "/v1/methods", "list_methods", "Every method that can be chosen, and when to use it", MethodCatalogue, methods
+            "/v1/methods",
+            "list_methods",
+            "Every method that can be chosen, and when to use it",
+            MethodCatalogue,
+            methods,
         ),
         _catalogue("/v1/scenes", "list_scenes", "Every constrained scene and what it answers", SceneCatalogue, scenes),
     )

@@ -16,6 +16,7 @@ from core.systems.budget import Budget
 from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, numbers
+from service.routes.bodies import few_times
 from service.routes.rotation.trajectory import Accuracy
 from service.routing import Answer, Example, PostRoute
 from service.schemas import (
@@ -250,6 +251,7 @@ def questions() -> tuple[PostRoute, ...]:
             answer_model(scene, SceneAnswerInDoubles, "", float),
             answering(scene),
             CalibratedCost("scene_" + name_of(scene).replace("-", "_"), scene_counts),
+            lambda question: question.times is None or few_times(question.times),
             scene_probe,
             examples=EXAMPLES[name_of(scene)],
         )
