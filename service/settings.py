@@ -30,6 +30,9 @@ class Settings(BaseSettings):
     max_body_bytes: int = Field(
         default=8_000_000, ge=1, description="Largest request body; a longer one is refused unread (413)."
     )
+    body_seconds: float = Field(
+        default=30.0, gt=0, le=LONGEST, description="Time in which a request body must have arrived (408)."
+    )
     max_nesting: int = Field(
         default=32, ge=1, le=200, description="Deepest nesting of arrays and objects in a request body (400)."
     )
@@ -77,8 +80,8 @@ class Settings(BaseSettings):
     max_held_bytes: int = Field(
         default=512_000_000,
         ge=1,
-        description="Memory of large answers that are being read by their clients above which new large questions are "
-        "refused (429).",
+        description="Memory of large answers that are being read, and of bodies that are being sent, above which no "
+        "more of either is accepted (429).",
     )
     stalled_seconds: float = Field(
         default=20.0,
@@ -90,10 +93,9 @@ class Settings(BaseSettings):
         default=None, description="Directory for large results on their way between processes; default: shared memory."
     )
     cached_answers: int = Field(
-        default=1024, ge=0, description="Number of small answers that are kept for questions asked again; 0 keeps none."
-    )
-    cached_bytes: int = Field(
-        default=8_000_000, ge=0, description="Memory that kept answers may take; those unused for longest go first."
+        default=1024,
+        ge=0,
+        description="Number of answers of at most 8 kB that are cached, with their questions; 0 caches none.",
     )
 
     keys_file: Annotated[FilePath, BeforeValidator(_named)] | None = Field(

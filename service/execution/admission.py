@@ -100,6 +100,11 @@ class Compute:
         """Predicted time until a question that is accepted now would have its turn (s)."""
         return self._promised * self.pace.ratio / self.size
 
+    @property
+    def held(self) -> int:
+        """Memory of the answers that clients are reading (bytes)."""
+        return self._held
+
     @contextlib.contextmanager
     def holding(self, memory: int) -> Iterator[None]:
         """Count the memory (bytes) of an answer while its client reads it."""
