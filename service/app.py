@@ -21,6 +21,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.execution.request_handler import RequestHandler
+from service.execution.supervision import end_with_supervisor
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
 from service.observability.logs import LOG, configure
@@ -71,7 +72,7 @@ class Service(FastAPI):
         self.table: tuple[Route, ...] = (
             *questions,
             *catalogues(),
-            *operations(ready=lambda: self.warm and self.compute.processes.any_ready, metrics=self.metrics),
+            *operations(ready=lambda: self.warm and self.compute.any_ready, metrics=self.metrics),
             *pages(self.openapi_text),
         )
         self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)
@@ -124,9 +125,11 @@ class Service(FastAPI):
         if not LOG.hasHandlers():
             # Servers configure their own logging, not that of an application.
             configure(self.settings.log_level)
-        tasks = [asyncio.create_task(self._warm()), asyncio.create_task(self._bodies.watch())]
+        kept_up = [self._warm(), self._publish(), self._bodies.watch()]
         if self._keys is not None:
-            tasks.append(asyncio.create_task(self._keys.follow()))
+            kept_up.append(self._keys.follow())
+        tasks = [asyncio.create_task(work) for work in kept_up]
+        end_with_supervisor()
         try:
             yield
         finally:
@@ -154,6 +157,11 @@ class Service(FastAPI):
         self.warm = True
         at = f" at {self._address}" if self._address else ""
         LOG.info("ready%s", at, extra={"compute_processes": self.compute.size})
+
+    async def _publish(self) -> None:
+        while self.metrics.shared is not None:
+            self.metrics.shared.publish()
+            await asyncio.sleep(1.0)
 
     def _prepare(self) -> None:
         self.answering.warm()

@@ -60,6 +60,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             "An object names a key twice",
             "Which of the two values is meant cannot be known, so neither is taken.",
         ),
+        ProblemType(
+            "invalid-archive",
+            400,
+            "The body cannot be read as a numpy archive",
+            "Send arrays of plain numbers and metadata.json, as numpy.savez packs them.",
+        ),
         ProblemType("unauthorized", 401, "A key is needed", "Send Authorization: Bearer with a key of this service."),
         ProblemType("not-found", 404, "There is nothing here", "GET /openapi.json lists every path."),
         ProblemType(
@@ -71,7 +77,10 @@ REGISTRY: Mapping[str, ProblemType] = {
         ),
         ProblemType("body-too-large", 413, "The body is too large", "The limit is named; send less or split it."),
         ProblemType(
-            "unsupported-media-type", 415, "The body has another media type", "Send Content-Type: application/json."
+            "unsupported-media-type",
+            415,
+            "The body has another media type",
+            "Send Content-Type: application/json, or application/x-npz.",
         ),
         ProblemType(
             "invalid-parameter",

@@ -39,6 +39,11 @@ def free(question: Any, budget: Budget) -> float:
     return 0.0
 
 
+def never(question: Any) -> bool:
+    """Say that no question of a route is small."""
+    return False
+
+
 @dataclass(frozen=True)
 class PostRoute:
     """POST: a question to the mechanics.
@@ -53,6 +58,8 @@ class PostRoute:
         From question and budget to the fields of the answer; warnings under ``"warnings"``.
     price : callable
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
+    small : callable
+        Whether a question may be begun in the event loop, by counts that it states; decided without computing anything.
     planning_probe : callable or None
         From a question to one that costs little and has the same model, warnings and refusals, by which it is planned;
         None if the question is that itself.
@@ -70,6 +77,7 @@ class PostRoute:
     answer: Any
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
+    small: Callable[[Any], bool] = never
     planning_probe: Callable[[Any], Any] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)

@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 from core import bodies
 from core.bodies.mass_moments import MassMoments
 from core.bodies.mass_properties import About, MassProperties
 from core.bodies.mesh import Mesh
+from core.bodies.principal_inertia import DERIVED, ROUNDED_ONCE, Rounding
 from core.bodies.uniform import Uniform
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter, Path, UnphysicalInertia
 from core.notices import Notice
 from core.quantities import Position, Quaternion, check, members_of
+from core.work import spend
 
 MOST_PARTS = 1000
 """Bodies of a composite, composites among the parts opened."""
 
 DEEPEST = 8
 """Levels of composites within composites, the outermost included."""
+
+WORK_OF_A_PART = 100
+"""Units of work (`core.work`): a part is turned, moved and added in rational numbers."""
 
 
 @dataclass(frozen=True)
@@ -153,8 +159,15 @@ class Composite:
         UnphysicalInertia
             If a principal moment is negative.
         """
-        moments, warnings, conditions = _moments_of_parts(self)
-        found = MassProperties.from_exact(*moments.properties(), warnings=warnings, conditions=conditions)
+        moments, share, warnings, conditions = _moments_of_parts(self)
+        mass, center, inertia = moments.properties()
+        trace = sum(inertia[k][k] for k in range(3))
+        rounding = ROUNDED_ONCE
+        if share > 0 and trace > 0:
+            rounding = Rounding(max(DERIVED.share, float(share * moments.spread / trace)), False)
+        found = MassProperties.from_exact(
+            mass, center, inertia, warnings=warnings, conditions=conditions, rounding=rounding
+        )
         if any(condition.name == "positive-moments" for condition in found.validity.violations):
             raise UnphysicalInertia(
                 "parts",
@@ -165,21 +178,26 @@ class Composite:
         return replace(found, about=self.about, described_by=self).judged("parts")
 
 
-_Moments = tuple[MassMoments, tuple[Notice, ...], tuple[Condition, ...]]
+_Moments = tuple[MassMoments, Fraction, tuple[Notice, ...], tuple[Condition, ...]]
 
 
 def _moments_of_parts(composite: Composite) -> _Moments:
-    """Return the moments of mass about the composite's origin, what was noticed, and what the report says."""
-    total = MassMoments()
+    """Return the moments of mass about the composite's origin, what was noticed, and what the report says.
+
+    Second is what the moments may be wrong by, as a share of their spread: nothing where every part is exact.
+    """
+    total, wrong = MassMoments(), Fraction(0)
     warnings: list[Notice] = []
     conditions: list[Condition] = []
     for i, part in enumerate(composite.parts):
+        spend(WORK_OF_A_PART)
         try:
-            moments, noticed, reported = _moments(part.body)
+            moments, share, noticed, reported = _moments(part.body)
         except InvalidParameter as fault:
             raise fault.inside("parts", i, "body") from None
         placed = moments.turned(part.attitude).moved(part.position)
         total += -placed if part.hole else placed
+        wrong += share * abs(placed.spread)
         warnings += [notice.inside("parts", i, "body") for notice in noticed]
         conditions += reported
     if not total.massive:
@@ -188,7 +206,7 @@ def _moments_of_parts(composite: Composite) -> _Moments:
             "weigh more than the holes among them",
             remedy="add what the holes are cut from; a composite that is a hole as a whole is a part with hole: true",
         )
-    return total, tuple(warnings), tuple(conditions)
+    return total, wrong / total.spread if wrong else wrong, tuple(warnings), tuple(conditions)
 
 
 def moments_of(body: Any) -> MassMoments:
@@ -205,10 +223,10 @@ def _moments(body: Any) -> _Moments:
         mass = body.weigh(shape)
         exact = MassMoments.of(mass, shape.center_of_mass, [[mass * x for x in row] for row in shape.inertia])
         if not isinstance(body, Mesh):
-            return exact, (), ()
+            return exact, Fraction(0), (), ()
         solid = body.filled() if body.is_hole else body
         own = solid.mass_properties()
-        return exact, own.warnings, own.conditions
+        return exact, Fraction(own.rounding.share), own.warnings, own.conditions
     own = body.mass_properties()
     for name, known in (("mass", own.mass), ("center_of_mass", own.center_of_mass)):
         if known is None:
@@ -218,4 +236,5 @@ def _moments(body: Any) -> _Moments:
                 remedy="give an inertia-tensor with mass and center_of_mass, or another kind of body",
             )
     exact = MassMoments.of(own.exact_mass, own.exact_center_of_mass, own.exact_inertia)
-    return exact, own.warnings, own.conditions
+    share = Fraction(0) if own.rounding.exact_zeros else Fraction(own.rounding.share)
+    return exact, share, own.warnings, own.conditions

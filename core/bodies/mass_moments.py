@@ -27,6 +27,7 @@ _LEAST = 1074
 """Every double is a multiple of 2^-1074."""
 
 _SHARE = Fraction(1, 2**256)
+_NOTHING = Fraction(1, 2**1500)
 
 Integers = tuple[int, ...]
 
@@ -107,10 +108,17 @@ class MassMoments:
         """Whether the mass is positive."""
         return self.mass > UNRESOLVED
 
+    @property
+    def spread(self) -> Fraction:
+        """The integral of r^2 dm about the origin (kg m^2)."""
+        xx, _, _, yy, _, zz = self.second
+        return Fraction(xx + yy + zz, 1 << BITS)
+
     def properties(self) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
         """Return mass, centre of mass and inertia about it; the mass must be positive.
 
-        A component of the tensor that no double can express and that is below 2^-256 of the trace is zero.
+        A component of the tensor that no double can express and that is below 2^-256 of the trace is zero, and moments
+        that differ by as little as their rounding are equal.
         """
         m, s = self.mass, self.first
         center = [_or_zero(Fraction(x, m)) for x in s]
@@ -120,6 +128,9 @@ class MassMoments:
             for (i, j), value in zip(pairs, self.second, strict=True)
         }
         trace = central[0, 0] + central[1, 1] + central[2, 2]
+        for j, k in ((0, 1), (0, 2), (1, 2)):
+            if abs(central[j, j] - central[k, k]) < _NOTHING * trace:
+                central[k, k] = central[j, j]
         inertia = [[(trace if i == j else 0) - central[min(i, j), max(i, j)] for j in range(3)] for i in range(3)]
         least = _SHARE * abs(trace)
         return (

@@ -8,10 +8,11 @@ from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.bodies.exact import SMALLEST, exact_matrix, exact_vector, tensor_pairs
 from core.bodies.mass_properties import About, MassProperties, diagonal
-from core.bodies.principal_inertia import EPSILON
+from core.bodies.principal_inertia import EPSILON, summed
 from core.bodies.recentred import Recentred
 from core.bodies.validity import TOLERANCE
 from core.errors import InvalidParameter, UnphysicalInertia
@@ -19,11 +20,16 @@ from core.notices import Notice
 from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Quantity, check
 from core.rows import Rows
 
+Floats = NDArray[np.float64]
+
 POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))
 
 MASS_RANGE = 900
 """Most binary orders of magnitude between the heaviest and the lightest point: no product of theirs is lost to zero."""
+
+SUMMED_EXACTLY = 24
+"""Points of which the moments are formed in rational numbers."""
 
 KEPT = 32
 """Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
@@ -179,16 +185,22 @@ class PointMasses:
             raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body, sums formed in double-double."""
-        # Compiled code is fetched only for the bodies that need it.
-        from core.bodies.point_sums import first_moments, second_moments
+        """Return what the mechanics needs to know of the body; few points in rational numbers, more in double-double.
 
+        In rational numbers products of inertia that cancel are zero, and the axes of a symmetric set of points exact.
+        """
         masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
         # Powers of two keep products within range and round nothing.
         heavy = int(np.frexp(masses.max())[1])
         m = np.ldexp(masses, -heavy)
         if float(m.min()) < 2.0**-MASS_RANGE:
             raise InvalidParameter("masses", f"not differ by more than a factor of 2^{MASS_RANGE}")
+        if len(m) <= SUMMED_EXACTLY:
+            properties = MassProperties.from_exact(*_exact_properties(masses, self.positions))
+            return replace(properties, about=self.about, described_by=self)
+        # Compiled code is fetched only for the bodies that need it.
+        from core.bodies.point_sums import first_moments, second_moments
+
         local = Recentred.on(self.positions)
         first, second = np.zeros((2, 4)), np.zeros((2, 3, 3))
         first_moments(m, local.high, local.low, first)
@@ -203,5 +215,23 @@ class PointMasses:
         trace = products[0][0] + products[1][1] + products[2][2]
         inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
         return replace(
-            MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about, described_by=self
+            MassProperties.from_exact(kilograms * mass, center, inertia, rounding=summed(len(m))),
+            about=self.about,
+            described_by=self,
         )
+
+
+def _exact_properties(masses: Floats, positions: Floats) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
+    """Return mass, centre of mass and tensor of inertia about it, of few points, shapes (n,) and (n, 3)."""
+    m = [Fraction(x) for x in masses.tolist()]
+    columns = [[Fraction(x) for x in column] for column in positions.T.tolist()]
+    mass = sum(m, Fraction(0))
+    center = [sum((a * x for a, x in zip(m, column, strict=True)), Fraction(0)) / mass for column in columns]
+    d = [[x - c for x in column] for column, c in zip(columns, center, strict=True)]
+    products = [[Fraction(0)] * 3 for _ in range(3)]
+    for i in range(3):
+        weighted = [a * x for a, x in zip(m, d[i], strict=True)]
+        for j in range(i, 3):
+            products[i][j] = products[j][i] = sum((a * x for a, x in zip(weighted, d[j], strict=True)), Fraction(0))
+    trace = products[0][0] + products[1][1] + products[2][2]
+    return mass, center, [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core.bodies.closed_surface import closed
 from core.bodies.mass_properties import MassProperties
+from core.bodies.principal_inertia import DERIVED, Rounding
 from core.bodies.recentred import Recentred
 from core.bodies.uniform import Shape, Uniform
 from core.bodies.validity import Condition
@@ -66,6 +67,11 @@ class Mesh(Uniform):
     def _solid(self) -> _Solid:
         return _Solid.inside(self.vertices, self._closed)
 
+    @property
+    def rounding(self) -> Rounding:
+        """What is known of the tensor of inertia, which is a sum over the faces."""
+        return Rounding(max(DERIVED.share, self._solid.share), False)
+
     def shape(self) -> Shape:
         """Return volume, centre of mass and inertia per mass.
 
@@ -109,11 +115,15 @@ class Mesh(Uniform):
 
 @dataclass(frozen=True)
 class _Solid:
-    """Volume (m^3), centroid (m) and mean of d_i d_j over the solid, d from the centroid (m^2)."""
+    """Volume (m^3), centroid (m) and mean of d_i d_j over the solid, d from the centroid (m^2).
+
+    `share` is what the means may be wrong by, as a share of the largest.
+    """
 
     volume: Fraction
     centroid: Sequence[Fraction]
     products: Sequence[Sequence[Fraction]]
+    share: float
     notices: tuple[Notice, ...]
 
     @classmethod
@@ -157,6 +167,7 @@ class _Solid:
         about_middle = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
         about_mean = [[about_middle[i][j] - mean[i] * mean[j] for j in range(3)] for i in range(3)]
         u = local.unit
+        widest = max(u[k] * u[k] * about_mean[k][k] for k in range(3))
         return cls(
             volume * u[0] * u[1] * u[2],
             [o + s * c for o, s, c in zip(local.reference, u, mean, strict=True)],
@@ -164,6 +175,7 @@ class _Solid:
                 [u[i] * u[j] * (about_mean[i][j] if i == j else _resolved(about_mean[i][j], noise)) for j in range(3)]
                 for i in range(3)
             ],
+            float(noise * max(u) ** 2 / widest) if widest > 0 else 1.0,
             tuple(notices),
         )
 

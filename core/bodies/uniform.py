@@ -12,6 +12,7 @@ from typing import NamedTuple, Self
 
 from core.bodies.exact import PI, Matrix, Vector
 from core.bodies.mass_properties import MassProperties
+from core.bodies.principal_inertia import ROUNDED_ONCE, Rounding
 from core.errors import InvalidParameter
 from core.quantities import SignedDensity, SignedMass, check
 
@@ -70,6 +71,11 @@ class Uniform:
         raise NotImplementedError
 
     @property
+    def rounding(self) -> Rounding:
+        """What is known of the tensor of inertia: rational numbers, rounded once."""
+        return ROUNDED_ONCE
+
+    @property
     def _stated(self) -> str:
         return "density" if self.mass is None else "mass"
 
@@ -115,7 +121,8 @@ class Uniform:
         shape = self.shape()
         mass = self.weigh(shape)
         inertia = [[mass * x for x in row] for row in shape.inertia]
-        return replace(MassProperties.from_exact(mass, shape.center_of_mass, inertia), described_by=self)
+        found = MassProperties.from_exact(mass, shape.center_of_mass, inertia, rounding=self.rounding)
+        return replace(found, described_by=self)
 
 
 def principal(volume: Fraction, pi_power: int, center: Vector, moments: Vector) -> Shape:

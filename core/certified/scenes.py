@@ -145,7 +145,7 @@ class _Question:
             if "trajectory" in self.wanted and given is not None:
                 trajectory = self._trajectory(sampler(scene, motion), points, motion, given)
         figures = {n: self._written(table[n]()) for n in scene.outputs if n in self.wanted and n in table}
-        model = scene.still() if motion is None else motion.model
+        model = scene.static_model() if motion is None else motion.model
         return CertifiedScene(model, figures, trajectory, ended, scene.notices(self.wanted))
 
     def _trajectory(
@@ -153,10 +153,10 @@ class _Question:
     ) -> Mapping[str, list[Any]]:
         existing = []
         for i, point in enumerate(points):
-            if point < arb(motion.began):
+            if point < arb(motion.valid_from):
                 raise InvalidParameter(
                     ("times", i),
-                    f"be at least {motion.began:.17g} s",
+                    f"be at least {motion.valid_from:.17g} s",
                     remedy="the model does not hold earlier; start from an earlier state",
                 )
             if motion.end is None or not point > motion.end.time:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,9 +17,13 @@ from core.systems.methods.method import AbstractMethod
 from core.systems.solve import checked_times, solve
 from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
+from core.work import spend
 
 MOST_NAMED = 8
 """Members that a warning names by their indices."""
+
+WORK_OF_A_MEMBER = 20
+"""Units of work (`core.work`): the constants of a motion are set up for each member."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +105,12 @@ def ensemble(
     members: list[Trajectory] = []
     spent = 0
     for k, start in enumerate(angular_velocities):
+        spend(WORK_OF_A_MEMBER)
         try:
             rest = rest_of(budget, spent)
-            member = solve(TorqueFree(body, start), instants, accuracy=accuracy, method=method, budget=rest)
+            system = TorqueFree(body, start)
+            member = solve(system, instants, accuracy=accuracy, method=method, budget=rest)
+            member = replace(member, warnings=(*member.warnings, *system.moment_notices))
             spent += member.work.evaluations + member.work.evaluations_for_error
             members.append(member)
         except MechanicsError as fault:

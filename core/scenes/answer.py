@@ -17,10 +17,13 @@ from core.notices import Notice
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding, sign
 from core.systems.system import Floats, Model
 from core.systems.trajectory import Accuracy, Work
+from core.work import spend
 
 HORIZON = "horizon"
 SMALLEST_SAMPLE = 1e-290
 """Columns of smaller numbers than this would lose digits below the normal range of doubles."""
+WORK_OF_A_SCENE = 100
+"""Units of work (`core.work`): the set-up of a scene and of its motion in balls, at one precision."""
 MOTION = ("events", "ended", "trajectory")
 """Outputs that need the motion, in every scene."""
 
@@ -95,7 +98,7 @@ class Motion(ABC):
 
     @property
     @abstractmethod
-    def began(self) -> float:
+    def valid_from(self) -> float:
         """Earliest time at which the model holds, minus infinity if it always did (s)."""
 
     @property
@@ -119,17 +122,18 @@ class UnbrokenMotion(Motion):
     ----------
     end : Event or None
     end_of_reversed : callable
-        Returns what would end the motion backwards in time, only called if somebody asks when the model began to hold.
+        Returns what would end the motion backwards in time, only called where `valid_from` is needed.
     """
 
     def __init__(self, end: Event | None, end_of_reversed: Callable[[], Event | None]) -> None:
         self._end, self._end_of_reversed = end, end_of_reversed
 
     @cached_property
-    def began(self) -> float:
+    def valid_from(self) -> float:
         """When the reversed motion would end."""
         first = self._end_of_reversed()
-        return -math.inf if first is None else -float(first.time)
+        # The difference, unlike the negative, of zero has no sign.
+        return -math.inf if first is None else 0.0 - float(first.time)
 
     @property
     def end(self) -> Event | None:
@@ -193,11 +197,11 @@ class ConstrainedSystem(ABC):
         """Return the motion at least up to `horizon` (s)."""
 
     @abstractmethod
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question that needs no motion."""
 
     @property
-    def moves(self) -> bool:
+    def has_motion(self) -> bool:
         """Whether the parameters suffice for a motion; if not, what needs one is left out unless it is asked for."""
         return True
 
@@ -245,6 +249,7 @@ class ConstrainedSystem(ABC):
 
     def _compute(self, times: Floats | None, wanted: frozenset[str], accuracy: float) -> tuple[SceneAnswer, bool]:
         """Return the answer at the present precision, and whether that precision was enough."""
+        spend(WORK_OF_A_SCENE + (0 if times is None else times.size))
         horizon = math.inf if times is None else float(np.max(times, initial=0.0))
         rounded = Rounding()
         table = dict(self.figures())
@@ -260,7 +265,7 @@ class ConstrainedSystem(ABC):
             columns = motion.sample(existing)
             trajectory = {"time": existing, **columns.values}
         answer = SceneAnswer(
-            model=self.still() if motion is None else motion.model,
+            model=self.static_model() if motion is None else motion.model,
             figures=figures,
             trajectory=trajectory,
             ended=ended,
@@ -296,7 +301,7 @@ class ConstrainedSystem(ABC):
         """
         if outputs is None:
             names = frozenset(self.outputs) - (frozenset() if timed else frozenset({"trajectory"}))
-            return names if timed or self.moves else names - {*MOTION, *self.of_motion}
+            return names if timed or self.has_motion else names - {*MOTION, *self.of_motion}
         for name in sorted(outputs - set(self.outputs)):
             raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {self.outputs}")
         if "trajectory" in outputs and not timed:
@@ -317,10 +322,10 @@ def _events(motion: Motion, horizon: float) -> list[Mapping[str, Any]]:
 
 def _existing(motion: Motion, instants: Floats) -> Floats:
     """Return the instants at which there is a motion; samples past its end are not invented."""
-    if float(np.min(instants, initial=0.0)) < motion.began:
+    if float(np.min(instants, initial=0.0)) < motion.valid_from:
         raise InvalidParameter(
             "times",
-            f"be at least {motion.began:.17g} s",
+            f"be at least {motion.valid_from:.17g} s",
             remedy="the model does not hold earlier; start from an earlier state",
         )
     return instants if motion.end is None else instants[instants <= float(motion.end.time)]

@@ -93,7 +93,7 @@ class ChainOnWedge(ConstrainedSystem):
 
         return {"lift_off": lift_off}
 
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question about one instant."""
         return Model("heavy chain on a wedge", "one instant", "no motion was asked for", 0)
 
@@ -111,7 +111,7 @@ class ChainOnWedge(ConstrainedSystem):
 
     def _energy(self) -> Mapping[str, Ball]:
         """Return the energies of the given state, heights from the apex."""
-        slide, (m1, m2), (a, b) = self._slide, self._slide.masses, self._slide.pulls
+        slide, (m1, m2), (a, b) = self._slide, self._slide.masses, self._slide.slope_accelerations
         x, y = slide.position, slide.length - slide.position
         kinetic = slide.mass * slide.velocity**2 / 2
         potential = -(m1 + slide.density * x / 2) * a * x - (m2 + slide.density * y / 2) * b * y

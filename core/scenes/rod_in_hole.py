@@ -110,7 +110,7 @@ class RodInHole(ConstrainedSystem):
             "contact": lambda: self._contact(motion),
         }
 
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question about one instant."""
         return Model("rod in a cylindrical hole", "one instant", "no motion was asked for", 0)
 

@@ -22,6 +22,7 @@ from core.quantities import (
     check,
 )
 from core.scenes.answer import ConstrainedSystem, Motion
+from core.scenes.bounces import as_answered
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.scenes.friction import Friction, with_friction
 from core.scenes.string_phases import Law, Limit, follow, settled
@@ -115,13 +116,13 @@ class UnwindingShafts(ConstrainedSystem):
             "angular_accelerations": self._angular_accelerations,
             "string_acceleration": self._string_acceleration,
             "reduced_masses": lambda: self._constants.effective,
-            "normal_forces": lambda: self._constants.loads,
+            "normal_forces": lambda: self._constants.normal_forces,
             "friction_forces": lambda: None if self.friction is None else self._drive.friction,
             "energy": self._energy,
         }
 
     @property
-    def moves(self) -> bool:
+    def has_motion(self) -> bool:
         """Whether positions are given and the spins determined."""
         return self.positions is not None and any(self.inertia_factors)
 
@@ -161,14 +162,14 @@ class UnwindingShafts(ConstrainedSystem):
                     "start": phase.start.time,
                     "end": phase.ends,
                     "impulse": phase.impulse,
-                    "jerks": phase.jerks,
+                    "jerks": as_answered(phase.jerks),
                     "dissipated": phase.dissipated,
                 }
                 for phase in motion.phases.phases
             ]
         }
 
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question about one instant."""
         return Model("two unwinding shafts on one string", "one instant", "no motion was asked for", 0)
 
@@ -236,10 +237,10 @@ class UnwindingShafts(ConstrainedSystem):
     def _drive(self) -> Drive:
         state = self._given
         if sign(state.opening) < 0 and self._constants.determinate:
-            state = state.kicked(self._constants, -state.opening, exact(self.restitution))
+            state = state.after_impulse(self._constants, -state.opening, exact(self.restitution))
         if not self._constants.determinate:
             # No inertia takes part in the pull on the string, so there is none; how the string moves stays open.
-            return Drive("taut", ZERO, self._constants.pulls, (ZERO, ZERO))
+            return Drive("taut", ZERO, self._constants.slope_accelerations, (ZERO, ZERO))
         return self._law(self._constants, state)
 
     def _angular_accelerations(self) -> tuple[Ball, Ball] | None:
@@ -261,7 +262,7 @@ class UnwindingShafts(ConstrainedSystem):
         for i in (0, 1):
             mass, factor = self._constants.masses[i], self._constants.factors[i]
             kinetic = kinetic + mass * (state.velocities[i] ** 2 + factor * state.rates[i] ** 2) / 2
-            potential = potential - mass * self._constants.pulls[i] * positions[i]
+            potential = potential - mass * self._constants.slope_accelerations[i] * positions[i]
         return {"kinetic": kinetic, "potential": potential, "total": kinetic + potential}
 
     def _limits(self) -> tuple[Limit, ...]:

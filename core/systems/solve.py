@@ -19,6 +19,7 @@ from core.systems.methods import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod, Integration
 from core.systems.system import ClosedForm, Floats, System
 from core.systems.trajectory import Accuracy, Trajectory, Work
+from core.work import spend
 
 HALF_ULP = 2.0**-53
 
@@ -108,6 +109,7 @@ def checked_times(times: ArrayLike, budget: Budget) -> Floats:
     if instants.size > budget.samples:
         remedy = "ask for fewer times, or in several questions"
         raise BudgetExceeded("samples", instants.size, budget.samples, path=("times",), remedy=remedy)
+    spend(instants.size)
     finite = np.isfinite(instants)
     if not finite.all():
         raise InvalidParameter(("times", int(finite.argmin())), "be finite")

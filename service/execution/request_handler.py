@@ -35,9 +35,9 @@ class RequestHandler:
         self._budget = budget
         self._readers = {route.path: Reader(route.question, limits).read for route in self._routes}
 
-    def read(self, route: PostRoute, body: bytes) -> Any:
+    def read(self, route: PostRoute, body: bytes, *, npz: bool = False) -> Any:
         """Return the question that a body asks; see `Reader.read`."""
-        return self._readers[route.path](body)
+        return self._readers[route.path](body, npz=npz)
 
     def price(self, route: PostRoute, question: Any) -> float:
         """Return the predicted time of an answer (s), or raise `BudgetExceeded`."""

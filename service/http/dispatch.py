@@ -10,19 +10,20 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from core.errors import MechanicsError
 from service import VERSION
-from service.execution.admission import Compute
+from service.execution.admission import Compute, Sender
+from service.execution.executor import Executor
 from service.execution.request_handler import RequestHandler
 from service.execution.response_cache import ResponseCache
 from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.keys import Keys
-from service.http.limits import Bodies, ClientGone, negotiated, require_acceptable, require_json
+from service.http.limits import Bodies, ClientGone, negotiated, require_acceptable, require_readable
 from service.http.request_context import VARY, RequestContext
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.responses import npz as archive
-from service.responses.json_stream import Document, composed
+from service.responses.json_stream import Document
 from service.routing import GetRoute, PostRoute, Route
 from service.settings import Settings
 
@@ -60,8 +61,8 @@ class Dispatcher:
         settings: Settings,
         keys: Keys | None = None,
     ) -> None:
-        self._answering, self._compute, self._metrics, self._settings = answering, compute, metrics, settings
-        self._keys = keys
+        self._compute, self._metrics, self._settings, self._keys = compute, metrics, settings, keys
+        self._executor = Executor(answering, compute, metrics, settings)
         self._cache = ResponseCache(settings.cached_answers)
         self._records = Records(metrics, settings.log_requests)
         self.bodies = Bodies(
@@ -105,7 +106,7 @@ class Dispatcher:
         headers = context.headers
         if self._keys is not None:
             context.key = self._keys.admit(headers, context.address)
-        require_json(headers)
+        npz = require_readable(headers)
         media = None
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":
@@ -115,7 +116,9 @@ class Dispatcher:
         if answer is not None:
             self._metrics.cache_hits.inc()
         else:
-            document = await self._document(route, body, media, context)
+            client = context.address if context.key is None else context.key.name
+            sender = Sender(client, context.key, context.gone)
+            document = await self._executor.answer(route, body, npz, media, sender)
             if media == archive.MEDIA_TYPE:
                 await self._stream(document, _etag_of_answer(route, body, media), context, _NPZ)
                 return
@@ -135,23 +138,6 @@ class Dispatcher:
         self._metrics.samples.inc(document.numbers)
         with self._compute.holding(document.memory):
             await context.stream(document.pieces(), etag, self._settings.stalled_seconds, headers)
-
-    async def _document(self, route: PostRoute, body: bytes, media: str | None, context: RequestContext) -> Document:
-        longest = self._settings.deadline_seconds
-        if len(body) <= self._settings.inline_bytes:
-            question = self._answering.read(route, body)
-            # Nothing computes for longer than the deadline, whatever was predicted.
-            price = min(self._answering.price(route, question), longest)
-            if context.key is not None:
-                context.key.work(price)
-            if price <= self._settings.inline_seconds:
-                return composed(route, self._answering.answer(route, question), media)
-        else:
-            # What has not been read has no price yet; reading alone takes about this long.
-            price = min(4e-8 * len(body), longest)
-            if context.key is not None:
-                context.key.work(price)
-        return await self._compute.answer(route, body, price, media, gone=context.gone)
 
     async def _page(self, route: GetRoute, context: RequestContext) -> None:
         reply = route.content()

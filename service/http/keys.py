@@ -73,6 +73,11 @@ class Allowance:
         self._left -= amount
         return 0.0
 
+    def charge(self, amount: float) -> None:
+        """Take an amount, whatever is left, or give it back if it is negative."""
+        if self._rate != inf:
+            self._left = min(self._most, self._left - amount)
+
 
 class Key:
     """One key's name, and what is left of its limits."""
@@ -94,6 +99,10 @@ class Key:
         """Count computation (s), or refuse it."""
         if self.limits[1] != inf:
             _take(self._work, seconds, "the quota of work of this key is used up")
+
+    def charge(self, seconds: float) -> None:
+        """Count computation (s) that was done, or give back what was counted too much."""
+        self._work.charge(seconds)
 
 
 def _take(allowance: Allowance, amount: float, detail: str) -> None:

@@ -24,15 +24,19 @@ class ClientGone(Exception):
     """The client closed the connection; there is nobody to answer."""
 
 
-def require_json(headers: Headers) -> None:
-    """Refuse a body that is not declared to be plain JSON."""
+def require_readable(headers: Headers) -> bool:
+    """Return whether a body is declared as a numpy archive; refuse one that is not, nor as JSON."""
     declared = headers.get(b"content-type", b"")
-    if declared != b"application/json" and declared.split(b";", 1)[0].strip().lower() != b"application/json":
-        raise Refusal("unsupported-media-type", "the body must be declared as Content-Type: application/json")
+    if declared != b"application/json":
+        declared = declared.split(b";", 1)[0].strip().lower()
+        if declared not in (b"application/json", b"application/x-npz"):
+            detail = "the body must be declared as Content-Type: application/json, or application/x-npz"
+            raise Refusal("unsupported-media-type", detail)
     if headers.get(b"content-encoding", b"identity").lower() != b"identity":
         raise Refusal("unsupported-media-type", "compressed bodies are not read; send the body as it is")
     if headers.get(b"transfer-encoding", b"chunked").lower() != b"chunked":
         raise Refusal("unsupported-transfer-coding", "chunked is the only transfer coding", headers=(_CLOSE,))
+    return declared == b"application/x-npz"
 
 
 def require_acceptable(accept: bytes, offered: bytes = b"application/json") -> None:

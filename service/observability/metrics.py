@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 from pathlib import Path
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
-from prometheus_client.multiprocess import MultiProcessCollector, mark_process_dead
+
+from service.observability.shared_counts import DIRECTORY, SharedCounts
 
 CONTENT_TYPE = b"text/plain; version=0.0.4; charset=utf-8"
 
 _SECONDS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)
-
-
-# The library itself reads this variable when it is imported; several processes share counters through it.
-_SHARED = "PROMETHEUS_MULTIPROC_DIR" in os.environ
 
 
 class Metrics:
@@ -35,15 +31,22 @@ class Metrics:
         # Finding an observer by its labels costs more than the observation.
         self._observers: dict[tuple[str, int], Histogram] = {}
         self.cache_hits = Counter("polhode_cache_hits", "Answers given from the cache.", registry=registry)
+        directory = os.environ.get(DIRECTORY)
+        self.shared = None if directory is None else SharedCounts(registry, Path(directory))
         self._problems = Counter("polhode_problems", "Answers that are problems.", ("code",), registry=registry)
         self.samples = Counter("polhode_samples", "Numbers in arrays of large answers.", registry=registry)
         self.job_seconds = Histogram(
             "polhode_job_seconds", "Time of questions in compute processes.", buckets=_SECONDS, registry=registry
         )
-        self.backlog = Gauge(
-            "polhode_backlog_seconds", "Predicted time of the work that waits.", registry=registry,
-            multiprocess_mode="livesum",
+        self.long_inline = Counter(
+            "polhode_long_inline", "Requests that held the event loop for more than 20 ms.", ("operation",),
+            registry=registry,
         )  # fmt: skip
+        self.handed_over = Counter(
+            "polhode_handed_over", "Requests that were begun in the event loop and given to a compute process.",
+            ("operation",), registry=registry,
+        )  # fmt: skip
+        self.backlog = Gauge("polhode_backlog_seconds", "Predicted time of the work that waits.", registry=registry)
         self.workers_lost = Counter("polhode_workers_lost", "Compute processes that died.", registry=registry)
 
     def observe(self, key: tuple[str, int], seconds: float) -> None:
@@ -59,21 +62,8 @@ class Metrics:
 
     def exposition(self) -> bytes:
         """Return everything in Prometheus' text format."""
-        if _SHARED:
-            _forget_the_dead()
-            shared = CollectorRegistry()
-            MultiProcessCollector(shared)  # type: ignore[no-untyped-call]
-            return generate_latest(shared)
-        return generate_latest(self.registry)
-
-
-def _forget_the_dead() -> None:
-    """Remove the gauges of processes that were killed: what waited for them waits no more."""
-    for file in Path(os.environ["PROMETHEUS_MULTIPROC_DIR"]).glob("gauge_live*.db"):
-        process = int(file.stem.rsplit("_", 1)[1])
-        try:
-            os.kill(process, 0)
-        except ProcessLookupError:
-            # Another process may have been asked at the same time.
-            with suppress(FileNotFoundError):
-                mark_process_dead(process)  # type: ignore[no-untyped-call]
+        if self.shared is None:
+            return generate_latest(self.registry)
+        summed = CollectorRegistry()
+        summed.register(self.shared)
+        return generate_latest(summed)

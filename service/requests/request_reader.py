@@ -9,17 +9,16 @@ import gc
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, Generic, TypeVar, get_args
 
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
-from core.rows import Rows
 from service.problems import Fault, Refusal
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 from service.requests.error_messages import Layout
-from service.requests.large_arrays import LEAST_BYTES, ExtractedArrays, extract_arrays, placeholder_schema
+from service.requests.npz_body import Arrays, taking_arrays, unpacked
 
 Q = TypeVar("Q")
 
@@ -88,8 +87,8 @@ class Reader(Generic[Q]):
     def __init__(
         self, question: type[Q], limits: Limits, advised: Callable[[Fault], Fault] = lambda fault: fault
     ) -> None:
-        self._arrays: dict[str, Rows] = {}
-        schema = _failing_fast(placeholder_schema(TypeAdapter(question).core_schema, self._arrays))
+        self._schema = TypeAdapter(question).core_schema
+        schema = _failing_fast(self._schema)
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
         self._layout = Layout.of(schema)
@@ -108,62 +107,50 @@ class Reader(Generic[Q]):
         self._advised = advised
         self._limits = limits
 
-    def read(self, body: bytes) -> Q:
+    @cached_property
+    def _validate_with_arrays(self) -> Any:
+        return SchemaValidator(_failing_fast(taking_arrays(self._schema)), _use_prebuilt=False).validate_json
+
+    def read(self, body: bytes, *, npz: bool = False) -> Q:
         """Return the question that a request's body asks.
+
+        Parameters
+        ----------
+        npz : bool
+            Whether the body is a numpy archive; otherwise it is JSON.
 
         Raises
         ------
         Refusal
             With the pointers of what is wrong.
         """
-        if len(body) < LEAST_BYTES:
-            apart = self._told_apart
-            if apart is None:
-                return self._plain(body)
-            if not apart[0].may_be_in(body):
-                return apart[1]._plain(body)
+        if npz:
+            return self._read(*unpacked(body, self._limits.bytes))
         if len(body) < LARGE:
             return self._read(body)
         with _collecting_later():
             return self._read(body)
 
-    def _plain(self, body: bytes) -> Q:
-        """Return the question of a document that is one of this kind, and has no large arrays."""
-        try:
-            return self._validated(body)
-        except ValidationError as error:
-            raise self._refusal(error) from None
-
-    def _read(self, body: bytes) -> Q:
-        return self._told(body, *extract_arrays(body, self._arrays))
-
-    def _told(self, body: bytes, rest: bytes, taken: ExtractedArrays | None) -> Q:
-        """Return the question of a document, from which arrays may have been taken out."""
-        if self._told_apart is not None:
-            mark, without, having = self._told_apart
-            enforce_document_limits(rest, self._limits)
-            if mark.may_be_in(rest):
+    def _read(self, document: bytes, arrays: Arrays | None = None) -> Q:
+        apart = self._told_apart
+        if apart is not None:
+            mark, without, having = apart
+            if mark.may_be_in(document):
                 try:
-                    return having._read(body)
+                    return having._read(document, arrays)
                 except _Absent:
                     pass
-            return without._told(body, rest, taken)
-        if taken is not None:
-            try:
-                question = self._validated(rest, taken)
-                if not taken.shortened:
-                    return question
-            except ValidationError as error:
-                # Faults of what is not JSON, or of an array where none is meant, are told of the document as it was.
-                if taken.complete and error.errors(include_url=False, include_input=False)[0]["type"] != "json_invalid":
-                    raise self._refusal(error) from None
-        return self._plain(body)
-
-    def _validated(self, document: bytes, taken: ExtractedArrays | None = None) -> Q:
-        enforce_document_limits(document, self._limits)
-        question: Q = self._validate(document, strict=True, context=taken)
-        require_distinct_keys(document)
-        return question
+            return without._read(document, arrays)
+        try:
+            enforce_document_limits(document, self._limits)
+            if arrays is None:
+                question: Q = self._validate(document, strict=True)
+            else:
+                question = self._validate_with_arrays(document, strict=True, context=arrays)
+            require_distinct_keys(document)
+            return question
+        except ValidationError as error:
+            raise self._refusal(error) from None
 
     def _refusal(self, error: ValidationError) -> Refusal:
         found = error.errors(include_url=False, include_input=False)

@@ -15,6 +15,7 @@ from pydantic import Field
 
 from core.notices import Notice
 from core.systems.trajectory import Accuracy
+from core.work import spend
 
 Floats = NDArray[np.float64]
 
@@ -23,6 +24,9 @@ ROUND_TRIP = 17
 
 EXACT_POWERS = 22
 """Powers of ten up to this are doubles without rounding."""
+
+NUMBERS_PER_UNIT = 4
+"""Numbers that are rounded in a unit of work (`core.work`)."""
 
 NEAREST = 2.0**-53
 """From a decimal to the double nearest to it."""
@@ -68,6 +72,8 @@ def rounded(values: Floats, digits: Digits, error: float, scale: float | None = 
     scale : float, optional
         Largest norm of the motion; the largest magnitude in `values` if omitted, which errs to more digits.
     """
+    # Most are rounded all at once, but any may have to go through its decimals.
+    spend(values.size / NUMBERS_PER_UNIT)
     if digits == "meaningful":
         largest = _largest(values) if scale is None else scale
         if not (0.0 < error < inf and 0.0 < largest < inf):

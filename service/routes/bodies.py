@@ -26,6 +26,13 @@ LOOKED_INTO = 8_000
 in the server process."""
 
 
+SMALL_BODY = 400
+"""Points of a body, likewise, up to which a request may be begun in the event loop: no composite has so few."""
+
+FEW_SAMPLES = 256
+"""Samples of a closed form up to which a request may be begun in the event loop."""
+
+
 class MassPropertiesRequest(Request):
     """A body."""
 
@@ -101,6 +108,16 @@ def counts(question: Any, budget: Budget) -> dict[str, float]:
     return {"question": 1.0, "points": _size(question.body), question.body.kind: 1.0}
 
 
+def is_small(question: Any) -> bool:
+    """Return whether a question is about a small body."""
+    return _size(question.body) <= SMALL_BODY
+
+
+def few_times(times: Any) -> bool:
+    """Return whether a question's times are few."""
+    return (len(times) if isinstance(times, list) else times.count) <= FEW_SAMPLES
+
+
 def moments_to_foresee(methods: Iterable[Any], body: Any) -> list[float] | None:
     """Return the principal moments of a body, ascending (kg m^2), if a method chooses its steps by the motion.
 
@@ -156,6 +173,7 @@ BODIES = (
         MassPropertiesAnswer,
         mass_properties,
         CalibratedCost("mass_properties", counts),
+        is_small,
         examples={
             "principal-moments": Example(
                 "a body known by its principal moments",

@@ -17,6 +17,7 @@ from core.scenes.answer import SceneAnswer as SceneFound
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, numbers
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
+from service.routes.bodies import few_times
 from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView
 from service.routing import Answer, Example, GetRoute, PostRoute, Reply
 from service.schemas import SIGNATURE, Envelope, Request, Times, View, sample_count, sample_times
@@ -235,6 +236,7 @@ def questions() -> tuple[PostRoute, ...]:
             SceneAnswer,
             answering(scene),
             CalibratedCost("scene_" + name_of(scene).replace("-", "_"), scene_counts),
+            lambda question: question.times is None or few_times(question.times),
             scene_probe,
             examples=EXAMPLES[name_of(scene)],
         )

@@ -149,7 +149,7 @@ WORK_PRECISION = (
         WorkPrecisionAnswer,
         answer_work_precision,
         CalibratedCost("work_precision", work_precision_counts),
-        work_precision_probe,
+        planning_probe=work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
         examples={
             "t-handle": Example(

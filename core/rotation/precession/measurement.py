@@ -21,6 +21,7 @@ from core.systems.error_statements import drifts, measured
 from core.systems.methods import Method
 from core.systems.system import Floats
 from core.systems.trajectory import Work
+from core.work import spend
 
 SampleCount = Annotated[int, Quantity("1", at_least=3)]
 Distance = Annotated[float, Quantity("rad s^-1", above=0)]
@@ -129,6 +130,7 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         raise BudgetExceeded(
             "samples", measure.samples, budget.samples, path=("measure", "samples"), remedy="take fewer samples"
         )
+    spend(measure.samples)
     times = np.linspace(0.0, measure.duration, measure.samples)
     if times[1] == 0.0:
         raise InvalidParameter(("measure", "duration"), "be long enough for its samples to differ")

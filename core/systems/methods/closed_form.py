@@ -11,6 +11,7 @@ from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Family, Integration
 from core.systems.system import Floats, System
 from core.systems.trajectory import Work
+from core.work import spend
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class ClosedFormEvaluation(AbstractMethod):
                 path=("kind",),
                 remedy="use dormand-prince-853, or leave the method to the service",
             )
+        spend(times.size)
         return Integration(exact.sample(times), Work(times.size))
 
     def finer(self) -> None:

@@ -176,6 +176,7 @@ def with_digits(route: PostRoute, other: InDigits) -> PostRoute:
         question=Annotated.__class_getitem__((either, DiscriminatedByKey("digits", BESIDE, REMEDIES))),  # type: ignore[attr-defined]
         answer=Union.__getitem__((route.answer, other.answer)),
         handle=handle,
+        small=lambda question: not isinstance(question, other.question) and route.small(question),
         price=EitherPrice(route.price.operation, route.price.counts, other),
         planning_probe=planning_probe,
         examples={**route.examples, **other.examples},

@@ -14,16 +14,19 @@ from core.notices import Notice
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
 from core.rotation.surfaces.initial_states import initial_states
-from core.rotation.torque_free import pinned_notices
+from core.rotation.torque_free import inherited_notices
 from core.systems.budget import Budget
 from core.systems.methods import Method
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.bodies import counts, moments_to_foresee, properties_of, speed_to_follow
+from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
 from service.routes.rotation.surfaces import SOURCE_BODY, Count, Seed
-from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView, in_range
+from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView, in_closed_form, in_range
 from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
+
+FEW_MEMBERS = 8
+"""Members of an ensemble up to which it may be begun in the event loop."""
 
 OUTLINED = 16
 """Members of an ensemble by which all of it is planned."""
@@ -105,7 +108,7 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         "time": many.time,
         "angular_velocity": samples,
         "warnings": (
-            *(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+            *inherited_notices(body),
             *many.warnings,
             *((many.merged(by_rounding),) if by_rounding else ()),
             *outside[:1],
@@ -146,6 +149,15 @@ def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, floa
     }
 
 
+def is_small_ensemble(question: EnsembleRequest) -> bool:
+    """Return whether an ensemble has few members and few samples, in closed form."""
+    sample, starts = question.sample, question.angular_velocities
+    members = sample.count if sample is not None else len(starts or ())
+    return (
+        members <= FEW_MEMBERS and in_closed_form(question.method) and few_times(question.times) and is_small(question)
+    )
+
+
 def ensemble_probe(question: EnsembleRequest) -> EnsembleRequest:
     """Return the question about a few members at the farthest time alone, in closed form."""
     changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
@@ -168,6 +180,7 @@ ENSEMBLE = (
         EnsembleAnswer,
         answer_ensemble,
         CalibratedCost("rotation_ensemble", ensemble_counts),
+        is_small_ensemble,
         ensemble_probe,
         examples={
             "sample": Example(

@@ -16,7 +16,7 @@ from core.rotation.stability.stability import Flip, stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, effort, speed_of
-from service.routes.bodies import counts, properties_of, speed_to_follow
+from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE
 from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, Span, Vector, View
@@ -135,6 +135,7 @@ PRECESSION = (
         PrecessionAnswer,
         answer_precession,
         CalibratedCost("precession", precession_counts),
+        lambda question: question.measure is None and is_small(question),
         precession_probe,
         examples={
             "coin": Example(
@@ -169,6 +170,7 @@ PRECESSION = (
         StabilityAnswer,
         answer_stability,
         CalibratedCost("stability", counts),
+        is_small,
         examples={
             "t-handle": Example(
                 "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}

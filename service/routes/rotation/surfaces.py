@@ -11,20 +11,23 @@ from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.quantities import AngularVelocity, Energy
+from core.rotation.equal_moments import curve_notices
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.surfaces.polhodes import Polhode, polhode, separatrix
-from core.rotation.torque_free import pinned_notices
+from core.rotation.torque_free import inherited_notices
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
-from service.routes.bodies import counts, properties_of
+from service.routes.bodies import FEW_SAMPLES, counts, is_small, properties_of
 from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Matrix, Request, Vector, View, fields_of
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
 FINEST_PRICED = 1000
+COARSE, FEW_POINTS = 6, 512
+"""Resolution and points of curves up to which a surface may be begun in the event loop."""
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
 
 
@@ -124,7 +127,7 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
         "energy": surface.energy,
         "semi_axes": surface.semi_axes,
         "axes": surface.axes,
-        "warnings": tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+        "warnings": inherited_notices(body),
     }
     if question.layout == "triangles":
         mesh = surface.triangles(question.resolution)
@@ -139,6 +142,8 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
         answer["polhodes"] = [_curve(polhode(body, np.array(question.angular_velocity), question.points))]
     if question.separatrix:
         answer["separatrix"] = [_curve(curve) for curve in separatrix(body, surface.energy, question.points)]
+    if "polhodes" in answer or "separatrix" in answer:
+        answer["warnings"] += curve_notices(body.principal_of_motion)
     return answer
 
 
@@ -180,6 +185,12 @@ def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, fl
     }
 
 
+def is_small_ellipsoid(question: EllipsoidRequest) -> bool:
+    """Return whether a surface is coarse, and has few curves of few points."""
+    curves = 3 if question.polhodes is None else 2 + question.polhodes.count
+    return question.resolution <= COARSE and curves * question.points <= FEW_POINTS and is_small(question)
+
+
 def ellipsoid_probe(question: EllipsoidRequest) -> EllipsoidRequest:
     """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
     changes: dict[str, Any] = {"points": min(question.points, 16)}
@@ -219,6 +230,7 @@ SURFACES = (
         EllipsoidAnswer,
         energy_ellipsoid,
         CalibratedCost("energy_ellipsoid", ellipsoid_counts),
+        is_small_ellipsoid,
         ellipsoid_probe,
         description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
         representations={SVG: ellipsoid_figure},
@@ -255,6 +267,7 @@ SURFACES = (
         StatesAnswer,
         states,
         CalibratedCost("initial_states", states_counts),
+        lambda question: question.count <= FEW_SAMPLES and is_small(question),
         examples={
             "thirty": Example(
                 "the source's thirty starts", {"body": SOURCE_BODY, "energy": 1.0, "count": 30, "seed": 0}

@@ -21,7 +21,7 @@ from core.systems.system import Floats
 from core.systems.trajectory import How
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
-from service.routes.bodies import counts, properties_of, speed_to_follow
+from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
 from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, QuaternionRow, Request, Times, Vector, View, sample_count, sample_times
 
@@ -231,6 +231,16 @@ def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, 
     return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
 
 
+def in_closed_form(method: Any) -> bool:
+    """Return whether nothing is to be integrated."""
+    return method is None or isinstance(method, ClosedFormEvaluation)
+
+
+def is_small_trajectory(question: TrajectoryRequest) -> bool:
+    """Return whether a trajectory has few samples, in closed form."""
+    return in_closed_form(question.method) and few_times(question.times) and is_small(question)
+
+
 def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
     """Return the question about the farthest time alone, in closed form."""
     if "attitude" in _outputs(question):
@@ -254,6 +264,7 @@ ROTATION = (
         TrajectoryAnswer,
         trajectory,
         CalibratedCost("rotation_trajectory", trajectory_counts),
+        is_small_trajectory,
         trajectory_probe,
         examples={
             "t-handle": Example(

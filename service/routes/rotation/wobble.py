@@ -60,6 +60,7 @@ WOBBLE = (
         WobbleAnswer,
         wobble,
         CalibratedCost("wobble", one),
+        lambda question: True,
         examples={
             "chandler": Example("the source's 430 days", {"period": 430.0, "day": "sidereal"}),
             "shape": Example("back from the shape", {"ellipticity": 1.00336409, "day": "solar"}),
