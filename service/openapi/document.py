@@ -1,19 +1,21 @@
-"""The OpenAPI document, made by FastAPI from the route table, and FastAPI's own way of serving the same table."""
+"""The OpenAPI document, made by FastAPI from the route table."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from http import HTTPStatus
 from typing import Annotated, Any
 
 from fastapi import Body, FastAPI, Request
 from fastapi.routing import APIRoute
 from starlette.responses import JSONResponse, Response
+from starlette.types import ASGIApp
 
 from core import bodies
 from core.quantities import members_of
 from service import VERSION
+from service.http.dispatch import Dispatcher
 from service.openapi import components
 from service.openapi.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
@@ -38,37 +40,42 @@ as JSON in metadata.json.
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
 """
 
-Serve = Callable[[Route, Any, Any, Any], Coroutine[Any, Any, None]]
+_PROBLEMS_OF_QUESTIONS = (400, 401, 406, 408, 413, 415, 422, 429, 500, 501, 503)
 
-_PROBLEMS_OF_QUESTIONS = (400, 401, 406, 413, 415, 422, 429, 500, 503)
+
+ABOUT: Mapping[str, Any] = {
+    "title": "Polhode",
+    "version": VERSION,
+    "description": DESCRIPTION,
+    "openapi_url": None,
+    "docs_url": None,
+    "redoc_url": None,
+    "separate_input_output_schemas": False,
+}
+"""What FastAPI is told about the application as a whole."""
 
 
 class _Dispatched(Response):
     """A response that lets the dispatcher answer."""
 
-    def __init__(self, serve: Serve, route: Route) -> None:
+    def __init__(self, handler: ASGIApp) -> None:
         super().__init__()
-        self._serve, self._route = serve, route
+        self._handler = handler
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        await self._serve(self._route, scope, receive, send)
+        await self._handler(scope, receive, send)
 
 
-def documented(routes: Sequence[Route], serve: Serve, lifespan: Any = None) -> FastAPI:
-    """Return a FastAPI application that documents the routes and serves them through the dispatcher."""
-    app = FastAPI(
-        title="Polhode",
-        version=VERSION,
-        description=DESCRIPTION,
-        openapi_url=None,
-        docs_url=None,
-        redoc_url=None,
-        lifespan=lifespan,
-        separate_input_output_schemas=False,
-    )
+def document_routes(app: FastAPI, routes: Sequence[Route], dispatcher: Dispatcher) -> None:
+    """Give FastAPI the route table, and what it is to answer where nothing of it fits."""
     for route in routes:
-        app.router.routes.append(_Route(route, serve))
-    return app
+        app.router.routes.append(_Route(route, dispatcher.handlers[route.method, route.path]))
+
+    async def unrouted(request: Request, error: Exception) -> Response:
+        return _Dispatched(dispatcher.unrouted)
+
+    app.add_exception_handler(404, unrouted)
+    app.add_exception_handler(405, unrouted)
 
 
 def openapi(app: FastAPI) -> dict[str, Any]:
@@ -119,8 +126,8 @@ def _problem(status: int) -> dict[str, Any]:
 class _Route(APIRoute):
     """One route of the table, as FastAPI sees it."""
 
-    def __init__(self, route: Route, serve: Serve) -> None:
-        self._route, self._serve_it = route, serve
+    def __init__(self, route: Route, handler: ASGIApp) -> None:
+        self._handler = handler
         super().__init__(
             route.path,
             _endpoint(route),
@@ -139,7 +146,7 @@ class _Route(APIRoute):
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         async def handler(request: Request) -> Response:
-            return _Dispatched(self._serve_it, self._route)
+            return _Dispatched(self._handler)
 
         return handler
 
