@@ -7,8 +7,10 @@ two, with equality for a lamina (I3 = I1 + I2) and a needle (I1 = 0, I2 = I3).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from core.bodies.principal_inertia import EPSILON, PrincipalInertia
+from core.quantities import Unit
 
 TOLERANCE = 16.0 * EPSILON
 """Violation of a condition that rounding of the tensor's components can cause, relative to the trace."""
@@ -37,9 +39,9 @@ class Condition:
     name: str
     holds: bool
     detail: str
-    excess: float = 0.0
-    tolerance: float = 0.0
-    moments: tuple[float, ...] = ()
+    excess: Annotated[float, Unit("1")] = 0.0
+    tolerance: Annotated[float, Unit("1")] = 0.0
+    moments: Annotated[tuple[float, ...], Unit("kg m^2")] = ()
 
 
 @dataclass(frozen=True)
