@@ -215,7 +215,7 @@ def test_the_compiled_check_is_the_plain_one(owner: type, data: st.DataObject) -
 
 @settings(deadline=None, max_examples=400, derandomize=True)
 @given(data=st.data())
-def test_numbers_are_judged_by_the_ends_of_their_range(data: st.DataObject) -> None:
+def test_ranges_are_enforced_at_their_ends(data: st.DataObject) -> None:
     end = st.floats(-5, 5)
     quantity = Quantity(
         data.draw(st.sampled_from(["1", "m"])),

@@ -232,7 +232,7 @@ def test_moments_stay_in_their_order_and_a_triple_of_no_body_is_answered_with_a_
     "given",
     [(2, 3, 4), [2.0, 3.0, 4.0], (np.float32(2), 3.0, 4.0), (Fraction(2), 3, 4.0), (2**53 + 1, 2**60, 2**60)],
 )
-def test_moments_of_any_type_are_kept_as_doubles(given: Any) -> None:
+def test_moments_of_any_type_become_doubles(given: Any) -> None:
     found, again = (PrincipalMoments(x).mass_properties() for x in (given, tuple(float(x) for x in given)))
     for properties in (found, again, diagonal(given)):
         assert properties.inertia.dtype == properties.principal.moments.dtype == np.float64

@@ -1,4 +1,4 @@
-"""The double kernels before the judge: the named cases and a first part of its random and extreme ones."""
+"""The double kernels against ball arithmetic: the named cases and some of the random and extreme ones."""
 
 import statistics
 
@@ -36,7 +36,7 @@ def test_statements_are_not_idle(verdicts):
     assert statistics.median(ratios) <= 6
 
 
-def test_the_judge_catches_what_is_wrong():
+def test_the_comparison_finds_wrong_results():
     case = Case("a body of another shape", (1.0, 2.0, 3.0), (0.1, 1.0, 0.1), (0.0, 3.0))
     fair = judged(case)
     assert fair is not None

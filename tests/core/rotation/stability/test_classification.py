@@ -88,7 +88,7 @@ def test_reasons_name_what_holds(ranks, axis) -> None:
 
 
 @pytest.mark.parametrize(("ranks", "axis"), CASES)
-def test_rest_is_told_apart_from_every_rotation(ranks, axis) -> None:
+def test_rest_is_distinguished_from_every_rotation(ranks, axis) -> None:
     assert classify_equilibrium(ranks, axis, False) is REST
     assert classify_equilibrium(ranks, axis, True) != REST
 

@@ -75,7 +75,7 @@ def test_free_of_scale(scale, rate):
     assert [e.kind for e in found.equilibria] == ["center", "saddle", "center", "degenerate"]
 
 
-def test_what_a_double_cannot_hold_is_none_and_said():
+def test_values_outside_the_range_of_doubles_are_none_with_a_warning():
     found = stability(diagonal((1e-300, 1e300, 2e300)), 1e300)
     lost = [k for k, e in enumerate(found.equilibria) if e.eigenvalues is None]
     assert lost
@@ -104,7 +104,7 @@ def test_only_the_middle_axis_is_unstable(moments):
 
 
 @pytest.mark.parametrize("moments", [(1.0, 2.0, 3.0), deck])
-def test_the_full_motion_does_what_is_said(moments):
+def test_the_full_motion_confirms_the_classification(moments):
     for k, equilibrium in enumerate(stability(diagonal(moments)).equilibria[:3]):
         start = np.full(3, 1e-6)
         start[k] = 1.0
@@ -203,7 +203,7 @@ def test_refusals(rate):
         stability(diagonal((0.0, 1.0, 1.0)))
 
 
-def test_a_body_pinned_away_from_its_centre_of_mass_is_said_not_to_be_free():
+def test_a_body_pinned_away_from_its_centre_of_mass_has_the_warning_not_free():
     body = PointMasses(1.0, [[1, 0, 0], [0, 2, 0], [0, 0, 3], [1, 1, 1]], "origin").mass_properties()
     assert "not-free" in {notice.code for notice in stability(body).warnings}
     assert "not-free" in {notice.code for notice in precession(body, np.array([1.0, 2.0, 3.0])).warnings}
