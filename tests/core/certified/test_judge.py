@@ -25,7 +25,7 @@ def test_no_statement_of_error_is_below_the_true_error(verdicts):
 
 
 def test_worst_errors_of_the_double_kernels(verdicts):
-    # Over a hundred thousand motions the worst are 4.93 and 11.08 (benchmarks/results/judge.json).
+    # Over a hundred thousand motions the worst are 4.93 and 10.81 (benchmarks/results/judge.json).
     assert max(v.error for v in verdicts) <= 5 * UNIT_ROUNDOFF
     assert max(v.attitude_error or 0.0 for v in verdicts) <= 12 * UNIT_ROUNDOFF
     assert statistics.median(v.error for v in verdicts) <= 1.6 * UNIT_ROUNDOFF
