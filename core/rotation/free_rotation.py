@@ -207,11 +207,19 @@ class FreeRotation:
             computed = 0.0
         else:
             computed = EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR)
-            computed += m.computed.at(SET_UP_ROUNDING, horizon) + UNDERFLOW / self.largest_rate
+            computed += m.computed.at(SET_UP_ROUNDING, horizon) + self._underflow
         if self.derivation is None:
-            return computed
+            return min(WHOLE_MOTION, computed)
         derived: float = self.derivation.angular_velocity(self.derived_rounding, horizon)
         return min(WHOLE_MOTION, computed + derived)
+
+    @property
+    def _underflow(self) -> float:
+        """What a sample may be wrong by, relative, because a factor of it is below the normal doubles."""
+        m = self.motion
+        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'.
+        smallest = min(map(abs, m.weights if m.regime == PERIODIC else (m.A_c, m.A_b, m.A_d)))
+        return UNDERFLOW / smallest if smallest > 0.0 else math.inf
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""

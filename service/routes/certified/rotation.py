@@ -100,7 +100,9 @@ class PrecessionAnswerInDigits(Envelope):
     symmetry: Symmetry
     regime: Regime = Field(description="Of the angular velocity in the body.")
     axis: list[str] | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
-    body_rate: str | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
+    body_rate: str | None = Field(
+        description="(I3 - I)/I w3, signed (rad/s): 0 for a spin across the axis, null for one along it."
+    )
     space_rate: str | None = Field(description="L/I (rad/s).")
     period: str | None = Field(description="Of the angular velocity in the body (s).")
     flip_interval: str | None = Field(description="Between sign changes along the middle axis (s).")

@@ -38,7 +38,9 @@ class PrecessionAnswer(Envelope):
     symmetry: Symmetry
     regime: Regime = Field(description="Of the angular velocity in the body.")
     axis: Vector | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
-    body_rate: float | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
+    body_rate: float | None = Field(
+        description="(I3 - I)/I w3, signed (rad/s): 0 for a spin across the axis, null for one along it."
+    )
     space_rate: float | None = Field(description="L/I (rad/s).")
     period: float | None = Field(description="Of the angular velocity in the body (s).")
     flip_interval: float | None = Field(description="Between sign changes along the middle axis (s).")
