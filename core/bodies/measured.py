@@ -28,8 +28,8 @@ MASSES = Rows(0, Quantity("kg", above=0))
 MASS_RANGE = 900
 """Largest binary exponent of the ratio of two masses: their products do not underflow."""
 
-SUMMED_EXACTLY = 24
-"""Largest number of points whose moments are formed in rational arithmetic."""
+SUMMED_EXACTLY = 400
+"""Points of which the moments are formed in whole numbers."""
 
 KEPT = 32
 """Number of bodies given by principal moments whose mass properties are cached."""
@@ -185,10 +185,9 @@ class PointMasses:
             raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
 
     def mass_properties(self) -> MassProperties:
-        """Return the mass properties, for few points in rational arithmetic, for more in double-double.
+        """Return what the mechanics needs to know of the body; few points exactly, more in double-double.
 
-        In rational arithmetic, products of inertia that cancel are exactly zero, and the axes of a symmetric set of
-        points are exact.
+        Exact products of inertia that cancel are zero, and the axes of a symmetric set of points exact.
         """
         masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
         # Scaling by powers of two is exact, and products stay within range.
@@ -224,15 +223,27 @@ class PointMasses:
 
 def _exact_properties(masses: Floats, positions: Floats) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
     """Return mass, centre of mass and tensor of inertia about it, of few points, shapes (n,) and (n, 3)."""
-    m = [Fraction(x) for x in masses.tolist()]
-    columns = [[Fraction(x) for x in column] for column in positions.T.tolist()]
-    mass = sum(m, Fraction(0))
-    center = [sum((a * x for a, x in zip(m, column, strict=True)), Fraction(0)) / mass for column in columns]
-    d = [[x - c for x in column] for column, c in zip(columns, center, strict=True)]
+    m, kilogram = _whole(masses)
+    columns, units = zip(*(_whole(column) for column in positions.T), strict=True)
+    mass = sum(m)
+    first = [sum(a * x for a, x in zip(m, column, strict=True)) for column in columns]
+    # Times the mass, all is whole: M sum m x y - (sum m x)(sum m y).
     products = [[Fraction(0)] * 3 for _ in range(3)]
     for i in range(3):
-        weighted = [a * x for a, x in zip(m, d[i], strict=True)]
+        weighted = [a * x for a, x in zip(m, columns[i], strict=True)]
         for j in range(i, 3):
-            products[i][j] = products[j][i] = sum((a * x for a, x in zip(weighted, d[j], strict=True)), Fraction(0))
+            second = sum(a * x for a, x in zip(weighted, columns[j], strict=True))
+            central = Fraction(mass * second - first[i] * first[j], mass) * kilogram * units[i] * units[j]
+            products[i][j] = products[j][i] = central
     trace = products[0][0] + products[1][1] + products[2][2]
-    return mass, center, [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+    inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+    return mass * kilogram, [Fraction(x, mass) * unit for x, unit in zip(first, units, strict=True)], inertia
+
+
+def _whole(values: Floats) -> tuple[list[int], Fraction]:
+    """Return doubles as whole multiples of a power of two, and that power."""
+    mantissas, exponents = np.frexp(values)
+    whole, places = np.ldexp(mantissas, 53).astype(np.int64).tolist(), exponents.tolist()
+    least = min((place for x, place in zip(whole, places, strict=True) if x), default=0)
+    # A zero has no place of its own.
+    return [x << max(0, place - least) for x, place in zip(whole, places, strict=True)], Fraction(2) ** (least - 53)

@@ -5,9 +5,9 @@ same; derived ones beyond the resolution of deriving them. Every motion is that 
 attitude, regime, period, flips and polhodes. Where they differ by less than 16 units in the last place of the largest,
 half a unit in a moment may change all of that, and a warning says so.
 
-What is a class and no motion (the symmetry of a body, the figures that only symmetric bodies have, and the kinds of
-equilibria of a body whose moments were derived) goes by moments that are equal to within those 16 units, and a warning
-says so where they differ.
+What is a class and no motion goes by moments that are equal to within those 16 units: the symmetry of a body, the
+figures that only symmetric bodies have, and, where the moments were derived, the kinds of equilibria and whether there
+is a middle axis to flip about, unless the motion shows that there is. A warning says so where they differ.
 """
 
 from __future__ import annotations
