@@ -130,7 +130,7 @@ def test_every_number_that_is_asked_for_is_described() -> None:
 
 
 def test_descriptions_are_those_of_the_docstrings_with_their_units() -> None:
-    assert asked("Ball")["mass"] == "Not 0 (kg)."
+    assert asked("Ball")["mass"] == "Given by this or by the density; not 0 (kg)."
     assert asked("RodInHoleRequest")["hole_radius"] == "Radius of the hole (m)."
     assert asked("UnwindingShaftsRequest")["masses"] == "Of the shafts (kg)."
     assert "rad" in asked("RodInHoleRequest")["angle"]
