@@ -7,9 +7,9 @@ import asyncio
 import httpx
 import orjson
 import pytest
+from service.http.rounds import FEW, SHORT, SMALL
 
 from service.app import create_app
-from service.http.rounds import FEW, SHORT, SMALL
 from service.responses.json_rows import array_size
 from service.routing import PostRoute
 from service.settings import Settings
