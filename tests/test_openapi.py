@@ -11,12 +11,11 @@ import httpx
 import jsonschema
 import pytest
 
-from service.app import create_app
 from service.routing import PostRoute
-from service.settings import Settings
+from tests.service.conftest import inline_service
 
 SNAPSHOT = Path(__file__).parent.parent / "docs" / "openapi.json"
-SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+SERVICE = inline_service()
 DOCUMENT: dict[str, Any] = json.loads(SERVICE.openapi())
 QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
 EXAMPLES = [(route, name) for route in QUESTIONS for name in route.examples]

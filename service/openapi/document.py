@@ -35,6 +35,14 @@ as JSON in metadata.json.
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
 """
 
+PACKED = {
+    "type": "string",
+    "format": "binary",
+    "description": "numpy archive, as numpy.savez packs it: the JSON document as the member metadata.json, in which "
+    '{"array": "positions"} stands for the array of the member positions.npy.',
+}
+"""A request that is a numpy archive."""
+
 Serve = Callable[[Route, Any, Any, Any], Coroutine[Any, Any, None]]
 
 _PROBLEMS_OF_QUESTIONS = (400, 401, 406, 413, 415, 422, 429, 500, 503)
@@ -79,6 +87,7 @@ def openapi(app: FastAPI) -> dict[str, Any]:
     for verbs in document["paths"].values():
         if "post" in verbs:
             verbs["post"]["security"] = [{}, {"key": []}]
+            verbs["post"]["requestBody"]["content"][archive.MEDIA_TYPE] = {"schema": PACKED}
     for reference in _told_apart(document):
         _require_tag(document["components"]["schemas"][reference.rsplit("/", 1)[1]])
     describe(document["components"]["schemas"], members_of(bodies.Body))

@@ -8,12 +8,10 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from service.app import create_app
 from service.responses.ellipsoid_svg import CENTER, HALF, View, ellipsoid_figure
-from service.settings import Settings
-from tests.service.conftest import client_of
+from tests.service.conftest import client_of, inline_service
 
-SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+SERVICE = inline_service()
 PATH = "/v1/rotation/energy-ellipsoid"
 SOURCE = {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}
 OBLIQUE = {"kind": "inertia-tensor", "tensor": [[2.0, 0.1, 0.2], [0.1, 2.5, 0.3], [0.2, 0.3, 1.8]]}
