@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from service.http.cors import Cors, Header
-from tests.service.conftest import client_of, toy_service
+
+from tests.service.conftest import client_of, inline_toys
 from tests.service.toy_routes import GOOD
 
 A, B = b"https://a.example", b"https://b.example:8443"
@@ -19,7 +17,6 @@ SAFELISTED_METHODS = {b"GET", b"HEAD", b"POST"}
 SAFELISTED_RESPONSE_HEADERS = {
     b"cache-control", b"content-language", b"content-length", b"content-type", b"expires", b"last-modified", b"pragma"
 }  # fmt: skip
-INLINE: dict[str, Any] = {"inline_seconds": 1e9}
 
 
 def values(headers: tuple[Header, ...], name: bytes) -> list[bytes]:
@@ -131,14 +128,14 @@ class TestOverHttp:
     """Pages of other origins."""
 
     async def test_nobody_is_allowed_by_default(self) -> None:
-        async with client_of(toy_service(**INLINE)) as client:
+        async with client_of(inline_toys()) as client:
             asked = await client.post("/v1/toy", json=GOOD, headers={"origin": "https://a.example"})
             before = await client.options("/v1/toy", headers=PREFLIGHT)
         assert not [name for name in (*asked.headers, *before.headers) if name.startswith("access-control")]
         assert before.status_code == 405
 
     async def test_listed_origins_are_allowed_and_others_not(self) -> None:
-        service = toy_service(cors_origins="https://a.example, https://b.example", **INLINE)
+        service = inline_toys(cors_origins="https://a.example, https://b.example")
         async with client_of(service) as client:
             for origin, allowed in (
                 ("https://a.example", True),
@@ -158,6 +155,6 @@ class TestOverHttp:
             assert (await client.options("/nothing", headers=PREFLIGHT)).status_code == 404
 
     async def test_all_may_be_allowed(self) -> None:
-        async with client_of(toy_service(cors_origins="*", **INLINE)) as client:
+        async with client_of(inline_toys(cors_origins="*")) as client:
             answer = await client.post("/v1/toy", json=GOOD, headers={"origin": "null"})
         assert answer.headers["access-control-allow-origin"] == "*"

@@ -19,19 +19,18 @@ from service.http.dispatch import Dispatcher
 from service.responses.json_rows import CHUNK
 from service.settings import Settings
 from tests.service import hostile
-from tests.service.conftest import TOYS, client_of, toy_service
+from tests.service.conftest import INLINE, TOYS, client_of, inline_toys, toy_service
 from tests.service.toy_routes import GOOD
 
 pytestmark = pytest.mark.anyio
 
 JSON = {"content-type": "application/json"}
-INLINE: dict[str, Any] = {"inline_seconds": 1e9, "inline_bytes": 10**9}
-FUZZED = toy_service(**INLINE)
+FUZZED = inline_toys()
 
 
 @pytest.fixture(scope="module")
 def service() -> Service:
-    return toy_service(**INLINE)
+    return inline_toys()
 
 
 @pytest.fixture
@@ -79,7 +78,7 @@ async def test_equal_questions_get_equal_bytes(client: httpx.AsyncClient) -> Non
 
 
 async def toy_client_post(question: dict[str, Any]) -> httpx.Response:
-    async with client_of(toy_service(**INLINE)) as fresh:
+    async with client_of(inline_toys()) as fresh:
         return await fresh.post("/v1/toy", json=question)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +11,12 @@ import pytest
 
 from service.__main__ import main
 from service.http import keys as module
-from service.http.keys import Allowance, Keys, new_key
-from tests.service.conftest import client_of, toy_service
+from service.http.keys import Allowance, Key, Keys, new_key
+from service.problems import Refusal
+from tests.service.conftest import client_of, inline_toys
 from tests.service.toy_routes import GOOD
 
 pytestmark = pytest.mark.anyio
-
-INLINE: dict[str, Any] = {"inline_seconds": 1e9}
 
 
 class Clock:
@@ -44,7 +44,7 @@ async def test_only_known_keys_may_ask(tmp_path: Path) -> None:
     (first, one), (second, two) = new_key("alpha"), new_key("beta")
     file = tmp_path / "keys"
     file.write_text(f"# who may ask\n\n{one}\n{two}\n")
-    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
+    async with client_of(inline_toys(keys_file=file)) as client:
         for key in (first, second):
             assert (await client.post("/v1/toy", json=GOOD, headers=bearer(key))).status_code == 200
         unknown = [
@@ -88,7 +88,7 @@ async def test_the_rate_of_each_key_is_its_own(tmp_path: Path, clock: Clock) -> 
     (first, one), (second, two) = new_key("alpha"), new_key("beta")
     file = tmp_path / "keys"
     file.write_text(f"{one.replace('- -', '0.5 -')}\n{two}\n")
-    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
+    async with client_of(inline_toys(keys_file=file)) as client:
 
         async def ask(key: str) -> Any:
             return await client.post("/v1/toy", json=GOOD, headers=bearer(key))
@@ -101,18 +101,25 @@ async def test_the_rate_of_each_key_is_its_own(tmp_path: Path, clock: Clock) -> 
         assert [(await ask(first)).status_code for _ in range(2)] == [200, 429]
 
 
-async def test_work_is_counted_by_its_price(tmp_path: Path, clock: Clock) -> None:
-    key, line = new_key("alpha")
-    file = tmp_path / "keys"
-    file.write_text(line.replace("- -", "- 0.065"))
-    # The toy's price is 1e-8 s for each sample; a minute's 0.065 s are 6.5e6 samples.
-    large = GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 1_000_000}}
-    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
-        head = bearer(key) | {"accept": "application/x-npz"}
-        found = [(await client.post("/v1/toy", json=large, headers=head)).status_code for _ in range(7)]
-        assert found == [200] * 6 + [429]
-        clock.now += 10.0
-        assert (await client.post("/v1/toy", json=large, headers=head)).status_code == 200
+def test_work_is_charged_with_what_it_came_to(clock: Clock) -> None:
+    """6.5 s a minute, of which a whole minute's may be saved up."""
+    key = Key("alpha", b"", inf, 6.5, 1)
+    for _ in range(3):
+        key.work(2.0)
+    # Each took a second less than predicted.
+    key.charge(-3.0)
+    key.work(3.4)
+    with pytest.raises(Refusal):
+        key.work(2.0)
+    # One took far longer: nothing is admitted before the debt is paid.
+    key.charge(5.0)
+    for seconds, admitted in ((0.0, False), (40.0, False), (8.0, True)):
+        clock.now += seconds
+        if admitted:
+            key.work(0.0)
+        else:
+            with pytest.raises(Refusal):
+                key.work(0.0)
 
 
 def test_an_allowance_never_grows_beyond_its_most(clock: Clock) -> None:
