@@ -17,8 +17,8 @@ from service.settings import Settings
 
 SNAPSHOT = Path(__file__).parent.parent / "docs" / "openapi.json"
 SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
-DOCUMENT: dict[str, Any] = json.loads(SERVICE.openapi())
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+DOCUMENT: dict[str, Any] = json.loads(SERVICE.openapi_text())
+QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 EXAMPLES = [(route, name) for route in QUESTIONS for name in route.examples]
 
 

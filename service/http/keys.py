@@ -177,7 +177,7 @@ class Keys:
             self._keys = self._read()
             LOG.info("keys were read again", extra={"keys": len(self._keys)})
         except (OSError, ValueError) as error:
-            LOG.error("the file of keys cannot be used, the keys before it stay: %s", error)  # noqa: TRY400
+            LOG.error("the file of keys cannot be used, the keys before it stay: %s", error)
 
     def _stamped(self) -> Stamp:
         state = os.stat(self._path)

@@ -43,7 +43,18 @@ class RequestContext:
         As ASGI gives them.
     """
 
-    __slots__ = ("_records", "_send", "_since", "headers", "identity", "key", "operation", "receive", "scope", "started")
+    __slots__ = (
+        "_records",
+        "_send",
+        "_since",
+        "headers",
+        "identity",
+        "key",
+        "operation",
+        "receive",
+        "scope",
+        "started",
+    )
 
     def __init__(self, records: Records, operation: str, scope: Scope, receive: Receive, send: Send) -> None:
         self._since = perf_counter()

@@ -49,7 +49,7 @@ class TextLines(logging.Formatter):
     def __init__(self) -> None:
         super().__init__("%(asctime)s %(message)s", "%H:%M:%S")
 
-    def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802
+    def formatMessage(self, record: logging.LogRecord) -> str:
         """Return the line, without a traceback."""
         level = f"{record.levelname.lower()}: " if record.levelno >= logging.WARNING else ""
         more = "".join(f" {name}={value}" for name, value in vars(record).items() if name not in _OWN)

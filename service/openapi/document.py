@@ -47,6 +47,7 @@ ABOUT: Mapping[str, Any] = {
     "openapi_url": None,
     "docs_url": None,
     "redoc_url": None,
+    "redirect_slashes": False,
     "separate_input_output_schemas": False,
 }
 """What FastAPI is told about the application as a whole."""

@@ -149,7 +149,7 @@ async def test_the_period_of_a_rod_by_the_complete_integral() -> None:
 
 
 async def test_every_scene_is_the_one_in_doubles_with_more_digits() -> None:
-    for route in SERVICE.routes:
+    for route in SERVICE.table:
         if route.path.startswith("/v1/scenes/"):
             question = dict(route.examples["motion"].question)  # type: ignore[union-attr]
             many, few = await answer(route.path, question | {"digits": 20}), await answer(route.path, question)
@@ -414,7 +414,7 @@ async def test_the_key_may_be_written_with_escapes() -> None:
 
 
 def test_none_runs_in_the_server_and_long_ones_cost_more() -> None:
-    routes = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+    routes = [route for route in SERVICE.table if isinstance(route, PostRoute)]
     answering = RequestHandler(routes, Budget(), Limits())
     asking = [
         (route, dict(example.question))

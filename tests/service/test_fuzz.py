@@ -24,7 +24,7 @@ EXAMPLES = int(os.environ.get("POLHODE_FUZZ", "12"))
 SERVICE = create_app(
     Settings(cached_answers=0, inline_seconds=1e9, inline_bytes=10**9, max_samples=500, max_evaluations=20_000)
 )
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 
 NUMBERS = [
     0,

@@ -115,8 +115,8 @@ def worst_bodies() -> dict[str, bytes]:
 @pytest.mark.parametrize("name", worst_bodies())
 def test_the_worst_bodies_are_refused_soon(name: str) -> None:
     body = worst_bodies()[name]
-    reader = SERVICE.dispatcher._answering
-    route = SERVICE.routes[0]
+    reader = SERVICE.answering
+    route = SERVICE.table[0]
     times = []
     for _ in range(3):
         since = perf_counter()

@@ -19,7 +19,7 @@ from service.settings import Settings
 from tests.service.conftest import client_of
 
 SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 NPZ = {"accept": MEDIA_TYPE}
 
 pytestmark = pytest.mark.anyio
