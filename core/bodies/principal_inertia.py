@@ -19,22 +19,22 @@ Symmetry = Literal["spherical", "oblate", "prolate", "triaxial", "linear", "poin
 
 EPSILON = 2.0**-52
 EQUAL = 16.0 * EPSILON
-"""Moments that differ by less than this share of the largest are called equal; inputs that are doubles say no more."""
+"""Moments that differ by less than this fraction of the largest count as equal, as far as doubles can resolve."""
 
 RESOLUTION = 2.0**-96
-"""Differences of derived moments, and derived components, below this share of the largest are those of rounding."""
+"""Differences of derived moments, and derived components, below this fraction of the largest are rounding errors."""
 
 
 class Rounding(NamedTuple):
-    """What is known of the components of a tensor of inertia, each the sum of two doubles.
+    """Error bound of the components of an inertia tensor, each the sum of two doubles.
 
     Attributes
     ----------
     share : float
-        What a component may be wrong by, as a share of itself where zeros are exact, else of the largest component.
+        Relative error of a component if zeros are exact; otherwise its error relative to the largest component.
     exact_zeros : bool
-        Whether components that are zero, and moments that are equal, are so exactly: then the axes of a diagonal tensor
-        are exact as well.
+        Whether components that are zero, and moments that are equal, are exactly so. The axes of a diagonal tensor are
+        then exact as well.
     """
 
     share: float
@@ -42,7 +42,7 @@ class Rounding(NamedTuple):
 
 
 GIVEN = Rounding(0.0, True)
-"""The components are the numbers that were given."""
+"""The components are inputs."""
 
 ROUNDED_ONCE = Rounding(2.0**-103, True)
 """Each component is a rational number, rounded to a pair of doubles."""
@@ -52,9 +52,10 @@ DERIVED = Rounding(2.0**-100, False)
 
 
 def summed(terms: int) -> Rounding:
-    """Return what is known of sums of so many terms in double-double.
+    """Return the rounding of sums of so many terms in double-double.
 
-    A term is right to 16 units of 2^-106 and an addition to 3 of the sum so far (Joldes, Muller, Popescu 2017).
+    The error is 16 units of 2^-106 for a term and 3 units of the partial sum for an addition (Joldes, Muller, Popescu
+    2017).
     """
     return Rounding(max(DERIVED.share, 2.0**-104 * (terms + 16)), False)
 
@@ -78,24 +79,24 @@ _EVEN, _ODD = ((0, 1, 2), (1, 2, 0), (2, 0, 1)), ((0, 2, 1), (1, 0, 2), (2, 1, 0
 _PERMUTED = {order: _along_body_axes(order, 1.0) for order in _EVEN} | {
     order: _along_body_axes(order, -1.0) for order in _ODD
 }
-"""Right-handed axes by the body axes along which they lie, up to sign."""
+"""Right-handed axes, by the body axes to which they are parallel."""
 
 
 class KnownTensor(NamedTuple):
-    """A tensor of inertia, shape (3, 3), as value and tail, and what is known of its components."""
+    """An inertia tensor, shape (3, 3), as value and tail, with the rounding of its components."""
 
     value: Floats
     tail: Floats
     rounding: Rounding
 
     def turns_steadily(self, angular_velocity: Floats) -> bool:
-        """Return whether a rotation about an angular velocity, shape (3,), is certain to be steady: I w || w, exactly.
+        """Return whether a rotation with an angular velocity, shape (3,), is certainly steady: I w || w, exactly.
 
-        Components that were rounded say so only about a body axis from which all products of inertia vanish.
+        For rounded components this is certain only about a body axis whose products of inertia all vanish.
         """
         if not self.rounding.exact_zeros:
             return False
-        # First in doubles, of order one.
+        # First a test in doubles, scaled to order one.
         rates = np.ldexp(angular_velocity, -math.frexp(float(np.abs(angular_velocity).max()))[1])
         momentum = np.ldexp(self.value, -math.frexp(float(np.abs(self.value).max()))[1]) @ rates
         if not np.abs(np.cross(momentum, rates)).max() <= 2.0**-40:
@@ -121,11 +122,12 @@ class PrincipalInertia:
         Ascending; the moment is the unevaluated sum of both (kg m^2).
     axes, axes_tail : ndarray, shape (3, 3)
         Columns are the principal axes in body axes, right-handed (determinant +1), so that
-        ``inertia = axes @ diag(moments) @ axes.T``. Where moments coincide any choice within their plane is one.
+        ``inertia = axes @ diag(moments) @ axes.T``. If moments coincide, the choice of axes in their plane is
+        arbitrary.
     rounding : Rounding
-        What is known of moments and axes; with exact zeros the axes are body axes, exactly.
+        Rounding of moments and axes; with exact zeros the axes are exactly body axes.
     tensor : KnownTensor, optional
-        The tensor from which moments and axes were derived, where it is not diagonal.
+        The tensor from which moments and axes were derived, if it is not diagonal.
     """
 
     moments: Floats
@@ -139,10 +141,10 @@ class PrincipalInertia:
     def of(cls, inertia: Floats, inertia_tail: Floats | None = None, rounding: Rounding = GIVEN) -> PrincipalInertia:
         """Diagonalise a symmetric tensor given as the sum of two arrays of shape (3, 3).
 
-        A diagonal tensor is only sorted: its moments stay as they are and its axes are an exact signed permutation.
-        Otherwise moments are right to about 1e-30 of the largest (decoupled ones to 1e-31 of themselves) and
-        those of a graded tensor to their own size. A moment below that resolution is stated as zero: its
-        digits, and its sign, would be those of rounding.
+        A diagonal tensor is only sorted: its moments do not change and its axes are an exact signed permutation.
+        Otherwise moments are accurate to about 1e-30 of the largest (decoupled ones to a relative 1e-31), and
+        those of a graded tensor relative to their own size. A moment below that resolution is set to zero, because
+        its digits and its sign would be rounding errors.
 
         Raises
         ------
@@ -163,7 +165,7 @@ class PrincipalInertia:
     ) -> PrincipalInertia:
         """Return the principal inertia of a diagonal tensor with these moments, their tails on the diagonal of `tail`.
 
-        The moments are only sorted: they stay as they are, and the axes are an exact signed permutation.
+        The moments are only sorted, and the axes are an exact signed permutation.
         """
         if tail is ZEROS:
             order = sorted((0, 1, 2), key=values.__getitem__)
@@ -180,7 +182,7 @@ class PrincipalInertia:
 
     @classmethod
     def _diagonalised(cls, inertia: Floats, tail: Floats) -> PrincipalInertia:
-        # Compiled code is fetched only for the tensors that need it.
+        # Compiled code is imported only for the tensors that need it.
         from core.bodies.jacobi import jacobi
 
         exponent = math.frexp(float(np.max(np.abs(inertia))))[1]
@@ -216,26 +218,26 @@ class PrincipalInertia:
     def apart(self) -> tuple[bool, bool]:
         """Whether the middle moment is known to differ from the smallest, and the largest from the middle one.
 
-        This is what every motion goes by. Moments that were given, or rounded once, differ if they are not the same; of
-        derived ones a difference below the resolution is that of rounding.
+        Every motion depends on this. Moments that were given, or rounded once, differ unless they are identical. For
+        derived moments a difference below the resolution is a rounding error.
         """
         i, tail = self.moments.tolist(), self.moments_tail.tolist()
         if self.rounding.exact_zeros:
             return (i[0], tail[0]) != (i[1], tail[1]), (i[1], tail[1]) != (i[2], tail[2])
-        # With the tails: over many turns a difference far below an ulp is seen.
+        # Tails included: over many turns a difference far below an ulp becomes visible.
         low, high = ((i[k + 1] - i[k]) + (tail[k + 1] - tail[k]) for k in (0, 1))
         return low > RESOLUTION * i[2], high > RESOLUTION * i[2]
 
     @property
     def nearly_equal(self) -> bool:
-        """Whether two moments that are known to differ do so by less than 16 eps of the largest."""
+        """Whether two moments that certainly differ do so by less than 16 eps of the largest."""
         low, middle, high = self.moments.tolist()
         first, second = self.apart
         return (first and middle - low <= EQUAL * high) or (second and high - middle <= EQUAL * high)
 
     @property
     def symmetry(self) -> Symmetry:
-        """The class of the body, by a test free of scale: moments within 16 eps of the largest are equal.
+        """The symmetry class, by a scale-free test: moments within 16 eps of the largest count as equal.
 
         ``"spherical"`` three equal; ``"oblate"`` the two smaller equal (coin); ``"prolate"`` the two larger equal
         (American football); ``"linear"`` prolate with a smallest moment below 16 eps of the largest (needle);
@@ -254,10 +256,10 @@ class PrincipalInertia:
 
 
 def _resolution(tensor: Floats, vectors: Floats) -> Floats:
-    """Return, per eigenvalue, what one part in 2^102 of each component of the tensor would move it.
+    """Return, for each eigenvalue, its change if each component of the tensor changes by one part in 2^102.
 
-    An eigenvalue is v.A.v, so its share of the rounding of A is |v|.|A|.|v|: nothing for an axis that is decoupled
-    from the large components.
+    An eigenvalue is v.A.v, so the rounding of A contributes |v|.|A|.|v|: nothing for an axis that is decoupled from the
+    large components.
     """
     v = np.abs(vectors)
     share: Floats = 2.0**-102 * np.einsum("ik,ij,jk->k", v, np.abs(tensor), v)
