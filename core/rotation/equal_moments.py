@@ -5,8 +5,9 @@ identical; derived moments differ if their difference exceeds the resolution of 
 these differences: samples, attitude, regime, period, flips and polhodes. If moments differ by less than 16 units in the
 last place of the largest, half a unit in a moment may change all of this; the answer has a warning.
 
-Classifications (the symmetry of a body, the quantities that only symmetric bodies have, and the kinds of equilibria of
-a body with derived moments) treat moments as equal within those 16 units; the answer has a warning if they differ.
+What is a class and no motion goes by moments that are equal to within those 16 units: the symmetry of a body, the
+figures that only symmetric bodies have, and, where the moments were derived, the kinds of equilibria and whether there
+is a middle axis to flip about, unless the motion shows that there is. A warning says so where they differ.
 """
 
 from __future__ import annotations
