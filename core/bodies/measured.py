@@ -78,7 +78,7 @@ class InertiaTensor:
     tensor : tuple of 3 rows
         Symmetric; off-diagonal components are I_xy = -(integral of x y dm) (kg m^2).
     mass : float, optional
-        kg.
+        Of the body (kg).
     center_of_mass : tuple of 3 floats, optional
         In the frame in which the body is described (m).
     """

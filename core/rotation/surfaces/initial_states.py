@@ -1,4 +1,4 @@
-"""Starts of one energy, drawn uniformly over the directions of the scaled sphere."""
+"""Random initial states of one energy, with uniformly distributed directions on the scaled sphere."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from core.systems.system import Floats
+from core.work import spend
 
 MOST = 1_000_000
 
@@ -16,8 +17,8 @@ def initial_states(body: MassProperties, energy: float, count: int, seed: int) -
     """Return angular velocities of one energy, shape (count, 3), in body axes (rad/s).
 
     Directions are uniform on the unit sphere, then each principal component is scaled by the semi-axis sqrt(2E/I_i) of
-    the energy ellipsoid: uniform on the sphere that is scaled, not in area of the ellipsoid. The generator is numpy's
-    PCG64 seeded with `seed`, from which three normal numbers per direction are drawn, so equal questions get equal
+    the energy ellipsoid. The states are uniform on the sphere, not in the area of the ellipsoid. The generator is
+    numpy's PCG64 seeded with `seed`, from which three normal numbers per direction are drawn. Equal requests give equal
     states within one version of numpy.
 
     Parameters
@@ -43,6 +44,7 @@ def initial_states(body: MassProperties, energy: float, count: int, seed: int) -
         raise BudgetExceeded("states", count, MOST, path=("count",), remedy="ask for fewer states")
     if seed < 0:
         raise InvalidParameter("seed", "be at least 0")
+    spend(count)
     surface = EnergyEllipsoid.of(body, energy)
     directions = np.random.Generator(np.random.PCG64(seed)).normal(size=(count, 3))
     directions /= np.sqrt((directions * directions).sum(axis=1))[:, None]
