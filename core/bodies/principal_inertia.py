@@ -86,7 +86,7 @@ _PERMUTED = {order: _along_body_axes(order, 1.0) for order in _EVEN} | {
 
 
 class KnownTensor(NamedTuple):
-    """A tensor of inertia in rational numbers, as exact as those that describe the body, and in doubles of order one."""
+    """A tensor of inertia in rational numbers, as exact as those of the body, and in doubles of order one."""
 
     components: Matrix
     near_one: list[list[float]]
