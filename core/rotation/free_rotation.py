@@ -51,6 +51,9 @@ SET_UP_ROUNDING = 2.0**-103
 UNDERFLOW = 2.0**-1070
 """What samples, and the tails of moments and components, lose in all where they are below the normal doubles."""
 
+UNMOVED = 2.0**-60
+"""A relative change of the angular velocity that is less than its rounding."""
+
 _BASIS = np.zeros((6, 3, 3))
 for _n, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
     _BASIS[_n, _i, _j] = _BASIS[_n, _j, _i] = 1.0
@@ -194,9 +197,11 @@ class FreeRotation:
             row, sign = self.frame.rows, self.frame.signs
             m = m.mirrored(sign[c], sign[1], sign[d])
             sample_components(m, times, out[row[c]], out[row[1]], out[row[d]])
-            return out.T
-        sample_components(m, times, out[c], out[1], out[d])
-        turn_into_body(np.ascontiguousarray(self.inertia.axes), out)
+        else:
+            sample_components(m, times, out[c], out[1], out[d])
+            turn_into_body(np.ascontiguousarray(self.inertia.axes), out)
+        if self._underflow > UNMOVED:
+            out[:, np.abs(times) <= self._unmoved_until] = self.angular_velocity[:, None]
         return out.T
 
     def error(self, times: Floats) -> float:
@@ -207,19 +212,42 @@ class FreeRotation:
             computed = 0.0
         else:
             computed = EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR)
-            computed += m.computed.at(SET_UP_ROUNDING, horizon) + self._underflow
+            computed += m.computed.at(SET_UP_ROUNDING, horizon)
+            computed += UNMOVED if horizon <= self._unmoved_until else self._underflow
         if self.derivation is None:
             return min(WHOLE_MOTION, computed)
         derived: float = self.derivation.angular_velocity(self.derived_rounding, horizon)
         return min(WHOLE_MOTION, computed + derived)
 
     @property
+    def _unmoved_until(self) -> float:
+        """Time up to which the angular velocity moves by no more than `UNMOVED` of its norm (s).
+
+        By Euler's equations no faster than by its square times the largest of their coefficients.
+        """
+        a, b, c = self.resolved.moments.tolist()
+        steepest = max((c - b) / a, (c - a) / b, (b - a) / c) * self.largest_rate
+        return UNMOVED / steepest if steepest > 0.0 else math.inf
+
+    @cached_property
     def _underflow(self) -> float:
         """What a sample may be wrong by, relative, because a factor of it is below the normal doubles."""
         m = self.motion
-        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'.
-        smallest = min(map(abs, m.weights if m.regime == PERIODIC else (m.A_c, m.A_b, m.A_d)))
-        return UNDERFLOW / smallest if smallest > 0.0 else math.inf
+        if m.regime == SEPARATRIX:
+            return UNDERFLOW / self.largest_rate
+        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'. What
+        # one of them loses is at most the spacing of subnormal doubles.
+        k, spacing = m.weights, 2.0**-1074
+        products = (
+            (m.A_c, k.c_even),
+            (m.A_c, k.c_odd),
+            (m.A_b, k.b_even),
+            (m.A_b, k.b_odd),
+            (m.A_d, k.d_even),
+            (m.A_d, k.d_odd),
+        )
+        most = max(abs(amplitude) / max(spacing, abs(constant)) for amplitude, constant in products)
+        return UNDERFLOW * max(1.0, most) / self.largest_rate
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
