@@ -132,6 +132,7 @@ def covering(stated: Accuracy, added: float) -> dict[str, Any]:
         "how": stated.how,
         "inherited": stated.inherited,
         "drifts": dict(stated.drifts),
+        "largest_norm": stated.largest_norm,
     }
 
 

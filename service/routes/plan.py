@@ -49,11 +49,13 @@ class CostView(View):
 
 
 class ForeseenError(View):
-    """How wrong the answer would be, relative to the largest norm of the motion."""
+    """How wrong the answer would be, relative to the largest norm of the whole motion."""
 
     error: float | str = Field(description="A decimal string where digits are asked for, then relative to each number.")
     how: str = Field(description="closed form: a bound; record of the method: an order of magnitude.")
-    inherited: float | None = Field(description="What the uncertainty of the inputs would move.")
+    inherited: float | None = Field(
+        description="Error propagated from the uncertainty of the inputs; null where nothing is known of the phase."
+    )
 
 
 class FaultView(View):

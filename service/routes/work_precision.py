@@ -38,7 +38,7 @@ class WorkPrecisionRequest(Request):
 
 
 class MeasurementView(View):
-    """One method with one setting; errors are relative to the largest norm of the motion."""
+    """One method with one setting; errors are relative to the largest norm of the whole motion."""
 
     method: Method
     error: float | None = Field(description="Largest of any sample; null if the method failed.")

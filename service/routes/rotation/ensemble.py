@@ -21,7 +21,14 @@ from service.execution.cost_model import CalibratedCost, effort, extreme, number
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
 from service.routes.rotation.surfaces import SOURCE_BODY, Count, Seed
-from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView, in_closed_form, in_range
+from service.routes.rotation.trajectory import (
+    AccuracyView,
+    ModelView,
+    WorkView,
+    in_closed_form,
+    in_range,
+    inherited_share,
+)
 from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
 
@@ -88,7 +95,8 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
     if question.round is not None:
         for k, member in enumerate(many.members):
             stated = member.accuracy
-            samples[k], added[k] = rounded(samples[k], question.round, stated.error + (stated.inherited or 0.0))
+            unknown = stated.error + inherited_share(stated)
+            samples[k], added[k] = rounded(samples[k], question.round, unknown, stated.largest_norm)
             by_rounding += [(k, notice) for notice in notices_of(stated, added[k])]
     members = [
         {

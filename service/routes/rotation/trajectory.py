@@ -18,7 +18,7 @@ from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation, Method
 from core.systems.solve import solve
 from core.systems.system import Floats
-from core.systems.trajectory import How
+from core.systems.trajectory import Accuracy, How
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
@@ -50,7 +50,7 @@ class TrajectoryRequest(Request):
     attitude: Quaternion | None = ATTITUDE
     times: Times = TIMES
     accuracy: Tolerance = Field(
-        default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the motion."
+        default=1e-9, description="Largest tolerated error of any sample, relative to accuracy.largest_norm."
     )
     method: Method | None = Field(
         default=None, description="Leave it out to have the most accurate one chosen; it overrides the accuracy."
@@ -74,17 +74,29 @@ class ModelView(View):
 
 
 class AccuracyView(View):
-    """How right the answer is; errors are relative to the largest norm of the motion."""
+    """How right the answer is."""
 
     requested: float
-    error: float = Field(description="Largest error of any sample, inputs taken as exact; see how.")
+    error: float = Field(
+        description="Largest norm of any sample's error, inputs taken as exact, divided by largest_norm; of a scene, "
+        "the largest such quotient of any column. What it rests on stands in how."
+    )
     final_error: float | None = Field(description="The same at the time farthest from the start.")
     how: How = Field(
-        description="Of a closed form a bound, measured against it a difference with that bound added: neither is "
-        "below the true error. A finer run estimates it."
+        description="closed form: a bound. measured against closed form: the difference from it, with its bound added. "
+        "Neither is below the true error. estimate (finer run): four times the difference from a finer run of the same "
+        "method, no bound."
     )
     inherited: float | None = Field(
-        description="What half a unit in the last place of every input, or input_uncertainty, would move."
+        description="Error propagated from the uncertainty of the inputs, half a unit in the last place of each or "
+        "input_uncertainty: bound of the change of any sample, divided by largest_norm. null where nothing is known of "
+        "the phase."
+    )
+    largest_norm: float | None = Field(
+        default=None,
+        description="Largest magnitude of the angular velocity in the whole motion, at the times asked for or not "
+        "(rad/s). Errors of closed forms and of methods are relative to it. null for scenes, whose columns are each "
+        "relative to their own largest value, and beyond the range of doubles.",
     )
     horizon: float | None = Field(
         default=None, description="Time after which input_uncertainty leaves nothing known of the phase (s)."
@@ -147,9 +159,9 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     exact = system.closed_form()
     notices = [*system.warnings, *solved.warnings]
     stated, states, added = solved.accuracy, solved.state, 0.0
-    unknown = stated.inherited or 0.0
+    unknown = inherited_share(stated)
     if question.round is not None and "angular_velocity" in wanted:
-        states, added = rounded(states, question.round, stated.error + unknown, exact.largest_rate)
+        states, added = rounded(states, question.round, stated.error + unknown, exact.largest_norm)
         notices += notices_of(stated, added)
     accuracy = covering(stated, added)
     if "input_uncertainty" in question.model_fields_set:
@@ -183,6 +195,11 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
         if "input_uncertainty" in question.model_fields_set:
             accuracy["attitude_horizon"] = free.horizon_of(question.input_uncertainty)
     return fields
+
+
+def inherited_share(stated: Accuracy) -> float:
+    """Return what is not known of samples for their inputs: all, where nothing is known of the phase."""
+    return 1.0 if stated.inherited is None else stated.inherited
 
 
 def _outputs(question: TrajectoryRequest) -> tuple[Output, ...]:
