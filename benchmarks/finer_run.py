@@ -108,7 +108,9 @@ def summary(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
         entry["true_over_stated_where_below"] = {
             "median": _short(np.median(below)) if below else None, "largest": _short(max(below, default=0.0)) or None
         }  # fmt: skip
-        entry["stated_over_true"] = {f"p{100 * q:g}": _short(np.quantile(over, q)) for q in (0.001, 0.01, 0.1, 0.5, 0.9)}
+        entry["stated_over_true"] = {
+            f"p{100 * q:g}": _short(np.quantile(over, q)) for q in (0.001, 0.01, 0.1, 0.5, 0.9)
+        }
         # Without its factor of safety the estimate would be so often below.
         entry["below_without_safety"] = sum(row["true"] > row["stated"] / 4.0 for row in chosen)
         found.append(entry)

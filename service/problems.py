@@ -72,6 +72,9 @@ REGISTRY: Mapping[str, ProblemType] = {
             "method-not-allowed", 405, "This path does not answer this method", "The Allow header lists the methods."
         ),
         ProblemType("not-acceptable", 406, "No representation fits the Accept header", "Accept application/json."),
+        ProblemType(
+            "body-too-slow", 408, "The body did not arrive in time", "The limit is named; send the body without pauses."
+        ),
         ProblemType("body-too-large", 413, "The body is too large", "The limit is named; send less or split it."),
         ProblemType(
             "unsupported-media-type",
@@ -130,6 +133,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             500,
             "The service failed",
             "Not the question's fault. Report the id, under which the failure is logged.",
+        ),
+        ProblemType(
+            "unsupported-transfer-coding",
+            501,
+            "The body has a transfer coding that is not understood",
+            "Send the body with its Content-Length, or chunked.",
         ),
         ProblemType(
             "worker-lost",

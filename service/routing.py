@@ -67,6 +67,8 @@ class PostRoute:
         By a short name.
     representations : mapping
         By media type, how an answer is written other than as JSON.
+    elsewhere : mapping
+        Fields that belong to another route, each with the remedy for who sends it here.
     """
 
     path: str
@@ -82,6 +84,7 @@ class PostRoute:
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     method: str = "POST"
 
 
@@ -95,6 +98,8 @@ class GetRoute:
         Returns what is sent now.
     answer : type or None
         Pydantic model that documents a JSON page.
+    example : callable or None
+        Returns an example of a JSON page.
     """
 
     path: str
@@ -105,6 +110,7 @@ class GetRoute:
     answer: type[BaseModel] | None = None
     media_type: str = "application/json"
     description: str = ""
+    example: Callable[[], Mapping[str, Any]] | None = None
     method: str = "GET"
 
 

@@ -1,4 +1,4 @@
-"""Bodies welded together: parts placed, turned and, as holes, taken away."""
+"""Composite bodies: parts with a position and an attitude, which are added or, as holes, subtracted."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from core.quantities import Position, Quaternion, check, members_of
 from core.work import spend
 
 MOST_PARTS = 1000
-"""Bodies of a composite, composites among the parts opened."""
+"""Largest number of bodies in a composite, those of nested composites included."""
 
 DEEPEST = 8
-"""Levels of composites within composites, the outermost included."""
+"""Largest number of nested levels of composites, the outermost included."""
 
 WORK_OF_A_PART = 100
 """Units of work (`core.work`): a part is turned, moved and added in rational numbers."""
@@ -30,7 +30,7 @@ WORK_OF_A_PART = 100
 
 @dataclass(frozen=True)
 class Count:
-    """How many entries a tuple may have."""
+    """Admissible lengths of a tuple."""
 
     at_least: int
     at_most: int
@@ -43,7 +43,7 @@ class Count:
             raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(value)}")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        # The upper end is stated here as well, so that no more entries than these are ever built.
+        # The upper limit is given to the validator as well, so that it never builds more entries.
         return {**handler(source), "max_length": self.at_most}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
@@ -52,21 +52,21 @@ class Count:
 
 @dataclass(frozen=True)
 class Part:
-    """A body in its place within a composite.
+    """A body with its position and attitude in a composite.
 
-    A point r of the body comes to lie at position + R r, with R the rotation of the attitude: the body is turned about
-    its own origin and then moved.
+    A point r of the body is at position + R r in the composite, with R the rotation of the attitude: the body is
+    rotated about its own origin and then displaced.
 
     Attributes
     ----------
     body : Body
-        Of known mass and centre of mass. A solid or mesh of negative mass or density is a hole.
+        With known mass and centre of mass. A solid or mesh of negative mass or density is a hole.
     position : tuple of 3 floats
-        Of the origin of the part's frame, in the composite's frame (m).
+        Origin of the part's frame, in the composite's frame (m).
     attitude : tuple of 4 floats
         Quaternion [w, x, y, z] from the part's axes to the composite's; any length but zero.
     hole : bool
-        Whether the body is taken away instead of added: for bodies that have no negative mass to give.
+        Whether the body is subtracted instead of added; for kinds of body that cannot have a negative mass.
     """
 
     body: bodies.Body
@@ -100,7 +100,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Composite:
-    """Bodies welded together.
+    """Bodies that are rigidly connected.
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ class Composite:
 
     @property
     def count(self) -> int:
-        """Number of bodies in all, composites among the parts opened."""
+        """Total number of bodies, those of nested composites included."""
         return sum(part.body.count if isinstance(part.body, Composite) else 1 for part in self.parts)
 
     @property
@@ -146,16 +146,16 @@ class Composite:
         return 1 + max(part.body.depth if isinstance(part.body, Composite) else 0 for part in self.parts)
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body.
+        """Return the mass properties.
 
-        A hole that reaches outside of what it is cut from can leave a tensor that no matter has: it is answered with a
-        warning, and refused if a principal moment is negative, as no motion is then defined.
+        A hole that extends beyond the other parts can leave a tensor that no mass distribution has. This is a warning,
+        and an error if a principal moment is negative, because no motion is then defined.
 
         Raises
         ------
         InvalidParameter
-            If a part's mass or centre of mass is not known, the holes weigh as much as the parts, or a figure leaves
-            the range of doubles.
+            If the mass or centre of mass of a part is not known, the holes have at least the mass of the parts, or a
+            result leaves the range of doubles.
         UnphysicalInertia
             If a principal moment is negative.
         """

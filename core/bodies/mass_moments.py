@@ -1,9 +1,9 @@
-"""Moments of mass of order zero, one and two about one point: what adds up when bodies are put together.
+"""Moments of mass of order zero, one and two about one point, which are additive over the parts of a composite.
 
 They are integers in units of 2^-4096. Rational numbers would be exact, but their denominators multiply with every
-attitude, and a thousand parts would take minutes. Here a quotient is rounded once, by less than one unit, and what
-magnifies that later (the square of a distance, at most 2^2048) leaves it below 2^-2000: far smaller than the half of
-any double, so that the pairs of doubles come out as if everything had been exact, however much cancels.
+attitude, and a thousand parts would take minutes. Here a quotient is rounded once, by less than one unit. A later
+factor (the square of a distance, at most 2^2048) leaves this error below 2^-2000, far below half of any double. The
+resulting pairs of doubles are therefore those of exact arithmetic, whatever cancels.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 BITS = 4096
 UNRESOLVED = 1 << (BITS - 2000)
-"""Moments below this are those of rounding."""
+"""Moments below this are rounding errors."""
 
 _LEAST = 1074
 """Every double is a multiple of 2^-1074."""
@@ -158,7 +158,7 @@ def _fixed(number: Fraction) -> int:
 
 
 def _or_zero(number: Fraction) -> Fraction:
-    """Return zero for what is below every double."""
+    """Return zero for a number smaller than every double."""
     return number if abs(number) * (1 << (_LEAST + 1)) >= 1 else Fraction(0)
 
 

@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia of a body; its principal moments and axes; whether matter can have them."""
+"""Mass, centre of mass and inertia of a body; its principal moments and axes; whether they are physically possible."""
 
 from __future__ import annotations
 
@@ -34,29 +34,31 @@ About = Literal["center-of-mass", "origin"]
 
 @dataclass(frozen=True, eq=False)
 class MassProperties:
-    """What the mechanics needs to know of a body.
+    """Mass, centre of mass and inertia of a body.
 
-    A derived number is kept as an unevaluated sum of two doubles, value and tail, right to about 1e-30, so that
-    rounding it does not enter a motion as an error. Off-diagonal components are I_xy = -(integral of x y dm).
+    A derived number is stored as an unevaluated sum of two doubles, value and tail, accurate to about 1e-30, so its
+    rounding does not add to the error of a motion. Off-diagonal components are I_xy = -(integral of x y dm).
 
     Attributes
     ----------
     inertia, inertia_tail : ndarray, shape (3, 3)
         Tensor of inertia about the centre of mass, in body axes (kg m^2).
     mass, mass_tail : float
-        Total mass (kg); `mass` is None where the body was given by its moments alone.
+        Total mass (kg); `mass` is None if the body was given by its moments alone.
     center_of_mass, center_of_mass_tail : ndarray, shape (3,), or None
         In the frame in which the body was given (m).
     about : {"center-of-mass", "origin"}
         The point about which the body turns: the origin for a body that is pinned there.
     warnings : tuple of Notice
-        What was noticed while the body was read; paths lead from the body.
+        Warnings about the body; paths are relative to it.
     conditions : tuple of Condition
-        What the validity report says beyond the moments.
+        Conditions of the validity report other than those of the moments.
     described_by : Body, optional
-        The body whose numbers these follow from; without one, the components of the tensor are themselves the numbers.
+        The body that these are derived from; without one, the components of the tensor are the inputs.
     rounding : Rounding
         What is known of the components of the tensor.
+    unrounded : matrix of Fraction, optional
+        The tensor before it was rounded, where it is exact.
     """
 
     inertia: Floats
@@ -70,6 +72,7 @@ class MassProperties:
     conditions: tuple[Condition, ...] = ()
     described_by: Any = None
     rounding: Rounding = GIVEN
+    unrounded: Matrix | None = None
 
     def __post_init__(self) -> None:
         self.inertia.setflags(write=False)
@@ -107,7 +110,7 @@ class MassProperties:
         i, i_tail = tensor_pairs(inertia)
         return cls(
             i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions,
-            rounding=_after(inertia, i, i_tail, rounding),
+            rounding=_after(inertia, i, i_tail, rounding), unrounded=inertia if rounding.exact_zeros else None,
         )  # fmt: skip
 
     @property
@@ -132,7 +135,7 @@ class MassProperties:
     @cached_property
     def principal(self) -> PrincipalInertia:
         """Principal inertia about the centre of mass."""
-        return PrincipalInertia.of(self.inertia, self.inertia_tail, self.rounding)
+        return PrincipalInertia.of(self.inertia, self.inertia_tail, self.rounding, self.unrounded)
 
     def inertia_about(self, point: Sequence[float] | Floats) -> tuple[Floats, Floats]:
         """Return the tensor about another point, in body axes, as value and tail, each of shape (3, 3).
@@ -190,11 +193,11 @@ class MassProperties:
         return Validity.of(self.principal, (*mass, *self.conditions))
 
     def told(self, warnings: tuple[Notice, ...], conditions: tuple[Condition, ...] = ()) -> MassProperties:
-        """Return the same with more warnings and conditions."""
+        """Return a copy with further warnings and conditions."""
         return replace(self, warnings=(*self.warnings, *warnings), conditions=(*self.conditions, *conditions))
 
     def judged(self, field: str) -> MassProperties:
-        """Return the same, with a warning at `field` if no distribution of positive mass has these moments."""
+        """Return a copy, with a warning at `field` if no distribution of positive mass has these moments."""
         if moments_of_matter(self.principal):
             return self
         failed = "; ".join(condition.detail for condition in self.validity.violations)

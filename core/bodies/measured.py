@@ -28,8 +28,8 @@ MASSES = Rows(0, Quantity("kg", above=0))
 MASS_RANGE = 900
 """Most binary orders of magnitude between the heaviest and the lightest point: no product of theirs is lost to zero."""
 
-SUMMED_EXACTLY = 24
-"""Points of which the moments are formed in rational numbers."""
+SUMMED_EXACTLY = 400
+"""Points of which the moments are formed in whole numbers."""
 
 KEPT = 32
 """Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
@@ -78,7 +78,7 @@ class InertiaTensor:
     tensor : tuple of 3 rows
         Symmetric; off-diagonal components are I_xy = -(integral of x y dm) (kg m^2).
     mass : float, optional
-        kg.
+        Of the body (kg).
     center_of_mass : tuple of 3 floats, optional
         In the frame in which the body is described (m).
     """
@@ -185,9 +185,9 @@ class PointMasses:
             raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body; few points in rational numbers, more in double-double.
+        """Return what the mechanics needs to know of the body; few points exactly, more in double-double.
 
-        In rational numbers products of inertia that cancel are zero, and the axes of a symmetric set of points exact.
+        Exact products of inertia that cancel are zero, and the axes of a symmetric set of points exact.
         """
         masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
         # Powers of two keep products within range and round nothing.
@@ -223,15 +223,27 @@ class PointMasses:
 
 def _exact_properties(masses: Floats, positions: Floats) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
     """Return mass, centre of mass and tensor of inertia about it, of few points, shapes (n,) and (n, 3)."""
-    m = [Fraction(x) for x in masses.tolist()]
-    columns = [[Fraction(x) for x in column] for column in positions.T.tolist()]
-    mass = sum(m, Fraction(0))
-    center = [sum((a * x for a, x in zip(m, column, strict=True)), Fraction(0)) / mass for column in columns]
-    d = [[x - c for x in column] for column, c in zip(columns, center, strict=True)]
+    m, kilogram = _whole(masses)
+    columns, units = zip(*(_whole(column) for column in positions.T), strict=True)
+    mass = sum(m)
+    first = [sum(a * x for a, x in zip(m, column, strict=True)) for column in columns]
+    # Times the mass, all is whole: M sum m x y - (sum m x)(sum m y).
     products = [[Fraction(0)] * 3 for _ in range(3)]
     for i in range(3):
-        weighted = [a * x for a, x in zip(m, d[i], strict=True)]
+        weighted = [a * x for a, x in zip(m, columns[i], strict=True)]
         for j in range(i, 3):
-            products[i][j] = products[j][i] = sum((a * x for a, x in zip(weighted, d[j], strict=True)), Fraction(0))
+            second = sum(a * x for a, x in zip(weighted, columns[j], strict=True))
+            central = Fraction(mass * second - first[i] * first[j], mass) * kilogram * units[i] * units[j]
+            products[i][j] = products[j][i] = central
     trace = products[0][0] + products[1][1] + products[2][2]
-    return mass, center, [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+    inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+    return mass * kilogram, [Fraction(x, mass) * unit for x, unit in zip(first, units, strict=True)], inertia
+
+
+def _whole(values: Floats) -> tuple[list[int], Fraction]:
+    """Return doubles as whole multiples of a power of two, and that power."""
+    mantissas, exponents = np.frexp(values)
+    whole, places = np.ldexp(mantissas, 53).astype(np.int64).tolist(), exponents.tolist()
+    least = min((place for x, place in zip(whole, places, strict=True) if x), default=0)
+    # A zero has no place of its own.
+    return [x << max(0, place - least) for x, place in zip(whole, places, strict=True)], Fraction(2) ** (least - 53)

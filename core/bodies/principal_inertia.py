@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.bodies.exact import exact_matrix
+from core.bodies.exact import Matrix, exact_matrix
 from core.errors import InvalidParameter
 
 Floats = NDArray[np.float64]
@@ -23,6 +23,10 @@ EQUAL = 16.0 * EPSILON
 
 RESOLUTION = 2.0**-96
 """Differences of derived moments, and derived components, below this share of the largest are those of rounding."""
+
+
+NOTHING = Fraction(1, 2**3000)
+"""A share that is below any that doubles can make, and above the rounding of `core.bodies.mass_moments`."""
 
 
 class Rounding(NamedTuple):
@@ -82,33 +86,23 @@ _PERMUTED = {order: _along_body_axes(order, 1.0) for order in _EVEN} | {
 
 
 class KnownTensor(NamedTuple):
-    """A tensor of inertia, shape (3, 3), as value and tail, and what is known of its components."""
+    """A tensor of inertia in rational numbers, as exact as the numbers that describe the body, and rounded."""
 
+    components: Matrix
     value: Floats
-    tail: Floats
-    rounding: Rounding
 
     def turns_steadily(self, angular_velocity: Floats) -> bool:
-        """Return whether a rotation about an angular velocity, shape (3,), is certain to be steady: I w || w, exactly.
-
-        Components that were rounded say so only about a body axis from which all products of inertia vanish.
-        """
-        if not self.rounding.exact_zeros:
-            return False
+        """Return whether a rotation about an angular velocity, shape (3,), is steady: I w along w, exactly."""
         # First in doubles, of order one.
         rates = np.ldexp(angular_velocity, -math.frexp(float(np.abs(angular_velocity).max()))[1])
         momentum = np.ldexp(self.value, -math.frexp(float(np.abs(self.value).max()))[1]) @ rates
         if not np.abs(np.cross(momentum, rates)).max() <= 2.0**-40:
             return False
         w = [Fraction(float(x)) for x in angular_velocity]
-        if self.rounding.share > 0.0:
-            turning = [k for k in range(3) if w[k]]
-            return len(turning) == 1 and not np.any(np.delete(self.value[turning[0]], turning[0]))
-        x, y, z = (
-            sum((i * v for i, v in zip(row, w, strict=True)), Fraction(0))
-            for row in exact_matrix(self.value, self.tail)
-        )
-        return y * w[2] == z * w[1] and z * w[0] == x * w[2] and x * w[1] == y * w[0]
+        rows = [[i * v for i, v in zip(row, w, strict=True)] for row in self.components]
+        x, y, z = (sum(row, Fraction(0)) for row in rows)
+        least = NOTHING * max(abs(p) for row in rows for p in row) * max(map(abs, w))
+        return all(abs(c) <= least for c in (y * w[2] - z * w[1], z * w[0] - x * w[2], x * w[1] - y * w[0]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +119,7 @@ class PrincipalInertia:
     rounding : Rounding
         What is known of moments and axes; with exact zeros the axes are body axes, exactly.
     tensor : KnownTensor, optional
-        The tensor from which moments and axes were derived, where it is not diagonal.
+        The tensor from which moments and axes were derived, where it is not diagonal but exact.
     """
 
     moments: Floats
@@ -136,8 +130,16 @@ class PrincipalInertia:
     tensor: KnownTensor | None = None
 
     @classmethod
-    def of(cls, inertia: Floats, inertia_tail: Floats | None = None, rounding: Rounding = GIVEN) -> PrincipalInertia:
+    def of(
+        cls,
+        inertia: Floats,
+        inertia_tail: Floats | None = None,
+        rounding: Rounding = GIVEN,
+        exact: Matrix | None = None,
+    ) -> PrincipalInertia:
         """Diagonalise a symmetric tensor given as the sum of two arrays of shape (3, 3).
+
+        What is known of the components is `rounding`; before they were rounded they may have been `exact`.
 
         A diagonal tensor is only sorted: its moments stay as they are and its axes are an exact signed permutation.
         Otherwise moments are right to about 1e-30 of the largest (decoupled ones to 1e-31 of themselves) and
@@ -155,7 +157,10 @@ class PrincipalInertia:
             return cls.along_body_axes((a, b, c), tail, rounding)
         found = cls._diagonalised(inertia, tail)
         share = max(DERIVED.share, rounding.share)
-        return replace(found, rounding=Rounding(share, False), tensor=KnownTensor(inertia, tail, rounding))
+        if exact is None and rounding == GIVEN:
+            exact = exact_matrix(inertia, tail)
+        known = None if exact is None else KnownTensor(exact, inertia)
+        return replace(found, rounding=Rounding(share, False), tensor=known)
 
     @classmethod
     def along_body_axes(

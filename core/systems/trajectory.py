@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from core.notices import Notice
+from core.quantities import Duration
 from core.systems.system import Floats, Model
 
 How = Literal["closed form", "measured against closed form", "estimate (finer run)"]
@@ -73,7 +74,7 @@ class Work:
     steps: int = 0
     rejected_steps: int = 0
     evaluations_for_error: int = 0
-    step: float | None = None
+    step: Duration | None = None
 
 
 @dataclass(frozen=True, eq=False)

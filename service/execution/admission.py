@@ -100,6 +100,11 @@ class Compute:
         """Whether there are processes that work or wait for work."""
         return self.reader.any_ready and self.processes.any_ready
 
+    @property
+    def held(self) -> int:
+        """Memory of the answers that clients are reading (bytes)."""
+        return self._held
+
     @contextlib.contextmanager
     def holding(self, memory: int) -> Iterator[None]:
         """Count memory (bytes): of a request until it is answered, of an answer while its client reads it."""
