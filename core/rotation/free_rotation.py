@@ -28,7 +28,7 @@ from core.rotation.closed_form.circulation import (
 from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
 from core.rotation.closed_form.principal_frame import PrincipalFrame, Resolved
 from core.rotation.closed_form.sampling import largest_magnitude, sample_components, turn_into_body
-from core.rotation.uncertainty.input_uncertainty import WHOLE_MOTION, InputUncertainty, lost_after
+from core.rotation.uncertainty.input_uncertainty import InputUncertainty, lost_after
 from core.rotation.uncertainty.sensitivities import Sensitivities
 from core.systems.system import Floats, Model
 
@@ -70,14 +70,14 @@ class FreeRotation:
         Principal moments and axes of the body; all moments positive.
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
-    moves : callable, optional
-        By how much each of the numbers that describe the body moves its tensor (`tensor_sensitivities`).
-        Without it the principal moments are those numbers.
+    tensor_sensitivities : callable, optional
+        By how much each of the numbers that describe the body changes its tensor, in units of 2^exponent kg m^2
+        (`core.bodies.sensitivities`). Without it the principal moments are those numbers.
     """
 
     inertia: PrincipalInertia
     angular_velocity: Floats
-    moves: Callable[[int], Floats] | None = None
+    tensor_sensitivities: Callable[[int], Floats] | None = None
 
     def __post_init__(self) -> None:
         if self.inertia.moments[0] > 0.0:
@@ -149,7 +149,7 @@ class FreeRotation:
         return not like_symmetric(circulation(*self.resolved.numbers, self.motion.circled))
 
     @property
-    def largest_rate(self) -> float:
+    def largest_norm(self) -> float:
         """Largest norm of the angular velocity in the whole motion (rad/s)."""
         m = self.motion
         if m.regime in (REST, STEADY):
@@ -205,19 +205,32 @@ class FreeRotation:
         return out.T
 
     def error(self, times: Floats) -> float:
-        """Return a bound of the error of `sample`, relative to the largest norm, inputs taken as exact."""
+        """Return a bound of the error of `sample`, relative to the largest norm of the whole motion, inputs as exact.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            If the rounding of the constants of the motion leaves nothing known of the phase at the farthest time.
+        """
         m, horizon = self.motion, self.horizon(times)
         if m.regime in (REST, STEADY):
             # The start itself is answered.
             computed = 0.0
         else:
             computed = EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR)
-            computed += m.computed.at(SET_UP_ROUNDING, horizon)
+            computed += m.condition_bounds.at(SET_UP_ROUNDING, horizon)
             computed += UNMOVED if horizon <= self._unmoved_until else self._underflow
-        if self.derivation is None:
-            return min(WHOLE_MOTION, computed)
-        derived: float = self.derivation.angular_velocity(self.derived_rounding, horizon)
-        return min(WHOLE_MOTION, computed + derived)
+        if self.derivation is not None:
+            computed += self.derivation.angular_velocity(self.derived_rounding, horizon)
+        if not computed < 1.0:
+            raise AccuracyUnreachable(
+                None,
+                2.0,
+                "the phase at the latest times hangs on the rounding of the constants of the motion",
+                path=("times",),
+                remedy="ask for earlier times",
+            )
+        return computed
 
     @property
     def _unmoved_until(self) -> float:
@@ -250,23 +263,26 @@ class FreeRotation:
         return UNDERFLOW * max(1.0, most) / self.largest_rate
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
-        """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
+        """Return a bound of the change of the samples by a relative `uncertainty` of every input.
+
+        Relative to the largest norm of the whole motion; infinite where nothing is known of the phase.
+        """
         horizon = self.horizon(times)
         if uncertainty == 0.0 or self.motion.regime == REST:
             return 0.0
-        if self.sensitivity is None:
-            return WHOLE_MOTION
-        return self.sensitivity.angular_velocity(uncertainty, horizon)
+        if self.input_uncertainty is None:
+            return math.inf
+        return self.input_uncertainty.angular_velocity(uncertainty, horizon)
 
     @cached_property
-    def sensitivity(self) -> InputUncertainty | None:
+    def input_uncertainty(self) -> InputUncertainty | None:
         """What uncertain inputs come to, where the body is not at rest.
 
         None for a line of matter askew: what turns it out of line gives it a third moment, and nothing says how small.
         """
         if self.resolved.moments[0] == 0.0 and not self.frame.aligned:
             return None
-        tensors = None if self.moves is None else self.moves(self._exponent)
+        tensors = None if self.tensor_sensitivities is None else self.tensor_sensitivities(self._exponent)
         return self._uncertain(tensors, self.angular_velocity)
 
     @cached_property
@@ -327,8 +343,8 @@ class FreeRotation:
         exponent, rate = self._exponent, math.frexp(float(np.abs(w).max()))[1]
         rate = max(-1000, min(1000, rate))
         low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
-        largest = math.ldexp(self.largest_rate, -rate)
-        moves = Sensitivities.of(
+        largest = math.ldexp(self.largest_norm, -rate)
+        sensitivities = Sensitivities.of(
             np.ldexp(i, -exponent),
             (low, high),
             np.ldexp(w, -rate),
@@ -339,12 +355,12 @@ class FreeRotation:
             largest,
             math.ldexp(1.0, -rate),
         )
-        return InputUncertainty(self.motion, moves, math.ldexp(1.0, rate), largest)
+        return InputUncertainty(self.motion, sensitivities, math.ldexp(1.0, rate), largest)
 
     def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
         """Return the time after which a relative `uncertainty` of every input leaves nothing known of the phase (s).
 
-        It is where `inherited` comes to state the whole motion, found by bisection to a thousandth and never later.
+        It is where `inherited` becomes infinite, found by bisection to a thousandth and never later.
         None if that does not happen at any time that `sample` answers.
         """
         return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, self.longest_exponent)

@@ -18,7 +18,7 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
-from core.systems.rounding import Digits, covering, notices_of, rounded
+from core.systems.rounding import Digits, covering, notices_of, rounded, unknown_share
 from core.systems.solve import HALF_ULP, solve
 from core.systems.system import Floats
 from core.systems.trajectory import Accuracy, Trajectory
@@ -130,7 +130,7 @@ def sample_rotation(
     notices = [*system.warnings, *solved.warnings]
     wanted = wanted_outputs(outputs, attitude)
     if digits is not None and "angular_velocity" in wanted:
-        states, added = rounded(states, digits, stated.error + (stated.inherited or 0.0), exact.largest_rate)
+        states, added = rounded(states, digits, unknown_share(stated), stated.largest_norm)
         notices += notices_of(stated, added)
     turned = None
     if "attitude" in wanted:

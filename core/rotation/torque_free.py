@@ -237,10 +237,10 @@ class TorqueFree:
 
     @cached_property
     def _exact(self) -> FreeRotation:
-        # Principal moments that were given as such are their own numbers; that spares the tensors of their moves.
+        # Principal moments that were given as such are their own numbers; that spares their tensors.
         described = self.body.mass is not None or not self._diagonal
-        moves = partial(tensor_sensitivities, self.body) if described else None
-        return FreeRotation(self.body.principal_of_motion, self.angular_velocity, moves)
+        sensitivities = partial(tensor_sensitivities, self.body) if described else None
+        return FreeRotation(self.body.principal_of_motion, self.angular_velocity, sensitivities)
 
     def ranges(self, states: Floats) -> Mapping[str, Range]:
         """Return the ranges of energy and |L|, both times a power of two that brings them near one."""

@@ -52,13 +52,15 @@ class PlannedCost(View):
 
 
 class PlannedError(View):
-    """How wrong the answer would be, relative to the largest norm of the motion."""
+    """How wrong the answer would be, relative to the largest norm of the whole motion."""
 
     error: Ratio[float] | Ratio[DecimalString] = Field(
         description="A decimal string for certified questions, then relative to each number."
     )
     how: str = Field(description="closed form: a bound; record of the method: an order of magnitude.")
-    inherited: Ratio[float] | None = Field(description="What the uncertainty of the inputs would move.")
+    inherited: Ratio[float] | None = Field(
+        description="Error propagated from the uncertainty of the inputs; null where nothing is known of the phase."
+    )
 
 
 class PlannedFault(FaultView):

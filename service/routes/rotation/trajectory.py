@@ -25,6 +25,7 @@ from service.schemas import (
     N,
     QuaternionRow,
     Radians,
+    RadiansPerSecond,
     Ratio,
     Request,
     Rounding,
@@ -45,7 +46,7 @@ ATTITUDE: Any = Field(
 )
 TIMES: Any = Field(description="Measured from the given state, of either sign, in any order.")
 ACCURACY: Any = Field(
-    default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the motion."
+    default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the whole motion."
 )
 METHOD: Any = Field(
     default=None, description="Leave it out to have the most accurate one chosen; it overrides the accuracy."
@@ -76,18 +77,29 @@ class TrajectoryRequest(Request):
 
 
 class Accuracy(View):
-    """How right the answer is; errors are relative to the largest norm of the motion."""
+    """How right the answer is."""
 
     requested: Ratio[float] = Field(description="Largest tolerated error.")
-    error: Ratio[float] = Field(description="Largest error of any sample, inputs taken as exact; see how.")
+    error: Ratio[float] = Field(
+        description="Largest norm of any sample's error, inputs taken as exact, divided by largest_norm. Of a scene, "
+        "the largest such quotient of any column. What it rests on is said in how."
+    )
     final_error: Ratio[float] | None = Field(description="The same at the time farthest from the start.")
     how: How = Field(
-        description="Of a closed form a bound, measured against it a difference with that bound added: neither is "
-        "below the true error. A finer run estimates it."
+        description="closed form: a bound. measured against closed form: the difference from it, with its bound added. "
+        "Neither is below the true error. estimate (finer run): four times the difference from a finer run of the same "
+        "method, which is no bound."
     )
     inherited: Ratio[float] | None = Field(
-        description="Error propagated from input uncertainty: what half a unit in the last place of every input, or "
-        "input_uncertainty, would move."
+        description="Error propagated from input uncertainty, half a unit in the last place of every input or "
+        "input_uncertainty: a bound of the change of any sample, divided by largest_norm. null where nothing is known "
+        "of the phase, and for scenes."
+    )
+    largest_norm: RadiansPerSecond[float] | None = Field(
+        default=None,
+        description="Largest magnitude of the angular velocity in the whole motion, also between and beyond the times "
+        "of the question; errors of closed forms and of methods are relative to it. null beyond the range of doubles, "
+        "and for scenes, where every column is relative to its own largest magnitude.",
     )
     horizon: Seconds[float] | None = Field(
         default=None, description="Time after which input_uncertainty leaves nothing known of the phase."

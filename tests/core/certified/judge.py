@@ -129,7 +129,7 @@ def _at_times(
 ) -> Case:
     motion = FreeRotation(PrincipalInertia.of(np.diag(np.array(moments))), np.array(rates))
     try:
-        unit = motion.period or 1.0 / max(motion.motion.p, motion.largest_rate)
+        unit = motion.period or 1.0 / max(motion.motion.p, motion.largest_norm)
     except AccuracyUnreachable:
         unit = 1.0 / max(map(abs, rates))
     times = [0.0, unit * periods, -unit * periods * rng.random(), unit * rng.uniform(-1, 1)]
