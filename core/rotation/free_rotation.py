@@ -26,10 +26,13 @@ from core.rotation.closed_form.circulation import (
 from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
 from core.rotation.closed_form.principal_frame import PrincipalFrame, Resolved
 from core.rotation.closed_form.sampling import largest_magnitude, sample_components, turn_into_body
+from core.rotation.precession.middle_axis import MiddleAxisTilt, middle_axis_tilt
+from core.rotation.stability.classification import unstable_spin
 from core.rotation.uncertainty.input_uncertainty import WHOLE_MOTION, InputUncertainty, lost_after
 from core.rotation.uncertainty.sensitivities import Sensitivities
 from core.systems.system import Floats, Model
 
+NAME = "torque-free rigid body"
 UNIT_ROUNDOFF = 2.0**-53
 
 EVALUATION_ERROR = 6.0 * UNIT_ROUNDOFF
@@ -131,6 +134,21 @@ class FreeRotation:
         i, it = self.resolved.moments, self.resolved.moments_tail
         distinct = (i[0], it[0]) != (i[1], it[1]) and (i[1], it[1]) != (i[2], it[2])
         return 0.5 * self.period if distinct and self.period is not None else None
+
+    @property
+    def middle_axis_tilt(self) -> MiddleAxisTilt | None:
+        """Range of the angle between the middle axis and the angular momentum; None without such an axis, or at rest.
+
+        Whether the middle axis turns over, as it does not about a stable axis though `flip_interval` exists there too.
+        """
+        return middle_axis_tilt(self.resolved, self.inertia.axes)
+
+    @property
+    def instability(self) -> str | None:
+        """Why a steady spin is unstable; None where it is stable, where nothing turns and where the spin changes."""
+        if self.motion.regime != STEADY or not self.inertia.moments[0] > 0.0:
+            return None
+        return _instability(self.resolved)
 
     @property
     def largest_rate(self) -> float:
@@ -263,20 +281,41 @@ class FreeRotation:
         return max(moments) / min(moments), max(rates) / min(rates) if rates else 1.0
 
 
+def steady_model(symmetric: bool, spherical: bool, unstable: str | None) -> Model:
+    """Return the model of a constant angular velocity.
+
+    Parameters
+    ----------
+    symmetric, spherical : bool
+        Whether at least two moments are equal, and whether all are.
+    unstable : str or None
+        Why the spin is unstable, if it is.
+    """
+    if unstable is not None:
+        return Model(NAME, "unstable steady rotation", unstable, 0)
+    if spherical:
+        why = "the three moments are equal, so every axis is principal"
+    else:
+        why = f"the spin lies along {'the axis of symmetry' if symmetric else 'a principal axis'}"
+    return Model(NAME, "steady rotation", f"{why}: nothing accelerates", 0)
+
+
+def _instability(resolved: Resolved) -> str | None:
+    pairs = list(zip(resolved.moments.tolist(), resolved.moments_tail.tolist(), strict=True))
+    distinct = sorted(set(pairs))
+    return unstable_spin([distinct.index(pair) for pair in pairs], resolved.angular_velocity.tolist())
+
+
 def _model(motion: Motion, resolved: Resolved) -> Model:
-    name = "torque-free rigid body"
+    name = NAME
     pairs = list(zip(resolved.moments.tolist(), resolved.moments_tail.tolist(), strict=True))
     equal = [pairs[0] == pairs[1], pairs[1] == pairs[2]]
     if motion.regime == REST:
         return Model(name, "rest", "the angular velocity is zero", 0)
     if motion.regime == STEADY:
-        if all(equal):
-            why = "the three moments are equal, so every axis is principal"
-        elif any(equal):
-            why = "the spin lies along a principal axis or in the plane of two equal moments"
-        else:
-            why = "the spin lies along a principal axis"
-        return Model(name, "steady rotation", f"{why}: nothing accelerates", 0)
+        if resolved.moments[0] == 0.0:
+            return steady_model(False, False, None)
+        return steady_model(any(equal), all(equal), _instability(resolved))
     axis = "largest" if motion.circled == 2 else "smallest"
     if motion.regime == SEPARATRIX:
         return Model(

@@ -17,6 +17,7 @@ from core.compiled import kernel
 from core.notices import Notice
 from core.rotation.discrete_mechanics import moser_veselov
 from core.rotation.free_rotation import FreeRotation
+from core.rotation.stability.classification import unstable_axis
 from core.systems.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 
 PARTS = 3
@@ -280,6 +281,9 @@ class TorqueFree:
     def warnings(self) -> tuple[Notice, ...]:
         """What an answer about this motion has to say beside its figures; paths lead from the question."""
         notices = list(inherited_notices(self.body))
+        instability = self._exact.instability
+        if instability is not None:
+            notices.append(unstable_axis(instability))
         for name, value in (("energy", self.energy), ("angular_momentum", self.angular_momentum)):
             if value is None:
                 notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))

@@ -40,9 +40,12 @@ from service.routes.rotation.precession import DISTURBANCE, RATE
 from service.routes.rotation.trajectory import (
     ANGULAR_VELOCITY,
     ATTITUDE,
+    FLIP_INTERVAL,
+    MIDDLE_AXIS_TILT,
     OUTPUTS,
     T_HANDLE,
     TIMES,
+    TUMBLES,
     ModelView,
     Output,
     WorkView,
@@ -73,7 +76,9 @@ class TrajectoryAnswerInDigits(Envelope):
     model: ModelView
     method: Literal["closed-form"]
     period: str | None = Field(description="Of the angular velocity in the body (s); null where there is none.")
-    flip_interval: str | None = Field(description="Between sign changes along the middle axis (s).")
+    flip_interval: str | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[str, str] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     energy: str = Field(description="J")
     angular_momentum: str = Field(description="Magnitude (kg m^2/s).")
     accuracy: AccuracyInDigits
@@ -103,7 +108,9 @@ class PrecessionAnswerInDigits(Envelope):
     body_rate: str | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
     space_rate: str | None = Field(description="L/I (rad/s).")
     period: str | None = Field(description="Of the angular velocity in the body (s).")
-    flip_interval: str | None = Field(description="Between sign changes along the middle axis (s).")
+    flip_interval: str | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[str, str] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     axis_to_angular_momentum: str | None = Field(description="rad")
     axis_to_angular_velocity: str | None = Field(description="Half-angle of the body cone (rad).")
     angular_momentum_to_angular_velocity: str | None = Field(description="Half-angle of the space cone (rad).")
@@ -169,12 +176,14 @@ def answer_trajectory(question: TrajectoryInDigits, budget: Budget) -> Answer:
         "method": "closed-form",
         "period": motion.period(digits),
         "flip_interval": motion.flip_interval(digits),
+        "middle_axis_tilt": motion.middle_axis_tilt(digits),
+        "tumbles": motion.tumbles,
         "energy": motion.energy(digits),
         "angular_momentum": motion.angular_momentum(digits),
         "accuracy": accuracy(digits),
         "work": Work(samples),
         "ended": "horizon",
-        "warnings": notices(body),
+        "warnings": [*notices(body), *motion.warnings],
     }
     if "time" in wanted:
         fields["time"] = times_written(times, digits)
@@ -192,7 +201,7 @@ def answer_precession(question: PrecessionInDigits, budget: Budget) -> Answer:
     body = body_of(question.body)
     motion = CertifiedRotation.of(body.of_motion, question.angular_velocity)
     found = fields_of(certified_precession(motion, question.digits))
-    return found | {"accuracy": accuracy(question.digits), "warnings": notices(body)}
+    return found | {"accuracy": accuracy(question.digits), "warnings": [*notices(body), *motion.warnings]}
 
 
 def answer_stability(question: StabilityInDigits, budget: Budget) -> Answer:

@@ -17,7 +17,7 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, T_HANDLE, TUMBLES
 from service.routing import Answer, Example, PostRoute
 from service.schemas import Envelope, Request, Span, Vector, View
 
@@ -41,7 +41,9 @@ class PrecessionAnswer(Envelope):
     body_rate: float | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
     space_rate: float | None = Field(description="L/I (rad/s).")
     period: float | None = Field(description="Of the angular velocity in the body (s).")
-    flip_interval: float | None = Field(description="Between sign changes along the middle axis (s).")
+    flip_interval: float | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[float, float] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     axis_to_angular_momentum: float | None = Field(description="rad")
     axis_to_angular_velocity: float | None = Field(description="Half-angle of the body cone (rad).")
     angular_momentum_to_angular_velocity: float | None = Field(description="Half-angle of the space cone (rad).")
@@ -56,7 +58,7 @@ RATE: Any = Field(default=1.0, description="About each principal axis in turn (r
 DISTURBANCE: Any = Field(
     default=None,
     description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
-    "the interval of its flips is then answered (rad/s).",
+    "the interval between sign changes of the component along that axis is then answered (rad/s).",
 )
 
 

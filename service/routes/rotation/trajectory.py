@@ -35,6 +35,18 @@ ATTITUDE: Any = Field(
     "every time is answered.",
 )
 TIMES: Any = Field(description="Measured from the given state, of either sign, in any order (s).")
+FLIP_INTERVAL: Any = Field(
+    description="Between sign changes of the component along the middle axis (s). About a stable axis there are such "
+    "changes too, though the body does not turn over: see tumbles."
+)
+MIDDLE_AXIS_TILT: Any = Field(
+    description="Least and largest angle between the middle axis and the angular momentum in the whole motion (rad); "
+    "null at rest and where two moments are equal. On the separatrix the limits 0 and pi."
+)
+TUMBLES: Any = Field(
+    description="Whether the middle axis turns over, from within 45 degrees of the angular momentum to within 45 "
+    "degrees of its opposite: every flip_interval, on the separatrix once."
+)
 OUTPUTS: Any = Field(
     default=None,
     min_length=1,
@@ -115,7 +127,9 @@ class TrajectoryAnswer(Envelope):
     model: ModelView
     method: str
     period: float | None = Field(description="Of the angular velocity in the body (s); null where there is none.")
-    flip_interval: float | None = Field(description="Between sign changes along the middle axis (s).")
+    flip_interval: float | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[float, float] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     energy: float | None = Field(description="J")
     angular_momentum: float | None = Field(description="Magnitude (kg m^2/s).")
     accuracy: AccuracyView
@@ -151,11 +165,16 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     accuracy = covering(stated, added)
     if "input_uncertainty" in question.model_fields_set:
         accuracy["horizon"] = exact.horizon_of(question.input_uncertainty)
+    tilt = exact.middle_axis_tilt
     fields: Answer = {
         "model": solved.model,
         "method": solved.method,
         "period": in_range("period", solved.period, notices),
         "flip_interval": in_range("flip_interval", exact.flip_interval, notices),
+        "middle_axis_tilt": None
+        if tilt is None or in_range("middle_axis_tilt", tilt.least, notices) is None
+        else tilt.range,
+        "tumbles": tilt is not None and tilt.tumbles,
         "energy": system.energy,
         "angular_momentum": system.angular_momentum,
         "accuracy": accuracy,
