@@ -82,6 +82,8 @@ class ProblemDocument(BaseModel):
     status: int
     detail: str
     code: str = Field(description="Stable; GET /v1/errors lists them all.")
+    instance: str | None = Field(default=None, description="This occurrence: a URN that ends in the request's id.")
+    request_id: str | None = Field(default=None, description="The same id as in the X-Request-ID header.")
     errors: list[ProblemFault] | None = None
 
 

@@ -75,7 +75,9 @@ class FreeRotation:
     def __post_init__(self) -> None:
         if self.inertia.moments[0] > 0.0:
             return
-        across = self.inertia.moments[1] > 0.0 and self.resolved.angular_velocity[0] == 0.0
+        (_, b, c), (x, y, z) = self.resolved.moments, self.resolved.angular_velocity
+        # Across the line, and steadily: matter along a line has two equal moments, a triple of numbers need not.
+        across = b > 0.0 and x == 0.0 and (b == c or y == 0.0 or z == 0.0)
         if np.any(self.angular_velocity) and not across:
             raise InvalidParameter(
                 "body",

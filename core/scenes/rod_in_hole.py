@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from core.balls import precision
 from core.errors import InvalidParameter
-from core.quantities import Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, check
+from core.quantities import RADIANS, Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, check
 from core.scenes.answer import ConstrainedSystem, Motion
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
 from core.scenes.pendulum import Pendulum
@@ -85,7 +85,7 @@ class RodInHole(ConstrainedSystem):
                     raise InvalidParameter(
                         "angle",
                         f"lie within {float(rim):.17g} rad of the vertical, where an end reaches the rim",
-                        remedy="or let the hole be a whole cylinder",
+                        remedy=f"let the hole be a whole cylinder; {RADIANS}",
                     )
 
     def figures(self) -> Mapping[str, Callable[[], Any]]:

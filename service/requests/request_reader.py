@@ -9,14 +9,15 @@ import gc
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from typing import Any, Generic, TypeVar, get_args
 
+import orjson
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
 from core.rows import Rows
-from service.problems import Fault, Refusal
+from service.problems import Fault, Refusal, headline
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 from service.requests.error_messages import Layout
 from service.requests.large_arrays import LEAST_BYTES, ExtractedArrays, extract_arrays, placeholder_schema
@@ -132,7 +133,7 @@ class Reader(Generic[Q]):
         try:
             return self._validated(body)
         except ValidationError as error:
-            raise self._refusal(error) from None
+            raise self._refusal(error, body) from None
 
     def _read(self, body: bytes) -> Q:
         return self._told(body, *extract_arrays(body, self._arrays))
@@ -156,7 +157,7 @@ class Reader(Generic[Q]):
             except ValidationError as error:
                 # Faults of what is not JSON, or of an array where none is meant, are told of the document as it was.
                 if taken.complete and error.errors(include_url=False, include_input=False)[0]["type"] != "json_invalid":
-                    raise self._refusal(error) from None
+                    raise self._refusal(error, rest) from None
         return self._plain(body)
 
     def _validated(self, document: bytes, taken: ExtractedArrays | None = None) -> Q:
@@ -165,7 +166,7 @@ class Reader(Generic[Q]):
         require_distinct_keys(document)
         return question
 
-    def _refusal(self, error: ValidationError) -> Refusal:
+    def _refusal(self, error: ValidationError, document: bytes) -> Refusal:
         found = error.errors(include_url=False, include_input=False)
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
@@ -176,11 +177,18 @@ class Reader(Generic[Q]):
             for fault in found
         ):
             raise _Absent
-        found_faults, codes = self._layout.faults(found)
+        found_faults, codes = self._layout.faults(found, cache(partial(_parsed, document)))
         faults = [self._advised(fault) for fault in found_faults]
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"
-        more = f", and {len(faults) - 1} more" if len(faults) > 1 else ""
-        return Refusal(code, f"{faults[0].sentence}{more}", faults=faults)
+        return Refusal(code, headline(faults), faults=faults)
+
+
+def _parsed(document: bytes) -> Any:
+    """Return what a document holds, None where this parser takes numbers more strictly than the validator's."""
+    try:
+        return orjson.loads(document)
+    except ValueError:
+        return None
 
 
 @contextmanager
@@ -202,6 +210,8 @@ def _failing_fast(schema: Any) -> Any:
     """
     if isinstance(schema, Mapping):
         walked = {key: _failing_fast(value) for key, value in schema.items() if key != "metadata"}
+        if "unit" in schema.get("metadata", {}):
+            walked["metadata"] = {"unit": schema["metadata"]["unit"]}
         free = schema.get("type") == "tuple" and "variadic_item_index" in schema
         return walked | {"fail_fast": True} if free or schema.get("type") == "list" else walked
     if isinstance(schema, (list, tuple)):

@@ -188,7 +188,7 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
         code, reason = _LOST[OUT_OF_RANGE]
         absent["middle_axis_tilt"] = reason
         warnings += (Notice(code, f"middle_axis_tilt {reason} and is null"),)
-    if told.regime == "steady" and symmetry != "linear":
+    if told.regime == "steady" and inertia.moments[0] > 0.0:
         why = unstable_spin(_RANKS[symmetry], resolved.angular_velocity.tolist())
         warnings += () if why is None else (unstable_axis(why),)
     if OUT_OF_RANGE in figures or UNRESOLVED in figures:

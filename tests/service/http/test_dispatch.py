@@ -170,6 +170,16 @@ async def test_media_type_may_have_parameters(client: httpx.AsyncClient) -> None
     assert (await client.post("/v1/toy", content=json.dumps(GOOD), headers=headers)).status_code == 200
 
 
+async def test_an_unknown_path_is_answered_with_the_nearest_one(client: httpx.AsyncClient) -> None:
+    response = await client.post("/v1/toys", json=GOOD, headers={"x-request-id": "mine"})
+    document = response.json()
+    assert document["detail"] == (
+        "there is nothing at this path; did you mean /v1/toy? GET /openapi.json lists every path"
+    )
+    assert document["instance"] == "urn:polhode:request:mine"
+    assert document["request_id"] == response.headers["x-request-id"] == "mine"
+
+
 async def test_unknown_paths_and_methods(client: httpx.AsyncClient) -> None:
     for path in ("/v1", "/v1/toy/", "/V1/TOY", "/v1//toy", "/..%2f..%2fetc/passwd", "/page/", "/page/../settings.py"):
         response = await client.post(path, json=GOOD)
@@ -324,7 +334,7 @@ class TestBothWays:
         told = []
         for app in (service, service.documented):
             async with client_of(app) as client:
-                response = await client.request(method, path, content=body, headers=headers)
+                response = await client.request(method, path, content=body, headers=headers | {"x-request-id": "same"})
             kept = {k: v for k, v in response.headers.items() if k not in ("x-request-id", "server-timing")}
             told.append((response.status_code, kept, response.content))
         assert told[0] == told[1]
