@@ -10,14 +10,18 @@ from __future__ import annotations
 
 import hashlib
 import os
+import pickle
 import re
+import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 from llvmlite import ir
 from numba import types
+from numba.core import caching, serialize
 from numba.extending import intrinsic
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -52,14 +56,72 @@ def _keep_by_content() -> None:
 _keep_by_content()
 
 
+class CacheUnusable(RuntimeWarning):
+    """Compiled code could not be kept, or what was kept is damaged; it is compiled again and everything works."""
+
+
+# The compiler's packages carry no types.
+_CodeCache: Any = caching.CompileResultCacheImpl
+_FunctionCache: Any = caching.FunctionCache
+_dumps: Any = serialize.dumps
+
+
+class _CheckedCode(_CodeCache):  # type: ignore[misc]
+    """Compiled code with a digest of its bytes, because a damaged machine code might run and compute something else."""
+
+    def reduce(self, cres: Any) -> tuple[bytes, bytes]:
+        code: bytes = _dumps(super().reduce(cres))
+        return hashlib.sha256(code).digest(), code
+
+    def rebuild(self, target_context: Any, payload: tuple[bytes, bytes]) -> Any:
+        digest, code = payload
+        if hashlib.sha256(code).digest() != digest:
+            raise ValueError("does not have the bytes that were written")
+        return super().rebuild(target_context, pickle.loads(code))
+
+
+class _CheckedCache(_FunctionCache):  # type: ignore[misc]
+    """The compiler's cache of one function, of which no fault is more than the loss of what was kept."""
+
+    _impl_class = _CheckedCode
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(sig, target_context)
+        # Whatever a damaged file makes of its reading.
+        except Exception as fault:
+            self._unusable(fault)
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super().save_overload(sig, data)
+        except Exception as fault:
+            self._unusable(fault)
+
+    def _unusable(self, fault: Exception) -> None:
+        # One place in the code, so that a thousand faults are one warning.
+        warnings.warn(f"compiled code in {self.cache_path} is not used: {fault!r}", CacheUnusable, stacklevel=1)
+        with suppress(Exception):
+            self.flush()
+
+
 def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
     """Compile a function to machine code, on import for given signatures, otherwise at the first call."""
 
     def compile_it(function: F) -> F:
         compiler: Any = numba.njit
-        chosen = {"cache": True, "error_model": "numpy", **options}
-        listed = [list(signatures)] if signatures else []
-        return cast(F, compiler(*listed, **chosen)(function))
+        dispatcher: Any = compiler(**{"error_model": "numpy", **options})(function)
+        try:
+            dispatcher._cache = _CheckedCache(function)
+        except RuntimeError as fault:
+            # No directory can be written: neither this one nor one of the user's.
+            warnings.warn(f"compiled code cannot be kept: {fault}", CacheUnusable, stacklevel=1)
+        if signatures:
+            for signature in signatures:
+                dispatcher.compile(signature)
+            dispatcher.disable_compile()
+        return cast(F, dispatcher)
 
     return compile_it
 

@@ -2,7 +2,7 @@
 
 The annotations are read by three parties. `check` enforces them wherever an object is built; the service's
 validator and its OpenAPI document read the same marks through the two hooks below, which return plain
-dictionaries, so that nothing is imported here for their sake.
+dictionaries, so that nothing is imported here for their sake. What is computed has a unit alone (`Unit`).
 """
 
 from __future__ import annotations
@@ -88,6 +88,32 @@ class Quantity:
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         kind = "integer" if schema["type"] == "int" else "number"
         return {"type": kind, **self.limits, "x-unit": self.unit}
+
+
+@dataclass(frozen=True)
+class Unit:
+    """The unit of every number in a computed figure; nothing is checked.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit, ``"1"`` for a pure number.
+    """
+
+    unit: str
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        described: dict[str, Any] = self._on_numbers(handler(schema))
+        return described
+
+    def _on_numbers(self, schema: Any) -> Any:
+        if isinstance(schema, list):
+            return [self._on_numbers(entry) for entry in schema]
+        if not isinstance(schema, Mapping):
+            return schema
+        if schema.get("type") in ("number", "string"):
+            return {**schema, "x-unit": self.unit}
+        return {key: self._on_numbers(entry) for key, entry in schema.items()}
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from core.errors import InvalidParameter, Path
 from core.quantities import Quantity
+from core.work import spend
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ class Rows:
             raise InvalidParameter(path, "be a list")
         if not self.at_least <= len(rows) <= self.at_most:
             raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(rows)}")
+        spend(len(rows))
         # Types and lengths are gathered as sets, which takes no Python code per row.
         if self.width and not (set(map(type, rows)) <= {list, tuple} and set(map(len, rows)) <= {self.width}):
             i = next(i for i, row in enumerate(rows) if type(row) not in (list, tuple) or len(row) != self.width)

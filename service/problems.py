@@ -65,15 +65,27 @@ REGISTRY: Mapping[str, ProblemType] = {
             "An object names a key twice",
             "Which of the two values is meant cannot be known, so neither is taken.",
         ),
+        ProblemType(
+            "invalid-archive",
+            400,
+            "The body cannot be read as a numpy archive",
+            "Send arrays of plain numbers and metadata.json, as numpy.savez packs them.",
+        ),
         ProblemType("unauthorized", 401, "A key is needed", "Send Authorization: Bearer with a key of this service."),
         ProblemType("not-found", 404, "There is nothing here", "GET /openapi.json lists every path."),
         ProblemType(
             "method-not-allowed", 405, "This path does not answer this method", "The Allow header lists the methods."
         ),
         ProblemType("not-acceptable", 406, "No representation fits the Accept header", "Accept application/json."),
+        ProblemType(
+            "body-too-slow", 408, "The body did not arrive in time", "The limit is named; send the body without pauses."
+        ),
         ProblemType("body-too-large", 413, "The body is too large", "The limit is named; send less or split it."),
         ProblemType(
-            "unsupported-media-type", 415, "The body has another media type", "Send Content-Type: application/json."
+            "unsupported-media-type",
+            415,
+            "The body has another media type",
+            "Send Content-Type: application/json, or application/x-npz.",
         ),
         ProblemType(
             "invalid-parameter",
@@ -126,6 +138,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             500,
             "The service failed",
             "Not the question's fault. Report the id, under which the failure is logged.",
+        ),
+        ProblemType(
+            "unsupported-transfer-coding",
+            501,
+            "The body has a transfer coding that is not understood",
+            "Send the body with its Content-Length, or chunked.",
         ),
         ProblemType(
             "worker-lost",

@@ -39,6 +39,11 @@ def free(question: Any, budget: Budget) -> float:
     return 0.0
 
 
+def never(question: Any) -> bool:
+    """Say that no question of a route is small."""
+    return False
+
+
 @dataclass(frozen=True)
 class PostRoute:
     """POST: a question to the mechanics.
@@ -53,6 +58,8 @@ class PostRoute:
         From question and budget to the fields of the answer; warnings under ``"warnings"``.
     price : callable
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
+    small : callable
+        Whether a question may be begun in the event loop, by counts that it states; decided without computing anything.
     planning_probe : callable or None
         From a question to one that costs little and has the same model, warnings and refusals, by which it is planned;
         None if the question is that itself.
@@ -60,6 +67,8 @@ class PostRoute:
         By a short name.
     representations : mapping
         By media type, how an answer is written other than as JSON.
+    elsewhere : mapping
+        Fields that belong to another route, each with the remedy for who sends it here.
     """
 
     path: str
@@ -70,10 +79,12 @@ class PostRoute:
     answer: Any
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
+    small: Callable[[Any], bool] = never
     planning_probe: Callable[[Any], Any] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     method: str = "POST"
 
 
@@ -87,6 +98,8 @@ class GetRoute:
         Returns what is sent now.
     answer : type or None
         Pydantic model that documents a JSON page.
+    example : callable or None
+        Returns an example of a JSON page.
     """
 
     path: str
@@ -97,6 +110,7 @@ class GetRoute:
     answer: type[BaseModel] | None = None
     media_type: str = "application/json"
     description: str = ""
+    example: Callable[[], Mapping[str, Any]] | None = None
     method: str = "GET"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, DirectoryPath, Field, FilePath
+from pydantic import BeforeValidator, Field, FilePath
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 LONGEST = 1_000_000
@@ -27,8 +27,19 @@ class Settings(BaseSettings):
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
     workers: int = Field(default=1, ge=1, le=256, description="Number of server processes that share the port.")
 
+    http_parser: Literal["zttp", "httptools", "h11"] = Field(
+        default="zttp",
+        description="HTTP parser of uvicorn; zttp and h11 bound the memory of a connection, h11 is the slowest.",
+    )
+    keep_alive_seconds: int = Field(
+        default=75, ge=1, le=LONGEST, description="Time after which a connection without a request is closed."
+    )
+
     max_body_bytes: int = Field(
         default=8_000_000, ge=1, description="Largest request body; a longer one is refused unread (413)."
+    )
+    body_seconds: float = Field(
+        default=30.0, gt=0, le=LONGEST, description="Time in which a request body must have arrived (408)."
     )
     max_nesting: int = Field(
         default=32, ge=1, le=200, description="Deepest nesting of arrays and objects in a request body (400)."
@@ -37,9 +48,10 @@ class Settings(BaseSettings):
         default=4000, ge=1, description="Largest number of keys in all objects of a request body (400)."
     )
     max_arrays: int = Field(
-        default=50_000,
+        default=110_000,
         ge=1,
-        description="Largest number of arrays and objects in a request body (400), points and faces not counted.",
+        description="Largest number of arrays and objects, rows included, in a request body (400); larger arrays come "
+        "as numpy archives.",
     )
     max_strings: int = Field(
         default=100_000,
@@ -59,11 +71,14 @@ class Settings(BaseSettings):
         le=256,
         description="Processes that compute large questions, per server process; 0 takes one per core.",
     )
-    inline_seconds: float = Field(
-        default=0.003, ge=0, description="Questions predicted to take less are answered in the server process itself."
+    inline_work: int = Field(
+        default=2000,
+        ge=0,
+        description="Work that a request may do in the server process, in units of at most 10 microseconds; one that "
+        "needs more is given to a compute process.",
     )
     inline_bytes: int = Field(
-        default=65_536, ge=0, description="Request bodies longer than this are parsed in a compute process."
+        default=16_384, ge=0, description="Request bodies longer than this are read in another process."
     )
     deadline_seconds: float = Field(
         default=30.0, gt=0, le=LONGEST, description="Longest computation; a longer one is killed (503)."
@@ -77,8 +92,8 @@ class Settings(BaseSettings):
     max_held_bytes: int = Field(
         default=512_000_000,
         ge=1,
-        description="Memory of large answers that are being read by their clients above which new large questions are "
-        "refused (429).",
+        description="Memory of bodies that are arriving, of requests that are being answered and of answers that are "
+        "being read by their clients above which new large requests are refused (429).",
     )
     stalled_seconds: float = Field(
         default=20.0,
@@ -86,14 +101,10 @@ class Settings(BaseSettings):
         le=LONGEST,
         description="Time in which a client must take some of its answer; otherwise it is let go.",
     )
-    scratch: Annotated[DirectoryPath, BeforeValidator(_named)] | None = Field(
-        default=None, description="Directory for large results on their way between processes; default: shared memory."
-    )
     cached_answers: int = Field(
-        default=1024, ge=0, description="Number of small answers that are kept for questions asked again; 0 keeps none."
-    )
-    cached_bytes: int = Field(
-        default=8_000_000, ge=0, description="Memory that kept answers may take; those unused for longest go first."
+        default=1024,
+        ge=0,
+        description="Number of answers of at most 8 kB that are cached, with their questions; 0 caches none.",
     )
 
     keys_file: Annotated[FilePath, BeforeValidator(_named)] | None = Field(

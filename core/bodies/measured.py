@@ -1,4 +1,4 @@
-"""Bodies known by what was measured of them: principal moments, a tensor of inertia, or where their points are."""
+"""Bodies given by measured data: principal moments, an inertia tensor, or point masses."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.bodies.exact import SMALLEST, exact_matrix, exact_vector, tensor_pairs
 from core.bodies.mass_properties import About, MassProperties, diagonal
-from core.bodies.principal_inertia import EPSILON
+from core.bodies.principal_inertia import EPSILON, summed
 from core.bodies.recentred import Recentred
 from core.bodies.validity import TOLERANCE
 from core.errors import InvalidParameter, UnphysicalInertia
@@ -19,32 +20,37 @@ from core.notices import Notice
 from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Quantity, check
 from core.rows import Rows
 
+Floats = NDArray[np.float64]
+
 POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))
 
 MASS_RANGE = 900
-"""Most binary orders of magnitude between the heaviest and the lightest point: no product of theirs is lost to zero."""
+"""Largest binary exponent of the ratio of two masses: their products do not underflow."""
+
+SUMMED_EXACTLY = 24
+"""Largest number of points whose moments are formed in rational arithmetic."""
 
 THIN_ROD = "a thin rod has [0, m l^2/12, m l^2/12]; a body without extent does not turn"
 
 KEPT = 32
-"""Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
+"""Number of bodies given by principal moments whose mass properties are cached."""
 
 InertiaRow = tuple[InertiaComponent, InertiaComponent, InertiaComponent]
 
 SYMMETRIC = 8.0 * EPSILON
-"""How much two components of a symmetric tensor may differ, as a share of its largest: what rounding explains."""
+"""Largest difference of two symmetric components that is attributed to rounding, relative to the largest component."""
 
 
 @dataclass(frozen=True)
 class PrincipalMoments:
-    """A body known by its principal moments of inertia; its body axes are the principal axes, in the order given.
+    """A body given by its principal moments of inertia; its body axes are the principal axes, in the order given.
 
     Attributes
     ----------
     moments : tuple of 3 floats
-        At least 0, at most one of them 0: that of a thin rod about itself (kg m^2). Moments that no matter can have are
-        answered with a warning.
+        At least 0, at most one of them 0, which is that of a thin rod about itself (kg m^2). Physically impossible
+        moments are answered with a warning.
     """
 
     moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
@@ -56,7 +62,7 @@ class PrincipalMoments:
             raise InvalidParameter("moments", "have at most one moment of 0 kg m^2", remedy=THIN_ROD)
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
+        """Return the mass properties; mass and centre of mass are unknown."""
         a, b, c = self.moments
         # A negative zero is none.
         return _of_moments(float(a) + 0.0, float(b) + 0.0, float(c) + 0.0)
@@ -64,14 +70,14 @@ class PrincipalMoments:
 
 @lru_cache(KEPT)
 def _of_moments(a: float, b: float, c: float) -> MassProperties:
-    """Return the mass properties for principal moments, which are kept: a body is asked about again and again."""
-    # Doubles without a negative zero, so that those which compare equal are the same.
+    """Return the mass properties for principal moments; cached, because requests often repeat a body."""
+    # The cache keys are doubles without a negative zero, so equal keys are identical numbers.
     return diagonal((a, b, c)).judged("moments")
 
 
 @dataclass(frozen=True)
 class InertiaTensor:
-    """A body known by its tensor of inertia about its centre of mass, in body axes.
+    """A body given by its inertia tensor about its centre of mass, in body axes.
 
     Attributes
     ----------
@@ -94,7 +100,7 @@ class InertiaTensor:
         if size < SMALLEST:
             raise InvalidParameter("tensor", f"have a component of at least {SMALLEST:.3g} kg m^2")
         for i, j in ((0, 1), (0, 2), (1, 2)):
-            # Halved, as the difference of two doubles may exceed their range.
+            # Halved, because the difference of two doubles may overflow.
             if abs(self.tensor[i][j] / 2 - self.tensor[j][i] / 2) > SYMMETRIC * size / 2:
                 raise InvalidParameter(
                     ("tensor", j, i),
@@ -103,7 +109,7 @@ class InertiaTensor:
                 )
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body.
+        """Return the mass properties.
 
         Components on opposite sides of the diagonal that differ by rounding are replaced by their exact mean, with a
         warning.
@@ -130,7 +136,7 @@ class InertiaTensor:
                 remedy="check the signs of the off-diagonal components: I_xy = -(integral of x y dm)",
             )
         if lowest < 0.0:
-            # A difference of components of a needle's tensor: its sign is that of their rounding.
+            # For a needle this is a difference of components, whose sign depends on their rounding.
             notice = Notice(
                 "moment-below-rounding",
                 f"the smallest principal moment, {lowest:.6g} kg m^2, is zero to within the rounding of the components",
@@ -158,7 +164,7 @@ class PointMasses:
     masses : float or sequence of n floats
         One mass for all, or one for each (kg).
     positions : array_like, shape (n, 3)
-        In body axes (m); kept as an array that cannot be written.
+        In body axes (m).
     about : {"center-of-mass", "origin"}
         The point about which the body turns. A free body turns about its centre of mass; "origin" is a body
         pinned there.
@@ -185,16 +191,23 @@ class PointMasses:
             raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body, sums formed in double-double."""
-        # Compiled code is fetched only for the bodies that need it.
-        from core.bodies.point_sums import first_moments, second_moments
+        """Return the mass properties, for few points in rational arithmetic, for more in double-double.
 
+        In rational arithmetic, products of inertia that cancel are exactly zero, and the axes of a symmetric set of
+        points are exact.
+        """
         masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
-        # Powers of two keep products within range and round nothing.
+        # Scaling by powers of two is exact, and products stay within range.
         heavy = int(np.frexp(masses.max())[1])
         m = np.ldexp(masses, -heavy)
         if float(m.min()) < 2.0**-MASS_RANGE:
             raise InvalidParameter("masses", f"not differ by more than a factor of 2^{MASS_RANGE}")
+        if len(m) <= SUMMED_EXACTLY:
+            properties = MassProperties.from_exact(*_exact_properties(masses, self.positions))
+            return replace(properties, about=self.about, described_by=self)
+        # Compiled code is imported only for the bodies that need it.
+        from core.bodies.point_sums import first_moments, second_moments
+
         local = Recentred.on(self.positions)
         first, second = np.zeros((2, 4)), np.zeros((2, 3, 3))
         first_moments(m, local.high, local.low, first)
@@ -209,5 +222,23 @@ class PointMasses:
         trace = products[0][0] + products[1][1] + products[2][2]
         inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
         return replace(
-            MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about, described_by=self
+            MassProperties.from_exact(kilograms * mass, center, inertia, rounding=summed(len(m))),
+            about=self.about,
+            described_by=self,
         )
+
+
+def _exact_properties(masses: Floats, positions: Floats) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
+    """Return mass, centre of mass and tensor of inertia about it, of few points, shapes (n,) and (n, 3)."""
+    m = [Fraction(x) for x in masses.tolist()]
+    columns = [[Fraction(x) for x in column] for column in positions.T.tolist()]
+    mass = sum(m, Fraction(0))
+    center = [sum((a * x for a, x in zip(m, column, strict=True)), Fraction(0)) / mass for column in columns]
+    d = [[x - c for x in column] for column, c in zip(columns, center, strict=True)]
+    products = [[Fraction(0)] * 3 for _ in range(3)]
+    for i in range(3):
+        weighted = [a * x for a, x in zip(m, d[i], strict=True)]
+        for j in range(i, 3):
+            products[i][j] = products[j][i] = sum((a * x for a, x in zip(weighted, d[j], strict=True)), Fraction(0))
+    trace = products[0][0] + products[1][1] + products[2][2]
+    return mass, center, [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]

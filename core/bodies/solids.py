@@ -1,6 +1,6 @@
-"""Uniform solids and shells in their usual places: symmetric about z, centred on the origin unless said otherwise.
+"""Uniform solids and shells in standard position: symmetric about z, centred on the origin unless stated otherwise.
 
-Formulas: derived in docs/physics/bodies.md; most stand in F. P. Beer, E. R. Johnston, "Vector Mechanics for Engineers:
+Formulas: derived in docs/physics/bodies.md; most are in F. P. Beer, E. R. Johnston, "Vector Mechanics for Engineers:
 Dynamics", appendix B ("Mass moments of inertia of homogeneous bodies").
 """
 
@@ -67,7 +67,7 @@ class Rod(Uniform):
     length : float
         (m).
     radius : float
-        0, the default, is the infinitely thin rod: no moment about its own axis, and given by its mass (m).
+        0, the default, is an infinitely thin rod: it has no moment about its own axis and needs a mass (m).
     """
 
     length: Length
@@ -88,7 +88,7 @@ class Disc(Uniform):
     radius : float
         (m).
     thickness : float
-        0, the default, is the infinitely thin disc, given by its mass (m).
+        0, the default, is an infinitely thin disc, which needs a mass (m).
     """
 
     radius: Length
@@ -138,7 +138,7 @@ class SphericalShell(Uniform):
     kind: Literal["spherical-shell"] = "spherical-shell"
 
     def validate(self) -> None:
-        """Refuse an inner radius larger than the outer."""
+        """Raise for an inner radius larger than the outer one."""
         _nested(self.inner_radius, self.outer_radius)
 
     def shape(self) -> Shape:
@@ -159,7 +159,7 @@ class CylindricalShell(Uniform):
     kind: Literal["cylindrical-shell"] = "cylindrical-shell"
 
     def validate(self) -> None:
-        """Refuse an inner radius larger than the outer."""
+        """Raise for an inner radius larger than the outer one."""
         _nested(self.inner_radius, self.outer_radius)
 
     def shape(self) -> Shape:
@@ -186,7 +186,7 @@ class Torus(Uniform):
     kind: Literal["torus"] = "torus"
 
     def validate(self) -> None:
-        """Refuse a ring that overlaps itself."""
+        """Raise for a ring that overlaps itself."""
         if self.tube_radius > self.ring_radius:
             raise InvalidParameter("tube_radius", "not exceed ring_radius: the ring would overlap itself")
 
@@ -206,7 +206,7 @@ class Capsule(Uniform):
     radius : float
         Of the cylinder and of the half-balls (m).
     length : float
-        Of the cylinder alone; the whole measures length + 2 radius (m).
+        Of the cylinder alone; the total length is length + 2 radius (m).
     """
 
     radius: Length

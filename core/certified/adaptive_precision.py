@@ -11,6 +11,7 @@ from flint import ctx
 from core.balls import precision
 from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS, Undetermined
 from core.errors import BudgetExceeded, InvalidParameter
+from core.work import spend
 
 MOST_BITS = 2**16
 """Working precision that one question may need: twenty times that of a thousand digits."""
@@ -64,6 +65,7 @@ def until_determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
         If more than 2^16 bits would be needed.
     """
     while bits <= MOST_BITS:
+        spend(bits)
         with precision(bits):
             try:
                 return evaluate()
@@ -83,6 +85,7 @@ def each_determined(evaluators: Callable[[], Callable[[int], Answer]], count: in
     answers: list[Answer | None] = [None] * count
     waiting: Sequence[int] = range(count)
     while bits <= MOST_BITS:
+        spend(bits + len(waiting) * bits / 16)
         with precision(bits):
             try:
                 evaluate, doubtful = evaluators(), []

@@ -216,9 +216,11 @@ class _Symmetric:
         return self.along_squared != 0 and self.across_squared != 0
 
     def body_rate(self, digits: int) -> str | None:
-        """(I3 - I)/I w3: rational where w3 is."""
-        if not self.inclined:
+        """(I3 - I)/I w3: rational where w3 is; none for a spin along the axis, which does not go round it."""
+        if self.across_squared == 0:
             return None
+        if self.along_squared == 0:
+            return "0"
         factor = (self.single - self.equal) / self.equal * self.direction
         root = _rational_root(self.along_squared)
         if root is not None:

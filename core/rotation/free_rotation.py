@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from core.bodies.mass_properties import PrincipalInertia
+from core.bodies.principal_inertia import RESOLUTION, PrincipalInertia
 from core.double_double import Scaled, dd_div
 from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
@@ -20,7 +20,9 @@ from core.rotation.closed_form.circulation import (
     STEADY,
     UNDECIDED,
     UNREACHABLE,
+    circulation,
     exact_difference,
+    like_symmetric,
     too_near_the_separatrix,
 )
 from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
@@ -49,8 +51,13 @@ TURNED_AXES_ERROR = 3.0 * UNIT_ROUNDOFF
 SET_UP_ROUNDING = 2.0**-103
 """Relative rounding of the constants of motion formed from exact inputs."""
 
-DERIVED_ROUNDING = 2.0**-100
-"""Error of moments and components that were themselves derived, relative to the largest moment and component."""
+UNDERFLOW = 2.0**-1070
+"""What samples, and the tails of moments and components, lose in all where they are below the normal doubles."""
+
+_BASIS = np.zeros((6, 3, 3))
+for _n, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+    _BASIS[_n, _i, _j] = _BASIS[_n, _j, _i] = 1.0
+_BASIS.setflags(write=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +120,10 @@ class FreeRotation:
         return motion
 
     @property
-    def exact_inputs(self) -> bool:
-        """Whether moments and components are the client's own doubles, not derived from them."""
-        return self.frame.aligned and not np.any(self.inertia.moments_tail)
-
-    @property
     def model(self) -> Model:
         """The branch of the solution that holds, and why."""
-        return _model(self.motion, self.resolved)
+        line = not self.inertia.moments[0] > 0.0
+        return _model(self.motion, self.inertia.apart, line, self.instability)
 
     @property
     def period(self) -> float | None:
@@ -133,9 +136,14 @@ class FreeRotation:
     @property
     def flip_interval(self) -> float | None:
         """Time between sign changes of the component along the middle axis, 2K/p (s); None without such an axis."""
-        i, it = self.resolved.moments, self.resolved.moments_tail
-        distinct = (i[0], it[0]) != (i[1], it[1]) and (i[1], it[1]) != (i[2], it[2])
-        return 0.5 * self.period if distinct and self.period is not None else None
+        return 0.5 * self.period if all(self.inertia.apart) and self.period is not None else None
+
+    @property
+    def hangs_on_nearly_equal_moments(self) -> bool:
+        """Whether nearly equal moments differ by enough for this motion to be none of equal ones."""
+        if not self.inertia.nearly_equal or self.motion.regime in (REST, STEADY):
+            return False
+        return not like_symmetric(circulation(*self.resolved, self.motion.circled))
 
     @property
     def middle_axis_tilt(self) -> MiddleAxisTilt | None:
@@ -143,14 +151,14 @@ class FreeRotation:
 
         Whether the middle axis turns over, as it does not about a stable axis though `flip_interval` exists there too.
         """
-        return middle_axis_tilt(self.resolved, self.inertia.axes)
+        return middle_axis_tilt(self.resolved, self.inertia)
 
     @property
     def instability(self) -> str | None:
         """Why a steady spin is unstable; None where it is stable, where nothing turns and where the spin changes."""
         if self.motion.regime != STEADY or not self.inertia.moments[0] > 0.0:
             return None
-        return _instability(self.resolved)
+        return unstable_spin(self.inertia.apart, self.resolved.angular_velocity.tolist())
 
     @property
     def largest_rate(self) -> float:
@@ -209,16 +217,16 @@ class FreeRotation:
     def error(self, times: Floats) -> float:
         """Return a bound of the error of `sample`, relative to the largest norm, inputs taken as exact."""
         m, horizon = self.motion, self.horizon(times)
-        if m.regime == REST or (m.regime == STEADY and self.exact_inputs):
-            return 0.0
-        if self.exact_inputs:
-            computed: float = m.computed.at(SET_UP_ROUNDING, horizon)
-            return EVALUATION_ERROR + computed
-        moments, rates = self.grading
-        derived: float = m.inherited.at(DERIVED_ROUNDING * moments, horizon, max(1.0, rates / moments))
-        if m.regime == STEADY:
-            return derived
-        return EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR) + derived
+        if m.regime in (REST, STEADY):
+            # The start itself is answered.
+            computed = 0.0
+        else:
+            computed = EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR)
+            computed += m.computed.at(SET_UP_ROUNDING, horizon) + UNDERFLOW / self.largest_rate
+        if self.derivation is None:
+            return computed
+        derived: float = self.derivation.angular_velocity(self.derived_rounding, horizon)
+        return min(WHOLE_MOTION, computed + derived)
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
@@ -235,21 +243,68 @@ class FreeRotation:
 
         None for a line of matter askew: what turns it out of line gives it a third moment, and nothing says how small.
         """
-        i, it, w, _ = self.resolved
-        if i[0] == 0.0 and not self.frame.aligned:
+        if self.resolved.moments[0] == 0.0 and not self.frame.aligned:
             return None
-        exponent, rate = math.frexp(float(i[2]))[1], math.frexp(float(np.abs(w).max()))[1]
+        tensors = None if self.moves is None else self.moves(self._exponent)
+        return self._uncertain(tensors, self.angular_velocity)
+
+    @cached_property
+    def derivation(self) -> InputUncertainty | None:
+        """What an error of `derived_rounding` comes to; None where moments and components are exact.
+
+        Where the axes are exact it is that of each moment. Otherwise it is that of each component of the tensor, next
+        to the largest moment, and of the start, next to its norm: moments and axes found together are those of a tensor
+        moved by so much.
+        """
+        exact_zeros = self.inertia.rounding.exact_zeros
+        if (
+            self.motion.regime == REST
+            or self.inertia.rounding.share == 0.0
+            or (self.motion.regime == STEADY and (exact_zeros or self.certainly_steady))
+        ):
+            return None
+        # A line of matter stays one: nothing that rounds gives it a moment about itself.
+        if exact_zeros or self.resolved.moments[0] == 0.0:
+            return self._uncertain(None, self.angular_velocity)
+        largest = math.ldexp(float(self.resolved.moments[2]), -self._exponent)
+        return self._uncertain(largest * _BASIS, np.full(3, math.hypot(*self.angular_velocity.tolist())))
+
+    @property
+    def certainly_steady(self) -> bool:
+        """Whether the start is certain to lie along a principal axis although the axes themselves are derived."""
+        tensor = self.inertia.tensor
+        return tensor is not None and tensor.turns_steadily(self.angular_velocity)
+
+    @property
+    def derived_rounding(self) -> float:
+        """What derived moments, relative to the largest, and components, relative to the norm, may be wrong by."""
+        (low, _, high), share = self.resolved.moments.tolist(), self.inertia.rounding.share
+        if self.inertia.rounding.exact_zeros:
+            return share + UNDERFLOW / low
+        share += UNDERFLOW / high + UNDERFLOW / float(np.abs(self.angular_velocity).max())
+        # What was taken for noise may have been none.
+        taken = not all(self.inertia.apart) or not np.all(self.resolved.angular_velocity)
+        return share + 2.0 * RESOLUTION if taken else share
+
+    @property
+    def _exponent(self) -> int:
+        """Binary exponent that brings the largest moment near one."""
+        return math.frexp(float(self.resolved.moments[2]))[1]
+
+    def _uncertain(self, tensors: Floats | None, velocity: Floats) -> InputUncertainty:
+        """Return what uncertain tensors, shape (n, 3, 3), or moments where None, and an uncertain start come to."""
+        i, it, w, _ = self.resolved
+        exponent, rate = self._exponent, math.frexp(float(np.abs(w).max()))[1]
         rate = max(-1000, min(1000, rate))
         low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
         largest = math.ldexp(self.largest_rate, -rate)
-        components = np.ldexp(w, -rate)
         moves = Sensitivities.of(
             np.ldexp(i, -exponent),
             (low, high),
-            components,
-            None if self.moves is None and self.frame.aligned else np.ascontiguousarray(self.inertia.axes),
-            None if self.moves is None else self.moves(exponent),
-            np.ldexp(self.angular_velocity, -rate),
+            np.ldexp(w, -rate),
+            None if tensors is None and self.frame.aligned else np.ascontiguousarray(self.inertia.axes),
+            tensors,
+            np.ldexp(velocity, -rate),
             self.motion,
             largest,
             math.ldexp(1.0, -rate),
@@ -272,16 +327,6 @@ class FreeRotation:
             return most
         return min(most, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
 
-    @cached_property
-    def grading(self) -> tuple[float, float]:
-        """The largest moment over the smallest, and the largest component of the start over the smallest, zeros apart.
-
-        By so much an error relative to the largest is larger relative to the smallest.
-        """
-        i, _, w, _ = self.resolved
-        moments, rates = [x for x in i.tolist() if x > 0.0], [abs(x) for x in w.tolist() if x != 0.0]
-        return max(moments) / min(moments), max(rates) / min(rates) if rates else 1.0
-
 
 def steady_model(symmetric: bool, spherical: bool, unstable: str | None) -> Model:
     """Return the model of a constant angular velocity.
@@ -302,22 +347,13 @@ def steady_model(symmetric: bool, spherical: bool, unstable: str | None) -> Mode
     return Model(NAME, "steady rotation", f"{why}: nothing accelerates", 0)
 
 
-def _instability(resolved: Resolved) -> str | None:
-    pairs = list(zip(resolved.moments.tolist(), resolved.moments_tail.tolist(), strict=True))
-    distinct = sorted(set(pairs))
-    return unstable_spin([distinct.index(pair) for pair in pairs], resolved.angular_velocity.tolist())
-
-
-def _model(motion: Motion, resolved: Resolved) -> Model:
+def _model(motion: Motion, apart: tuple[bool, bool], line: bool, unstable: str | None) -> Model:
     name = NAME
-    pairs = list(zip(resolved.moments.tolist(), resolved.moments_tail.tolist(), strict=True))
-    equal = [pairs[0] == pairs[1], pairs[1] == pairs[2]]
+    equal = [not differ for differ in apart]
     if motion.regime == REST:
         return Model(name, "rest", "the angular velocity is zero", 0)
     if motion.regime == STEADY:
-        if resolved.moments[0] == 0.0:
-            return steady_model(False, False, None)
-        return steady_model(any(equal), all(equal), _instability(resolved))
+        return steady_model(any(equal) and not line, all(equal), unstable)
     axis = "largest" if motion.circled == 2 else "smallest"
     if motion.regime == SEPARATRIX:
         return Model(

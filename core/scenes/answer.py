@@ -5,24 +5,73 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.notices import Notice
+from core.quantities import Unit
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding, sign
+from core.systems.rounding import Digits, covering, notices_of, rounded
 from core.systems.system import Floats, Model
 from core.systems.trajectory import Accuracy, Work
+from core.work import spend
 
 HORIZON = "horizon"
 SMALLEST_SAMPLE = 1e-290
 """Columns of smaller numbers than this would lose digits below the normal range of doubles."""
+WORK_OF_A_SCENE = 100
+"""Units of work (`core.work`): the set-up of a scene and of its motion in balls, at one precision."""
 MOTION = ("events", "ended", "trajectory")
 """Outputs that need the motion, in every scene."""
+
+N = TypeVar("N")
+"""Kind of number in which an answer is written: doubles, or decimal strings."""
+Pair = tuple[N, N]
+
+
+@dataclass(frozen=True)
+class SceneEvent(Generic[N]):
+    """Something that happens at an instant.
+
+    Attributes
+    ----------
+    kind : str
+        What happens; an event that ends the motion is also named by `ended`.
+    time : number
+        Measured from the given state.
+    """
+
+    kind: str
+    time: Annotated[N, Unit("s")] | None
+
+
+@dataclass(frozen=True)
+class MechanicalEnergy(Generic[N]):
+    """Energy of the given state.
+
+    Attributes
+    ----------
+    kinetic : number
+        Of translation and rotation.
+    potential : number
+        Zero at the height that the scene measures heights from.
+    total : number
+        Their sum.
+    """
+
+    kinetic: Annotated[N, Unit("J")] | None
+    potential: Annotated[N, Unit("J")] | None
+    total: Annotated[N, Unit("J")] | None
+
+
+def outputs_of(figures: type) -> tuple[str, ...]:
+    """Return the names of everything that can be asked for of a scene with such figures."""
+    return (*(entry.name for entry in fields(figures)), *MOTION)
 
 
 @dataclass(frozen=True)
@@ -175,13 +224,30 @@ class SceneAnswer:
     work: Work
     requested_samples: int
 
+    def rounded(self, digits: Digits) -> SceneAnswer:
+        """Return the answer with columns, all but the times, of fewer digits, covered by the error that is stated."""
+        columns, added = {}, 0.0
+        for name, column in (self.trajectory or {}).items():
+            columns[name], more = (column, 0.0) if name == "time" else rounded(column, digits, self.accuracy.error)
+            added = max(added, more)
+        return replace(
+            self,
+            trajectory=None if self.trajectory is None else columns,
+            accuracy=covering(self.accuracy, added),
+            warnings=(*self.warnings, *notices_of(self.accuracy, added)),
+        )
+
 
 @dataclass(frozen=True)
 class ConstrainedSystem(ABC):
     """A scene: parameters, figures that follow from them, and a motion."""
 
     outputs: ClassVar[tuple[str, ...]]
-    """Names of everything that can be asked for."""
+    """Names of everything that can be asked for: the fields of `figures_type`, and `MOTION`."""
+    figures_type: ClassVar[type]
+    """Dataclass, generic in the kind of number, that declares the figures: names, units, meanings."""
+    samples_type: ClassVar[type]
+    """Dataclass that declares the columns of the trajectory likewise, ``time`` first."""
     of_motion: ClassVar[tuple[str, ...]] = ()
     """Those among them, beside `MOTION`, that follow from the motion."""
 
@@ -246,6 +312,7 @@ class ConstrainedSystem(ABC):
 
     def _compute(self, times: Floats | None, wanted: frozenset[str], accuracy: float) -> tuple[SceneAnswer, bool]:
         """Return the answer at the present precision, and whether that precision was enough."""
+        spend(WORK_OF_A_SCENE + (0 if times is None else times.size))
         horizon = math.inf if times is None else float(np.max(times, initial=0.0))
         rounded = Rounding()
         table = dict(self.figures())

@@ -15,9 +15,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from core.scenes.enclosure import ZERO, Ball, Balls, exact, sign
+from flint import arb
+
+from core.scenes.enclosure import ZERO, Ball, Balls, sign
 from core.scenes.quadratics import real_roots
 from core.scenes.string_state import Constants, Drive, State
+
+EXACT_COUNT = 2**53
+"""Every whole number up to this is a double."""
+
+
+def as_answered(count: int | None) -> int | Ball | None:
+    """Return a number of jerks as an answer has it: beyond `EXACT_COUNT` as a ball, which is rounded like a figure."""
+    return count if count is None or count <= EXACT_COUNT else arb(count)
 
 
 @dataclass(frozen=True)
@@ -52,7 +62,8 @@ class Sequence:
     def sum(self, n: int) -> Ball:
         """Return S_n."""
         e = self.restitution
-        return (1 - e**n) / (1 - e) if e < 1 else exact(n)
+        # A count may be beyond what a machine's integers and doubles hold; a ball has it to its own precision.
+        return (1 - e ** arb(n)) / (1 - e) if e < 1 else arb(n)
 
     def ratio(self, S: Ball) -> Ball:
         """Return e^n."""
@@ -145,9 +156,11 @@ class Sequence:
             left = self.ratio(S)
             if sign(left) <= 0:
                 return set()
-            n = int(float((left.log() / self.restitution.log()).mid().floor()))
-        else:
-            n = int(float(S.mid().floor()))
+            S = left.log() / self.restitution.log()
+        whole = S.mid().floor().unique_fmpz()
+        if whole is None:
+            return set()
+        n = int(whole)
         return {k for k in range(n - 2, n + 3) if k >= 0}
 
     def first_arc(

@@ -12,8 +12,11 @@ from core.scenes.bounces import Sequence
 from core.scenes.enclosure import ZERO, Ball, exact, sign, smaller
 from core.scenes.quadratics import exit_time
 from core.scenes.string_state import Constants, Drive, State
+from core.work import spend
 
 MOST_PHASES = 2000
+WORK_OF_A_PHASE = 100
+"""Units of work (`core.work`): a phase is a few hundred operations on balls."""
 FAINTEST_JERK = 2.0**-60
 """Part of the fastest closing below which a jerk among others is the last: sticking and slipping between jerks leave no
 closed form for how they accumulate. What is cut off enters the error."""
@@ -140,6 +143,7 @@ class EventTracker:
                     path=("times",),
                     remedy="ask for times before the last phase",
                 )
+            spend(WORK_OF_A_PHASE)
             impulse, loss, jerks = ZERO, ZERO, 0
             if state.tight and sign(state.opening) < 0:
                 closing = -state.opening

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from flint import arb
 
 from core.notices import Notice
 from core.scenes.answer import Columns, Event, Motion, finite
@@ -154,7 +155,7 @@ class _Clock:
                 n = np.floor(np.log1p(-np.minimum(self.gap * arcs, 1.0)) / log)
             n = np.where(left > 0.0, np.maximum(n, 0.0), np.inf)
             if last_arc is not None:
-                n = np.minimum(n, last_arc)
+                n = np.minimum(n, float(arb(last_arc)))
             self.ratio = np.exp(n * log)
             self.S = -np.expm1(n * log) / self.gap
         self.time = np.maximum(self.elapsed - d * self.S, 0.0)

@@ -19,6 +19,7 @@ from core.systems.methods import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod, Integration
 from core.systems.system import ClosedForm, Floats, System
 from core.systems.trajectory import Accuracy, Trajectory, Work
+from core.work import spend
 
 HALF_ULP = 2.0**-53
 
@@ -108,6 +109,7 @@ def checked_times(times: ArrayLike, budget: Budget) -> Floats:
     if instants.size > budget.samples:
         remedy = "ask for fewer times, or in several questions"
         raise BudgetExceeded("samples", instants.size, budget.samples, path=("times",), remedy=remedy)
+    spend(instants.size)
     finite = np.isfinite(instants)
     if not finite.all():
         raise InvalidParameter(("times", int(finite.argmin())), "be finite")
@@ -173,7 +175,7 @@ def _compared_with_closed_form(
         stated,
         run.work,
         exact.period,
-        warnings=_warnings(stated, method, times),
+        warnings=_warnings(stated, method),
     )
 
 
@@ -200,7 +202,7 @@ def _compared_with_finer_run(
             spent += judge.work.evaluations + judge.work.evaluations_for_error
     stated = Accuracy(accuracy, errors.largest, "finer run", errors.final, None, drifts(system, run.states))
     work = replace(run.work, evaluations_for_error=spent)
-    warnings = _warnings(stated, method, times) + uncertain
+    warnings = _warnings(stated, method) + uncertain
     return Trajectory(times, run.states, system.model, method.kind, stated, work, warnings=warnings)
 
 
@@ -218,22 +220,14 @@ def _refined(system: System, times: Floats, accuracy: float, budget: Budget) -> 
     return Trajectory(times, run.states, system.model, run.method.kind, stated, run.work)
 
 
-def _warnings(stated: Accuracy, method: AbstractMethod, times: Floats) -> tuple[Notice, ...]:
-    notices = []
-    if not stated.error <= stated.requested:
-        detail = (
-            f"the error of {method.kind} with this setting is {stated.error:.3g}, where {stated.requested:.3g} was "
-            "asked for; leave out the method to have one chosen that reaches it"
-        )
-        notices.append(Notice("accuracy-not-reached", detail, ("method",)))
-    step = getattr(method, "step", None)
-    if step is not None:
-        longest = float(np.diff(np.sort(np.append(times, 0.0))).max())
-        # A step ends at every sample; one that is longer than every interval is never taken.
-        if 0.0 < longest < 0.999 * step:
-            detail = f"samples are at most {longest:.6g} s apart, so no step was longer than that; ask for fewer times"
-            notices.append(Notice("step-shortened", detail, ("method", "step")))
-    return tuple(notices)
+def _warnings(stated: Accuracy, method: AbstractMethod) -> tuple[Notice, ...]:
+    if stated.error <= stated.requested:
+        return ()
+    detail = (
+        f"the error of {method.kind} with this setting is {stated.error:.3g}, where {stated.requested:.3g} was "
+        "asked for; leave out the method to have one chosen that reaches it"
+    )
+    return (Notice("accuracy-not-reached", detail, ("method",)),)
 
 
 @contextmanager

@@ -52,9 +52,11 @@ class Work:
     evaluations : int
         Of the equation of motion, or of the flows of its parts.
     steps, rejected_steps : int
-        Taken by the method, and tried in vain beside them.
+        Taken by the method, and tried in vain beside them. Of a method with a fixed step, those of its grid.
     evaluations_for_error : int
         Spent on stating the error, beside those that made the samples.
+    step : float or None
+        Length of the steps from t = 0 (s), None for methods that choose them and for closed forms.
     """
 
     samples: int
@@ -62,6 +64,7 @@ class Work:
     steps: int = 0
     rejected_steps: int = 0
     evaluations_for_error: int = 0
+    step: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

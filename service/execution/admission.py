@@ -1,7 +1,8 @@
-"""Where large questions are answered: in warm processes of their own, which can be killed and are replaced.
+"""Where requests are answered that the event loop may not: in processes of their own, which can be killed.
 
-Admission is by predicted time: a question whose turn would come too late is refused at once, which keeps short the time
-of those that are accepted.
+One process reads every such request and prices it. A request whose turn would come too late is refused at once, which
+keeps short the time of those that are accepted; the others are answered by the compute processes, the clients in
+rotation.
 """
 
 from __future__ import annotations
@@ -9,16 +10,17 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-import pickle
-from collections.abc import Awaitable, Callable, Iterator
-from itertools import count
+from collections import defaultdict
+from collections.abc import Awaitable, Callable, Hashable, Iterator
+from dataclasses import dataclass
 from math import ceil
-from pathlib import Path
 from typing import Any
 
-from service.execution.scratch import LockedTempDir
-from service.execution.worker import Asked, Failed, map_shared_memory, serve, terms_of
+from service.execution.messages import decoded, encoded
+from service.execution.speed import SpeedCorrection
+from service.execution.worker import Failed, Task, answer, price, serve, terms_of
 from service.execution.worker_pool import DeadlineExceeded, Job, Processes, QueueTimeout, Stopped, WorkerDied
+from service.http.keys import Key
 from service.http.limits import ClientGone
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
@@ -27,31 +29,34 @@ from service.responses.json_stream import Document
 from service.routing import PostRoute
 from service.settings import Settings
 
-MEMORY = 20.0
-"""About how many of the last jobs tell how fast this machine is."""
+SECONDS_PER_BYTE = 1e-7
+"""Of reading a request; what it asks for is not known before."""
+
+READER_NICE, COMPUTE_NICE = 5, 10
+"""The reader goes before the computations, so that requests are refused in time where every core computes."""
 
 
-class SpeedCorrection:
-    """How long computations take on this machine, as it is loaded now, in proportion to their prices."""
+@dataclass(frozen=True)
+class Sender:
+    """Who sent a request.
 
-    def __init__(self) -> None:
-        # One second of what was predicted, as long as nothing is known.
-        self._predicted = self._taken = 1.0
+    Attributes
+    ----------
+    client : hashable
+        By which requests have their turns in rotation: the key's name, or the address.
+    key : Key or None
+        Charged with the time that is spent.
+    gone : callable
+        Returns when the client has left; what runs for it is then killed.
+    """
 
-    @property
-    def ratio(self) -> float:
-        """Time over price."""
-        return self._taken / self._predicted
-
-    def learn(self, price: float, seconds: float) -> None:
-        """Take a finished computation into account."""
-        kept = 1.0 - 1.0 / MEMORY
-        self._predicted = kept * self._predicted + price
-        self._taken = kept * self._taken + seconds
+    client: Hashable
+    key: Key | None
+    gone: Callable[[], Awaitable[None]]
 
 
 class Compute:
-    """The compute processes of one server process.
+    """The processes of one server process.
 
     Parameters
     ----------
@@ -62,9 +67,10 @@ class Compute:
 
     Attributes
     ----------
-    pace : SpeedCorrection
-        By which prices are corrected where times are predicted.
-    processes : Processes
+    speed : mapping of str to SpeedCorrection
+        By path, by which prices are corrected where times are predicted.
+    reader, processes : Processes
+        The process that reads and prices, and those that answer.
     """
 
     def __init__(self, settings: Settings, metrics: Metrics, table: str) -> None:
@@ -72,107 +78,83 @@ class Compute:
         self.terms = terms_of(settings, table)
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
-        self.processes = Processes(self.size, serve, (self.terms,), "service.execution.forkserver_preload", self._lost)
-        self._scratch: LockedTempDir | None = None
-        self._numbers = count()
-        self.pace = SpeedCorrection()
-        self._promised = 0.0
-        self._jobs = self._held = 0
+        preload = "service.execution.forkserver_preload"
+        self.reader = Processes(1, serve, (self.terms, price, READER_NICE), preload, self._lost)
+        self.processes = Processes(self.size, serve, (self.terms, answer, COMPUTE_NICE), preload, self._lost)
+        self.speed: defaultdict[str, SpeedCorrection] = defaultdict(SpeedCorrection)
+        self._held = 0
         self._up = self._stopping = False
 
     async def start(self) -> None:
         """Start the processes and return when each is ready."""
-        memory = Path("/dev/shm")
-        directory = self._settings.scratch or (memory if os.access(memory, os.W_OK) else None)
-        self._scratch = LockedTempDir("polhode-results-", directory)
-        await self.processes.start()
+        await asyncio.gather(self.reader.start(), self.processes.start())
         self._up = True
 
     async def stop(self) -> None:
-        """Refuse and kill what still runs, and release the memory."""
+        """Refuse and kill what still runs."""
         self._stopping = True
-        await self.processes.stop()
-        if self._scratch is not None:
-            self._scratch.remove()
+        await asyncio.gather(self.reader.stop(), self.processes.stop())
 
     @property
-    def backlog(self) -> float:
-        """Predicted time until a question that is accepted now would have its turn (s)."""
-        return self._promised * self.pace.ratio / self.size
+    def any_ready(self) -> bool:
+        """Whether there are processes that work or wait for work."""
+        return self.reader.any_ready and self.processes.any_ready
+
+    @property
+    def held(self) -> int:
+        """Memory of the answers that clients are reading (bytes)."""
+        return self._held
 
     @contextlib.contextmanager
     def holding(self, memory: int) -> Iterator[None]:
-        """Count the memory (bytes) of an answer while its client reads it."""
+        """Count memory (bytes): of a request until it is answered, of an answer while its client reads it."""
         self._held += memory
         try:
             yield
         finally:
             self._held -= memory
 
-    async def answer(
-        self, route: PostRoute, body: bytes, price: float, media: str | None, gone: Callable[[], Awaitable[None]]
-    ) -> Document:
-        """Return the answer to a question, computed and composed in another process.
+    async def answer(self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender) -> Document:
+        """Return the answer to a request, read, computed and composed in other processes.
 
         Parameters
         ----------
-        price : float
-            Predicted time (s).
+        npz : bool
+            Whether the body is a numpy archive.
         media : str or None
             Media type of the document, None for JSON.
-        gone : callable
-            Returns when the client has gone; the computation is then killed.
 
         Raises
         ------
         Refusal
-            The question's own problem, 429 for too long a queue, or 503 for a computation that was killed.
+            The request's own problem, 429 for too long a queue or a quota that is used up, or 503 for a computation
+            that was killed.
         ClientGone
         """
         if self._stopping:
             raise _stopped()
-        if not self._up or self._scratch is None:
+        if not self._up:
             raise Refusal("not-ready", "the compute processes are not up yet", headers=(("Retry-After", "1"),))
-        self._admit()
-        file, deadline = Path(self._scratch.name, str(next(self._numbers))), self._settings.deadline_seconds
-        self._promised += price
-        self._jobs += 1
-        self._metrics.backlog.set(self.backlog)
-        asked = Asked(route.path, body, media, str(file), deadline)
-        job = self.processes.submit(
-            pickle.dumps(asked, pickle.HIGHEST_PROTOCOL), deadline, self._settings.max_backlog_seconds + deadline
-        )
-        watch = asyncio.ensure_future(gone())
-        try:
-            await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
-            if not job.reply.done():
-                raise ClientGone
-            result = self._outcome(job)
-            # A long body was not read yet when it was priced, so that its price tells nothing about the machine.
-            if len(body) <= self._settings.inline_bytes:
-                self.pace.learn(price, job.seconds)
-            self._metrics.job_seconds.observe(job.seconds)
-            if isinstance(result, Document):
-                return map_shared_memory(result, file)
-        finally:
-            watch.cancel()
-            self.processes.drop(job)
-            file.unlink(missing_ok=True)
-            # Nothing is promised to nobody; differences would leave a rest of rounding.
-            self._jobs -= 1
-            self._promised = self._promised - price if self._jobs else 0.0
-            self._metrics.backlog.set(self.backlog)
-        if isinstance(result, Problem):
-            raise Refusal.of(result)
-        raise RuntimeError(f"in a compute process:\n{result.traceback}")
+        deadline = self._settings.deadline_seconds
+        task = Task(route.path, body, npz, media, deadline)
+        with self.holding(len(body)):
+            self._require_turn(self.reader, sender)
+            predicted = await self._done(self.reader, task, SECONDS_PER_BYTE * len(body), sender)
+            # Nothing computes for longer than the deadline, whatever was predicted.
+            seconds = min(predicted, deadline)
+            self._require_turn(self.processes, sender)
+            if sender.key is not None:
+                sender.key.work(seconds)
+            document: Document = await self._done(self.processes, task, seconds, sender)
+            return document
 
-    def _admit(self) -> None:
+    def _require_turn(self, processes: Processes, sender: Sender) -> None:
         most = self._settings.max_held_bytes
         if self._held > most:
-            detail = f"answers that are still being read take more than {most} bytes, the limit max_held_bytes"
+            detail = f"requests and unread answers take more than {most} bytes, the limit max_held_bytes"
             raise Refusal("too-busy", detail, headers=(("Retry-After", "1"),), extra={"retry_after_seconds": 1.0})
         limit = self._settings.max_backlog_seconds
-        wait = self.backlog - limit
+        wait = processes.wait_of(sender.client) - limit
         if wait > 0.0:
             raise Refusal(
                 "too-busy",
@@ -181,23 +163,58 @@ class Compute:
                 extra={"retry_after_seconds": round(max(wait, 1e-3), 3)},
             )
 
-    def _outcome(self, job: Job) -> Document | Problem | Failed:
+    async def _done(self, processes: Processes, task: Task, price: float, sender: Sender) -> Any:
+        """Return what a process replies, or raise why it does not; time and key are settled however it ends."""
+        limits, computes = self._settings, processes is self.processes
+        speed = self.speed[task.path] if computes else SpeedCorrection()
+        job = processes.submit(
+            encoded(task),
+            sender.client,
+            price * speed.ratio,
+            longest=limits.deadline_seconds,
+            patience=limits.max_backlog_seconds + limits.deadline_seconds,
+        )
+        self._metrics.backlog.set(self.processes.backlog)
+        watch = asyncio.ensure_future(sender.gone())
+        try:
+            await asyncio.wait((job.reply, watch), return_when=asyncio.FIRST_COMPLETED)
+            if not job.reply.done():
+                raise ClientGone
+            result = self._result(job)
+        finally:
+            watch.cancel()
+            finished = job.reply.done() and job.reply.exception() is None
+            processes.drop(job)
+            # What was cut short took longer than that, which tells something only if it was expected to be done.
+            if computes and (finished or job.seconds > job.predicted):
+                speed.learn(price, job.seconds)
+            if sender.key is not None:
+                # A price that was taken is replaced by what it came to.
+                sender.key.charge(job.seconds - price if computes else job.seconds)
+            if computes and finished:
+                self._metrics.job_seconds.observe(job.seconds)
+            self._metrics.backlog.set(self.processes.backlog)
+        if isinstance(result, Problem):
+            raise Refusal.of(result)
+        if isinstance(result, Failed):
+            raise RuntimeError(f"in a compute process:\n{result.traceback}")
+        return result
+
+    def _result(self, job: Job) -> Any:
         limit = self._settings.deadline_seconds
         try:
-            result: Any = pickle.loads(job.reply.result())
+            return decoded(job.reply.result())
         except DeadlineExceeded:
             detail = f"the computation took longer than {limit:g} s, the limit deadline_seconds, and was stopped"
             raise Refusal("deadline-exceeded", detail) from None
         except WorkerDied:
-            detail = "the process that computed this answer died; other questions are not affected"
+            detail = "the process that computed this answer died; other requests are not affected"
             raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
         except QueueTimeout:
-            detail = "no compute process became free for this question in time; it was not begun"
+            detail = "no compute process became free for this request in time; it was not begun"
             raise Refusal("not-ready", detail, headers=(("Retry-After", "1"),)) from None
         except Stopped:
             raise _stopped() from None
-        outcome: Document | Problem | Failed = result
-        return outcome
 
     def _lost(self, code: int) -> None:
         self._metrics.workers_lost.inc()

@@ -2,12 +2,12 @@
 
 import gc
 
-from service.execution.worker import answering, terms_of
+from service.execution.worker import handler_of, terms_of
 from service.routing import TABLE
 from service.settings import Settings
 
 # Settings come from the environment, which the fork server inherits like the server processes.
-answering(terms_of(Settings(), TABLE))
+handler_of(terms_of(Settings(), TABLE))
 # The collector writes into every object that it visits: pages that processes share would be copied for each.
 gc.collect()
 gc.freeze()

@@ -1,38 +1,37 @@
-"""What runs in a compute process: one question at a time, from its bytes to the document that is sent.
+"""What runs in the processes of a server: one request at a time, from its bytes to the document that is sent.
 
-Large documents do not travel through the socket between the processes. They are put into a file in shared memory that
-the server process maps: texts as they are sent, large arrays as numbers, which take less room.
+A request is read and priced by one process, then, when its price is accepted, answered by another. Both read it: a body
+is at most a few megabytes, and what is read is no longer made of bytes.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-import pickle
 import signal
 import socket
 import traceback
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from pkgutil import resolve_name
-from typing import Any, BinaryIO
-
-import numpy as np
+from typing import Any, TypeVar
 
 from core.errors import MechanicsError
 from core.systems.budget import Budget
+from service.execution.messages import LENGTH, apart, decoded, encoded
 from service.execution.request_handler import RequestHandler
-from service.execution.worker_pool import HEADER, framed
+from service.execution.worker_pool import BEGUN
 from service.problems import Problem, Refusal, problem_of
 from service.requests.request_reader import Limits
-from service.responses.json_stream import Document, Part, composed
+from service.responses.json_stream import Document, composed
 from service.routing import PostRoute
 from service.settings import Settings
 
+T = TypeVar("T")
+
 SMALL = 65_536
-"""Bytes of a document that travel through the socket."""
+"""Bytes of a text from which on it travels beside the message that it belongs to."""
 
 GRACE = 5.0
 """Seconds past the deadline after which a process ends by itself, in case that there is no server to kill it."""
@@ -40,7 +39,7 @@ GRACE = 5.0
 
 @dataclass(frozen=True)
 class Terms:
-    """What a compute process needs to know.
+    """What a process needs to know.
 
     Attributes
     ----------
@@ -54,57 +53,57 @@ class Terms:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A question on its way to a compute process.
+class Task:
+    """A request on its way to a process.
 
     Attributes
     ----------
+    npz : bool
+        Whether the body is a numpy archive; otherwise it is JSON.
     media : str or None
         Media type of the document, None for JSON.
-    file : str
-        Where a large document is put.
     deadline : float
         Longest time that it may take (s).
     """
 
     path: str
     body: bytes
+    npz: bool
     media: str | None
-    file: str
     deadline: float
 
 
 @dataclass(frozen=True)
-class Stored:
-    """A part of a document that lies in the file: numbers of a type and in a shape; text is bytes in a row."""
-
-    offset: int
-    shape: tuple[int, ...]
-    dtype: str
-    text: bool
-
-
-@dataclass(frozen=True)
 class Failed:
-    """A fault of the service, never of the question."""
+    """A fault of the service, never of the request."""
 
     traceback: str
 
 
+Work = Callable[[Terms, Task], Any]
+"""What a process does for a request: `price` or `answer`."""
+
+
 @cache
-def answering(terms: Terms) -> RequestHandler:
-    """Return this process's answering of questions, warm; inherited warm if the fork server has made it."""
+def handler_of(terms: Terms) -> RequestHandler:
+    """Return this process's handler of requests, warm; inherited warm if the fork server has made it."""
     made = RequestHandler(_routes(terms.table).values(), terms.budget, terms.limits)
     made.warm()
     return made
 
 
 def terms_of(settings: Settings, table: str) -> Terms:
-    """Return what compute processes need to know of the settings."""
+    """Return what processes need to know of the settings."""
     return Terms(
         table,
         Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
-        Limits(settings.max_nesting, settings.max_keys, settings.max_arrays, settings.max_strings),
+        Limits(
+            settings.max_nesting,
+            settings.max_keys,
+            settings.max_arrays,
+            settings.max_strings,
+            settings.max_body_bytes,
+        ),
     )
 
 
@@ -113,40 +112,22 @@ def _routes(table: str) -> Mapping[str, PostRoute]:
     return {route.path: route for route in resolve_name(table)()}
 
 
-def serve(channel: socket.socket, terms: Terms) -> None:
-    """Answer questions one by one until the server process closes the connection.
-
-    Nothing is sent but "ready", and for each question "begun" and the reply; see `service.execution.worker_pool`.
-    """
-    # Ctrl-C in a terminal reaches every process; the server ends this one when it has finished.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    prepare(terms)
-    # Once the connection is closed nobody waits for anything.
-    with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
-        channel.sendall(framed(b""))
-        while header := requests.read(HEADER):
-            asked: Asked = pickle.loads(requests.read(int.from_bytes(header, "little")))
-            channel.sendall(framed(b""))
-            signal.setitimer(signal.ITIMER_REAL, asked.deadline + GRACE)
-            reply = pickle.dumps(work(terms, asked), pickle.HIGHEST_PROTOCOL)
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
-            channel.sendall(framed(reply))
+def price(terms: Terms, task: Task) -> float | Problem | Failed:
+    """Return the predicted time of an answer (s), or why there is none."""
+    return _guarded(terms, task, lambda handler, route, question: handler.price(route, question))
 
 
-def prepare(terms: Terms) -> None:
-    """Make this process ready, and let it yield to the server process where they compete for a core."""
-    os.nice(10)
-    answering(terms)
+def answer(terms: Terms, task: Task) -> Document | Problem | Failed:
+    """Return the document of an answer, or why there is none."""
+    return _guarded(
+        terms, task, lambda handler, route, question: composed(route, handler.answer(route, question), task.media)
+    )
 
 
-def work(terms: Terms, asked: Asked) -> Document | Problem | Failed:
-    """Answer one question; what is refused is returned as a problem, and a large document as it is stored."""
-    route = _routes(terms.table)[asked.path]
+def _guarded(terms: Terms, task: Task, work: Callable[[RequestHandler, PostRoute, Any], T]) -> T | Problem | Failed:
+    route, handler = _routes(terms.table)[task.path], handler_of(terms)
     try:
-        question = answering(terms).read(route, asked.body)
-        return spill_to_shared_memory(
-            composed(route, answering(terms).answer(route, question), asked.media), Path(asked.file)
-        )
+        return work(handler, route, handler.read(route, task.body, npz=task.npz))
     except Refusal as refusal:
         return refusal.problem
     except MechanicsError as error:
@@ -155,47 +136,26 @@ def work(terms: Terms, asked: Asked) -> Document | Problem | Failed:
         return Failed(traceback.format_exc())
 
 
-def spill_to_shared_memory(document: Document, file: Path) -> Document:
-    """Return a document as it travels: a large one with its parts in the file, or refuse it for want of room."""
-    if all(not isinstance(part, np.ndarray) for part in document.parts) and sum(map(len, document.parts)) <= SMALL:
-        return document
-    with _room(), file.open("xb") as out:
-        return Document(document.numbers, tuple(_stored(part, out) for part in document.parts))
+def serve(channel: socket.socket, terms: Terms, work: Work, nice: int) -> None:
+    """Do the same work for one request after the other until the server process closes the connection.
 
-
-@contextlib.contextmanager
-def _room() -> Iterator[None]:
-    """Refuse, where the file cannot be written or mapped: it is the machine that lacks something, not the service."""
-    try:
-        yield
-    except OSError as error:
-        detail = f"the answer could not be stored: {error.strerror}"
-        raise Refusal("no-room", detail, headers=(("Retry-After", "1"),)) from error
-
-
-def _stored(part: Part, out: BinaryIO) -> Any:
-    """Put a part into the file, C-contiguous, so that it is copied only once."""
-    # Arrays of doubles are read where they lie, which is faster if that is a multiple of their size.
-    out.write(bytes(-out.tell() % 16))
-    if isinstance(part, np.ndarray):
-        stored = Stored(out.tell(), part.shape, part.dtype.str, text=False)
-        out.write(np.ascontiguousarray(part).data)
-    else:
-        stored = Stored(out.tell(), (len(part),), "|u1", text=True)
-        out.write(part)
-    return stored
-
-
-def map_shared_memory(document: Document, file: Path) -> Document:
-    """Return a document whose stored parts are mapped from the file, which may be removed after that, or refuse it."""
-    if not any(isinstance(part, Stored) for part in document.parts):
-        return document
-    with _room():
-        data = np.asarray(np.memmap(file, np.uint8, "r"))
-    return Document(document.numbers, tuple(_restored(part, data) for part in document.parts))
-
-
-def _restored(part: Any, data: np.ndarray[Any, Any]) -> Part:
-    dtype = np.dtype(part.dtype)
-    flat = data[part.offset : part.offset + int(np.prod(part.shape)) * dtype.itemsize]
-    return flat.data if part.text else flat.view(dtype).reshape(part.shape)
+    Nothing is sent but `BEGUN` when it is ready, and for each request `BEGUN` and the reply.
+    """
+    # Ctrl-C in a terminal reaches every process; the server ends this one when it has finished.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Where they compete for a core, the server process goes first.
+    os.nice(nice)
+    handler_of(terms)
+    # Once the connection is closed nobody waits for anything.
+    with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
+        channel.sendall(BEGUN)
+        while length := requests.read(LENGTH):
+            channel.sendall(BEGUN)
+            task: Task = decoded(memoryview(requests.read(int.from_bytes(length, "little"))))
+            signal.setitimer(signal.ITIMER_REAL, task.deadline + GRACE)
+            reply = work(terms, task)
+            if isinstance(reply, Document):
+                reply = Document(reply.numbers, apart(reply.parts, SMALL))
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            for part in encoded(reply):
+                channel.sendall(part)

@@ -1,7 +1,8 @@
 """Processes that answer one request at a time over a socket of their own, and are killed and replaced one by one.
 
-They share nothing: a process that dies, at whatever moment, takes with it only the request that it had begun. Starting
-one may wait for the fork server, so that is done in threads; all else happens in the event loop, without waiting.
+They share nothing: a process that dies, at whatever moment, takes with it only the request that it had begun. One that
+does not begin at once (it is stopped, or was dead already) loses the request to another. Starting a process may wait
+for the fork server, so that is done in threads; all else happens in the event loop, without waiting.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import os
 import signal
 import socket
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerProcess
@@ -21,11 +22,15 @@ from threading import Lock, Thread
 from time import perf_counter
 from typing import Any, cast
 
+import numpy as np
+
 from service.execution.daemon_thread import call_soon_if_open, run_in_daemon_thread
+from service.execution.fair_queue import FairQueue
+from service.execution.messages import LENGTH, Buffer
 from service.observability.logs import LOG
 
-HEADER = 8
-"""Bytes before each message that say how long it is, little end first."""
+BEGIN_SECONDS = 0.5
+"""Time in which a process has to begin what it is given."""
 
 PAUSE = 0.5
 """Seconds before another attempt where a process could not be started, or did not live until it was ready."""
@@ -50,9 +55,8 @@ class Stopped(Exception):
     """The processes are being stopped."""
 
 
-def framed(message: bytes) -> bytes:
-    """Return a message as it travels."""
-    return len(message).to_bytes(HEADER, "little") + message
+BEGUN = bytes(LENGTH)
+"""What a process sends when it is ready, and when it begins a request: a message of no length."""
 
 
 class Job:
@@ -60,20 +64,28 @@ class Job:
 
     Attributes
     ----------
-    reply : asyncio.Future of bytes
+    client : hashable
+        Who sent it; clients have their turns in rotation.
+    predicted : float
+        How long it is expected to take (s).
+    reply : asyncio.Future of memoryview
         Fails with `WorkerDied`, `DeadlineExceeded`, `QueueTimeout` or `Stopped`.
-    seconds : float
-        How long the process took, once there is a reply (s).
+    begun : bool
+        Whether a process works on it, or has.
     """
 
-    def __init__(self, request: bytes, longest: float) -> None:
-        self.request, self.longest = request, longest
-        self.reply: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()
-        self.seconds = 0.0
-        self.since = 0.0
+    def __init__(self, request: Sequence[Buffer], client: Hashable, predicted: float, longest: float) -> None:
+        self.request, self.client, self.predicted, self.longest = request, client, predicted, longest
+        self.reply: asyncio.Future[memoryview] = asyncio.get_running_loop().create_future()
+        self.since = self.until = 0.0
         self.begun = False
         self.timer: asyncio.TimerHandle | None = None
         self.process: Process | None = None
+
+    @property
+    def seconds(self) -> float:
+        """How long a process has worked on it, or did (s)."""
+        return (self.until or perf_counter()) - self.since if self.since else 0.0
 
     def fail(self, error: Exception) -> None:
         """Answer with an error, unless there is an answer or nobody waits for one."""
@@ -81,13 +93,17 @@ class Job:
             self.reply.set_exception(error)
 
 
-class Process(asyncio.Protocol):
-    """One process, seen from the event loop."""
+class Process(asyncio.BufferedProtocol):
+    """One process, seen from the event loop.
+
+    Messages are received where they stay: a large one is never copied.
+    """
 
     def __init__(self, pool: Processes, handle: ForkServerProcess) -> None:
         self._pool, self.handle = pool, handle
         self._transport: asyncio.WriteTransport | None = None
-        self._received = bytearray()
+        self._length = memoryview(bytearray(LENGTH))
+        self._target, self._filled = self._length, 0
         self.ready = self.killed = False
         self.job: Job | None = None
 
@@ -99,18 +115,25 @@ class Process(asyncio.Protocol):
         """Send a request."""
         assert self._transport is not None
         self.job, job.process = job, self
-        self._transport.write(framed(job.request))
+        self._transport.writelines(job.request)
 
-    def data_received(self, data: bytes) -> None:
+    def get_buffer(self, sizehint: int) -> memoryview:
+        """Return where the next bytes belong."""
+        return self._target[self._filled :]
+
+    def buffer_updated(self, count: int) -> None:
         """Take in messages: nothing for "ready" and then for "begun", something for a reply."""
-        self._received += data
-        while len(self._received) >= HEADER:
-            end = HEADER + int.from_bytes(self._received[:HEADER], "little")
-            if len(self._received) < end:
-                return
-            message = bytes(self._received[HEADER:end])
-            del self._received[:end]
-            self._pool.heard(self, message)
+        self._filled += count
+        if self._filled < len(self._target):
+            return
+        received, self._target, self._filled = self._target, self._length, 0
+        if received is not self._length:
+            self._pool.heard(self, received)
+        elif length := int.from_bytes(received, "little"):
+            # Memory that is not written before the message fills it.
+            self._target = np.empty(length, np.uint8).data
+        else:
+            self._pool.heard(self, None)
 
     def connection_lost(self, error: Exception | None) -> None:
         """The process has ended."""
@@ -148,7 +171,7 @@ class Processes:
         self._context.set_forkserver_preload([preload])
         self.size = size
         self._main, self._arguments, self._lost = main, tuple(arguments), lost
-        self._waiting: deque[Job] = deque()
+        self._waiting: FairQueue[Job] = FairQueue()
         self._idle: deque[Process] = deque()
         self._all: set[Process] = set()
         self._starting: set[asyncio.Task[None]] = set()
@@ -177,27 +200,52 @@ class Processes:
             self._replace(0.0)
         await self._up.wait()
 
-    def submit(self, request: bytes, longest: float, patience: float) -> Job:
+    def submit(
+        self, request: Sequence[Buffer], client: Hashable, predicted: float, *, longest: float, patience: float
+    ) -> Job:
         """Have a request answered.
 
         Parameters
         ----------
+        request : sequence of bytes
+            As `messages.encoded` returns it.
+        client : hashable
+        predicted : float
+            How long it is expected to take (s).
         longest : float
             Time after which its process is killed (s).
         patience : float
             Time that it may wait for its turn (s).
         """
-        job = Job(request, longest)
+        job = Job(request, client, predicted, longest)
         if self._stopping:
             job.fail(Stopped())
             return job
         job.timer = asyncio.get_running_loop().call_later(patience, self._impatient, job)
-        self._waiting.append(job)
+        self._waiting.append(client, job)
         self._hand_out()
         return job
 
+    def wait_of(self, client: Hashable) -> float:
+        """Return the predicted time until a new request of a client would have its turn (s)."""
+        return self._rest_of_running(sum(job.predicted for job in self._waiting.ahead_of(client)))
+
+    @property
+    def backlog(self) -> float:
+        """Predicted time of all that runs and waits, shared by the processes (s)."""
+        return self._rest_of_running(sum(job.predicted for job in self._waiting))
+
+    def _rest_of_running(self, seconds: float) -> float:
+        for process in self._all:
+            if (job := process.job) is not None:
+                rest = job.predicted - job.seconds
+                # One that takes longer than predicted is expected to take as long again.
+                seconds += rest if rest > 0.0 else max(0.0, min(job.seconds, job.longest - job.seconds))
+        return seconds / self.size
+
     def drop(self, job: Job) -> None:
         """Make sure that nothing works on a request any more."""
+        job.until = job.until or perf_counter()
         if job.timer is not None:
             job.timer.cancel()
         job.reply.cancel()
@@ -205,11 +253,11 @@ class Processes:
             job.process.job = None
             job.process.kill()
             job.process = None
-        elif job in self._waiting:
-            self._waiting.remove(job)
+        else:
+            self._waiting.remove(job.client, job)
 
-    def heard(self, process: Process, message: bytes) -> None:
-        """Act on a message."""
+    def heard(self, process: Process, message: memoryview | None) -> None:
+        """Act on a message; None for one of no length."""
         job = process.job
         if process.killed:
             return
@@ -219,12 +267,12 @@ class Processes:
                 self._up.set()
         elif job is None:
             return
-        elif not message:
+        elif message is None:
             job.begun = True
+            self._time(job, job.longest, self._overdue)
             return
         else:
             self._detach(job)
-            job.seconds = perf_counter() - job.since
             if not job.reply.done():
                 job.reply.set_result(message)
         self._idle.append(process)
@@ -240,10 +288,9 @@ class Processes:
             self._detach(job)
             if job.begun:
                 job.fail(WorkerDied())
-            elif not job.reply.done():
+            else:
                 # It was on its way to a process that was dead already: it is not that request's fault.
-                job.timer = asyncio.get_running_loop().call_later(job.longest, self._impatient, job)
-                self._waiting.appendleft(job)
+                self._put_back(job)
         if not self._stopping:
             self._replace(0.0 if process.ready else PAUSE)
             self._hand_out()
@@ -266,14 +313,34 @@ class Processes:
 
     def _hand_out(self) -> None:
         while self._waiting and self._idle:
-            job, process = self._waiting.popleft(), self._idle.popleft()
-            if job.timer is not None:
-                job.timer.cancel()
+            job, process = self._waiting.pop(), self._idle.popleft()
             job.since = perf_counter()
-            job.timer = asyncio.get_running_loop().call_later(job.longest, self._overdue, job)
+            self._time(job, BEGIN_SECONDS, self._not_begun)
             process.give(job)
 
+    def _time(self, job: Job, seconds: float, late: Callable[[Job], None]) -> None:
+        if job.timer is not None:
+            job.timer.cancel()
+        job.timer = asyncio.get_running_loop().call_later(seconds, late, job)
+
+    def _not_begun(self, job: Job) -> None:
+        """Take a request from a process that does nothing, which is killed and replaced."""
+        if job.process is not None:
+            LOG.error("a compute process did not begin a request", extra={"process": job.process.handle.pid})
+            job.process.job = None
+            job.process.kill()
+            job.process = None
+            self._put_back(job)
+
+    def _put_back(self, job: Job) -> None:
+        if not job.reply.done():
+            job.since = job.until = 0.0
+            self._time(job, job.longest, self._impatient)
+            self._waiting.put_back(job.client, job)
+            self._hand_out()
+
     def _detach(self, job: Job) -> None:
+        job.until = perf_counter()
         if job.timer is not None:
             job.timer.cancel()
         if job.process is not None:

@@ -23,17 +23,18 @@ LONGEST_KEY_SHOWN = 40
 
 
 class Limits(NamedTuple):
-    """What a document may have: levels of nesting, keys, arrays and objects, strings; rows of large arrays apart."""
+    """What a document may have: levels of nesting, keys, arrays and objects, strings; an archive, bytes unpacked."""
 
     nesting: int = 32
     keys: int = 4000
-    arrays: int = 50_000
+    arrays: int = 110_000
     strings: int = 100_000
+    bytes: int = 8_000_000
 
 
 def enforce_document_limits(body: bytes, limits: Limits) -> None:
     """Refuse a document that is nested too deeply or has too many keys, arrays or strings, without building it."""
-    deepest, most_keys, most_arrays, most_strings = limits
+    deepest, most_keys, most_arrays, most_strings, _ = limits
     # Each string has two quotes; what is escaped in one costs about as much to read as one more would.
     if len(body) > 2 * most_strings and body.count(b'"') + body.count(b"\\") > 2 * most_strings:
         raise Refusal("too-complex", f"the body has more than {most_strings} strings or escapes, the limit max_strings")
@@ -42,7 +43,8 @@ def enforce_document_limits(body: bytes, limits: Limits) -> None:
         raise Refusal("too-complex", f"the body has more than {most_keys} keys, the limit max_keys")
     opened = body.count(b"[") + body.count(b"{")
     if opened > most_arrays:
-        raise Refusal("too-complex", f"the body has more than {most_arrays} arrays and objects, the limit max_arrays")
+        detail = f"the body has more than {most_arrays} arrays and objects, the limit max_arrays; send rows as npz"
+        raise Refusal("too-complex", detail)
     if opened > deepest and _depth(body) > deepest:
         raise Refusal("too-complex", f"the body is nested deeper than {deepest} levels, the limit max_nesting")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any
 
@@ -58,7 +58,7 @@ _RULES: Mapping[str, str] = {
     "string_too_long": "must have at most {max_length} characters",
 }
 _REMEDIES: Mapping[str, str] = {
-    "float_type": "write a JSON number: no quotes, no true, false or null",
+    "float_type": "write a JSON number: no quotes, no true, false or null; /v1/certified takes decimal strings",
     "int_type": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
     "int_from_float": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
     "finite_number": "NaN, infinities and numbers beyond 1.8e308 are not read",
@@ -88,8 +88,7 @@ class Layout:
     lengths : mapping of str to int
         For each name of a field that holds an array of fixed length, that length.
     elsewhere : mapping of str to str
-        Keys of the document that only another question has, and tags of members that only it admits, each with the key
-        that makes it this one.
+        Keys of the document that only another route's question has, each with what would mend it.
     units : mapping of str to str
         For each name of a field that holds quantities of one SI unit, that unit.
     """
@@ -97,18 +96,19 @@ class Layout:
     tags: Mapping[str, Names]
     names: Mapping[str, Names]
     lengths: Mapping[str, int]
-    elsewhere: Mapping[str, str] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
+    elsewhere: Mapping[str, str]
+    units: Mapping[str, str]
 
     @classmethod
-    def of(cls, schema: Any) -> Layout:
+    def of(cls, schema: Any, elsewhere: Mapping[str, str]) -> Layout:
         """Return the layout that a schema describes."""
         walk = _Walk(schema)
         return cls(
             {name: tuple(found) for name, found in walk.tags.items()},
             {name: tuple(found) for name, found in walk.names.items()},
             walk.lengths,
-            units={name: next(iter(units)) for name, units in walk.units.items() if len(units) == 1},
+            elsewhere,
+            {name: next(iter(units)) for name, units in walk.units.items() if len(units) == 1},
         )
 
     @property
@@ -116,14 +116,6 @@ class Layout:
         """Whether the documents ask about a body that turns freely."""
         names = self.names.get("", ())
         return "body" in names and not {"angular_velocity", "angular_velocities", "disturbance"}.isdisjoint(names)
-
-    def told_from(self, key: str, other: Layout) -> Layout:
-        """Return this layout of questions that have a key, told from those that do not."""
-        keys = set(other.names.get("", ())) - set(self.names.get("", ()))
-        tags = {tag for name, tags in other.tags.items() if name in self.tags for tag in tags} - set(
-            tag for tags in self.tags.values() for tag in tags
-        )
-        return replace(self, elsewhere=dict.fromkeys(keys | tags, key))
 
     def faults(self, found: Sequence[Any], document: Callable[[], Any]) -> tuple[list[Fault], set[str]]:
         """Return the validator's findings as faults, no more than a problem lists, and the codes that they have.
@@ -195,10 +187,7 @@ class Layout:
         if kind == "union_tag_invalid":
             tag, discriminator = str(context["tag"]), str(context["discriminator"]).strip("'")
             near = nearest(tag, self.tags.get(named, ()))
-            remedy = near and f"{_MEANT}'{near}'?"
-            if tag in self.elsewhere:
-                remedy = f"'{tag}' does not go with {self.elsewhere[tag]}; leave {self.elsewhere[tag]} out for it"
-            return Fault(pointer_of((*steps, discriminator)), detail, remedy)
+            return Fault(pointer_of((*steps, discriminator)), detail, near and f"{_MEANT}'{near}'?")
         if kind == "union_tag_not_found":
             return Fault(pointer_of(steps), detail, f"its values here: {', '.join(self.tags.get(named, ()))}")
         if kind in _OBJECTS and named in self.tags:
@@ -215,8 +204,7 @@ class Layout:
         if len(key) > LONGEST_KEY_SHOWN:
             return Fault(pointer_of(steps[:-1]), "has a key that is not known here", _known(names))
         if len(steps) == 1 and key in self.elsewhere:
-            given = self.elsewhere[key]
-            return Fault(pointer_of(steps), f"does not go with {given}", f"leave out either {key} or {given}")
+            return Fault(pointer_of(steps), _NOT_KNOWN, self.elsewhere[key])
         if len(steps) == 1 and self.of_free_rotation and plain(key) in FORCES:
             return Fault(pointer_of(steps), _NOT_FREE, _FREE_ONLY)
         if _SPAN.issuperset(names) and plain(key) in STEPS:

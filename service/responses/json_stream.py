@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from core.work import spend
 from service.responses import npz as archive
 from service.responses.json_rows import ONE_PIECE, array_size, parts, require_finite, rows, written
 from service.routing import Answer, PostRoute
@@ -17,6 +18,9 @@ SLICE = 131_072
 
 ONE_TEXT = 1_000_000
 """Bytes of text that may be sent in one piece."""
+
+NUMBERS_PER_UNIT = 16
+"""Numbers that are written in a unit of work (`core.work`)."""
 
 Part = bytes | memoryview | np.ndarray[Any, Any]
 
@@ -70,6 +74,7 @@ def composed(route: PostRoute, answer: Answer, media: str | None) -> Document:
         For NaN and infinities.
     """
     numbers = array_size(answer)
+    spend(numbers / NUMBERS_PER_UNIT)
     if media == archive.MEDIA_TYPE:
         return Document(numbers, tuple(archive.archive(answer)))
     if media is not None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from functools import cache
 from math import inf
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -16,14 +16,22 @@ from core.bodies.mass_properties import MassProperties
 from core.bodies.principal_inertia import EPSILON, PrincipalInertia, Symmetry
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
+from core.quantities import Unit
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, quickest, speed_of
 from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Matrix, Request, Vector, View
+from service.schemas import Envelope, Matrix, Ratio, Request, Vector, View
 
 LOOKED_INTO = 8_000
 """Points of a body, as `counts` has them, up to which it is looked at to foresee a motion; larger ones are not answered
 in the server process."""
+
+
+SMALL_BODY = 400
+"""Points of a body, likewise, up to which a request may be begun in the event loop: no composite has so few."""
+
+FEW_SAMPLES = 256
+"""Samples of a closed form up to which a request may be begun in the event loop."""
 
 
 class MassPropertiesRequest(Request):
@@ -32,38 +40,46 @@ class MassPropertiesRequest(Request):
     body: Body
 
 
-class Principal(View):
+MomentsOfInertia = Annotated[Vector[float], Unit("kg m^2")]
+TensorOfInertia = Annotated[Matrix[float], Unit("kg m^2")]
+
+
+class PrincipalAxes(View):
     """Principal moments and axes."""
 
-    moments: Vector = Field(description="Ascending (kg m^2).")
-    axes: Matrix = Field(description="Columns are the principal axes in body axes, right-handed; written row by row.")
+    moments: MomentsOfInertia = Field(description="Ascending.")
+    axes: Matrix[Ratio[float]] = Field(
+        description="Columns are the principal axes in body axes, right-handed; written row by row."
+    )
 
 
-class Tensors(View):
+class InertiaTensors(View):
     """Tensors of inertia in body axes; I_xy = -(integral of x y dm)."""
 
-    about_center_of_mass: Matrix
-    about_origin: Matrix | None
+    about_center_of_mass: TensorOfInertia = Field(description="About the centre of mass.")
+    about_origin: TensorOfInertia | None = Field(description="About the origin of the frame of the body.")
 
 
-class ValidityView(View):
+class Validity(View):
     """Whether matter can have these mass properties, condition by condition."""
 
-    physical: bool
-    report: list[Condition]
+    physical: bool = Field(description="Whether every condition holds.")
+    report: list[Condition] = Field(description="The conditions, one by one.")
 
 
 class MassPropertiesAnswer(Envelope):
     """Mass properties of a body."""
 
-    mass: float | None = Field(description="kg; null where the body was given by its moments alone.")
-    center_of_mass: Vector | None = Field(description="m, in the frame in which the body was given.")
-    inertia: Tensors
-    principal: Principal
-    principal_about_origin: Principal | None
-    symmetry: Symmetry
+    mass: Annotated[float, Unit("kg")] | None = Field(description="Null where the body was given by its moments alone.")
+    center_of_mass: Annotated[Vector[float], Unit("m")] | None = Field(
+        description="In the frame in which the body was given."
+    )
+    inertia: InertiaTensors = Field(description="Tensors of inertia in body axes; I_xy = -(integral of x y dm).")
+    principal: PrincipalAxes = Field(description="About the centre of mass.")
+    principal_about_origin: PrincipalAxes | None = Field(description="About the origin; null where it is not known.")
+    symmetry: Symmetry = Field(description="Which of the principal moments are equal.")
     about: Literal["center-of-mass", "origin"] = Field(description="The point about which the body turns.")
-    validity: ValidityView
+    validity: Validity
 
 
 def properties_of(body: Any) -> MassProperties:
@@ -99,6 +115,16 @@ def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
 def counts(question: Any, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question about a body."""
     return {"question": 1.0, "points": _size(question.body), question.body.kind: 1.0}
+
+
+def is_small(question: Any) -> bool:
+    """Return whether a question is about a small body."""
+    return _size(question.body) <= SMALL_BODY
+
+
+def few_times(times: Any) -> bool:
+    """Return whether a question's times are few."""
+    return (len(times) if isinstance(times, list) else times.count) <= FEW_SAMPLES
 
 
 def moments_to_foresee(methods: Iterable[Any], body: Any) -> list[float] | None:
@@ -156,6 +182,7 @@ BODIES = (
         MassPropertiesAnswer,
         mass_properties,
         CalibratedCost("mass_properties", counts),
+        is_small,
         examples={
             "principal-moments": Example(
                 "a body known by its principal moments",

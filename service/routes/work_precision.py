@@ -19,7 +19,7 @@ from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE, TIMES
 from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
+from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
 
 
 class WorkPrecisionRequest(Request):
@@ -37,45 +37,49 @@ class WorkPrecisionRequest(Request):
     )
 
 
-class MeasurementView(View):
+class MethodMeasurement(View):
     """One method with one setting; errors are relative to the largest norm of the motion."""
 
-    method: Method
-    error: float | None = Field(description="Largest of any sample; null if the method failed.")
-    final_error: float | None = Field(description="At the time farthest from the start.")
-    component_errors: list[float] = Field(description="Of each component, relative to its own largest magnitude.")
-    drifts: dict[str, float] | None = Field(description="Of conserved quantities: not an error.")
-    evaluations: int
-    steps: int
-    seconds: float | None = Field(description="Median of the repeats; null if nothing was timed.")
+    method: Method = Field(description="With its setting.")
+    error: Ratio[float] | None = Field(description="Largest of any sample; null if the method failed.")
+    final_error: Ratio[float] | None = Field(description="At the time farthest from the start.")
+    component_errors: list[Ratio[float]] = Field(
+        description="Of each component, relative to its own largest magnitude."
+    )
+    drifts: dict[str, Ratio[float]] | None = Field(description="Of conserved quantities: not an error.")
+    evaluations: int = Field(description="Of the equation of motion.")
+    steps: int = Field(description="Taken by the method.")
+    seconds: Seconds[float] | None = Field(description="Median of the repeats; null if nothing was timed.")
     failure: str | None = Field(description="Why there are no samples.")
 
 
-class CurveView(View):
+class MethodCurve(View):
     """All settings of one method, cheapest first."""
 
-    kind: str
-    declared_order: int | None
-    fitted_order: float | None = Field(description="Between the coarse settings and the floor; null with too few.")
-    floor: float | None = Field(description="Where more work brings no smaller error; null if it was not met.")
-    measurements: list[MeasurementView]
+    kind: str = Field(description="Of the method.")
+    declared_order: int | None = Field(description="The error falls with this power of the step; null: no fixed order.")
+    fitted_order: Ratio[float] | None = Field(
+        description="Between the coarse settings and the floor; null with too few."
+    )
+    floor: Ratio[float] | None = Field(description="Where more work brings no smaller error; null if it was not met.")
+    measurements: list[MethodMeasurement] = Field(description="Cheapest first.")
 
 
-class RecommendationView(View):
+class Recommendation(View):
     """The cheapest setting that was measured to reach the accuracy."""
 
-    method: Method | None
-    reason: str
+    method: Method | None = Field(description="Null if none was measured to reach the accuracy.")
+    reason: str = Field(description="Why, in one sentence.")
 
 
 class WorkPrecisionAnswer(Envelope):
     """Error against cost."""
 
     reference: str = Field(description="What errors are measured against.")
-    reference_error: float = Field(description="Contained in every error that is stated.")
-    curves: list[CurveView]
-    pareto_front: list[MeasurementView] = Field(description="Beaten by none in both error and evaluations.")
-    recommendation: RecommendationView
+    reference_error: Ratio[float] = Field(description="Contained in every error that is stated.")
+    curves: list[MethodCurve] = Field(description="One for each kind of method.")
+    pareto_front: list[MethodMeasurement] = Field(description="Beaten by none in both error and evaluations.")
+    recommendation: Recommendation
 
 
 def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Answer:
@@ -149,7 +153,7 @@ WORK_PRECISION = (
         WorkPrecisionAnswer,
         answer_work_precision,
         CalibratedCost("work_precision", work_precision_counts),
-        work_precision_probe,
+        planning_probe=work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
         examples={
             "t-handle": Example(

@@ -70,7 +70,7 @@ def test_the_floor_is_found_where_more_work_brings_nothing() -> None:
 
 def test_an_error_that_still_falls_unevenly_is_no_floor() -> None:
     # At coarse steps halving takes away less than half of the error, which is no round-off yet.
-    (curve,) = work_precision(stiff(1.0), [1.0], [ExplicitEuler(0.4), ExplicitEuler(0.2)]).curves
+    (curve,) = work_precision(stiff(1.0), [1.0], [ExplicitEuler(1 / 3), ExplicitEuler(0.2)]).curves
     coarse, fine = (one.error for one in curve.measurements)
     assert 0.55 * coarse < fine < 0.6 * coarse
     assert curve.floor is None

@@ -16,7 +16,7 @@ from core.errors import AccuracyUnreachable, InvalidParameter
 from core.rotation.attitude.frame import fill_at_rest, from_precession, from_steady
 from core.rotation.attitude.sampling import sample_attitude, sample_steady
 from core.rotation.closed_form.circulation import PERIODIC, REST, STEADY
-from core.rotation.free_rotation import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
+from core.rotation.free_rotation import SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
 from core.rotation.precession.constants import PrecessionConstants, angle_per_period, precession_constants
 from core.rotation.uncertainty.input_uncertainty import WHOLE_TURN, lost_after
 from core.systems.system import Floats
@@ -110,15 +110,14 @@ class FreeAttitude:
         if motion.regime == REST:
             # Four components rounded by 2^-54 at most: a distance of 2^-53, and a vector is turned by twice as much.
             return 2.0 * UNIT_ROUNDOFF
-        if motion.regime == STEADY:
-            return ATTITUDE_ERROR
-        turned = math.pi * self._turns(horizon)
-        if self.rotation.exact_inputs:
-            phase: float = motion.computed.at(SET_UP_ROUNDING, horizon)
-            return ATTITUDE_ERROR + 8.0 * SET_UP_ROUNDING * turned + 4.0 * phase
-        moments, rates = self.rotation.grading
-        phase = motion.inherited.at(DERIVED_ROUNDING * moments, horizon, max(1.0, rates / moments))
-        return ATTITUDE_ERROR + 8.0 * DERIVED_ROUNDING * max(moments, rates) * turned + 4.0 * phase
+        computed = ATTITUDE_ERROR
+        if motion.regime != STEADY:
+            turned = math.pi * self._turns(horizon)
+            computed += 8.0 * SET_UP_ROUNDING * turned + 4.0 * motion.computed.at(SET_UP_ROUNDING, horizon)
+        if self.rotation.derivation is None:
+            return computed
+        derived = self.rotation.derivation.attitude(self.rotation.derived_rounding, horizon)
+        return min(WHOLE_TURN, computed + derived)
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return by what angle (rad) a relative `uncertainty` of every input may turn the samples, at most pi.

@@ -51,6 +51,13 @@ SMALLEST_MODULUS = -946
 """Binary exponent below which a complementary modulus other than 0 has lost digits of its low part."""
 
 
+LIKE_SYMMETRIC = -30
+"""Exponent up to which m and |I_b - I_c|/|I_b - I_d| let two nearly equal moments move a body as two equal ones do.
+
+The rate in the body varies by half of each, here 2^-31 of itself.
+"""
+
+
 class Decision(NamedTuple):
     """What the motion does, and the difference by which it was decided."""
 
@@ -166,6 +173,13 @@ def circulation(
     p = sc_sqrt(sc_div(bdY, sc_mul(IA, sc_mul(IB, IC))))
     k = sc_sqrt(sc_div(sc_mul(bc, X), bdY))
     return Circulation(circled, I_c, IB, I_d, AC, bc, bd, X, Y, bdY, p, k)
+
+
+@kernel()
+def like_symmetric(c: Circulation) -> bool:
+    """Return whether a body with nearly equal moments about the axes c and b moves as one with equal ones."""
+    unevenness = sc_div(c.bc, c.bd)
+    return sc_mul(c.k, c.k).exponent <= LIKE_SYMMETRIC and unevenness.exponent <= LIKE_SYMMETRIC
 
 
 @kernel()

@@ -13,7 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError
-from core.quantities import Duration, Quantity, check
+from core.quantities import Duration, Quantity, Unit, check
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
@@ -21,6 +21,7 @@ from core.systems.error_statements import drifts, measured
 from core.systems.methods import Method
 from core.systems.system import Floats
 from core.systems.trajectory import Work
+from core.work import spend
 
 SampleCount = Annotated[int, Quantity("1", at_least=3)]
 Distance = Annotated[float, Quantity("rad s^-1", above=0)]
@@ -63,8 +64,8 @@ class Crossing:
         How far it misses the start (rad/s).
     """
 
-    time: float
-    distance: float
+    time: Annotated[float, Unit("s")]
+    distance: Annotated[float, Unit("rad s^-1")]
 
 
 @dataclass(frozen=True)
@@ -96,16 +97,16 @@ class MeasuredPeriod:
         What it cost.
     """
 
-    time: float | None
+    time: Annotated[float, Unit("s")] | None
     grid_point: int | None
-    theory: float | None
-    relative_difference: float | None
-    from_tolerance: float | None
-    from_grid: float | None
-    from_method: float | None
+    theory: Annotated[float, Unit("s")] | None
+    relative_difference: Annotated[float, Unit("1")] | None
+    from_tolerance: Annotated[float, Unit("s")] | None
+    from_grid: Annotated[float, Unit("s")] | None
+    from_method: Annotated[float, Unit("s")] | None
     crossing: Crossing | None
-    error: float
-    drifts: dict[str, float]
+    error: Annotated[float, Unit("1")]
+    drifts: dict[str, Annotated[float, Unit("1")]]
     explanation: str
     work: Work
 
@@ -129,6 +130,7 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         raise BudgetExceeded(
             "samples", measure.samples, budget.samples, path=("measure", "samples"), remedy="take fewer samples"
         )
+    spend(measure.samples)
     times = np.linspace(0.0, measure.duration, measure.samples)
     if times[1] == 0.0:
         raise InvalidParameter(("measure", "duration"), "be long enough for its samples to differ")

@@ -18,12 +18,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.bodies.principal_inertia import PrincipalInertia
 from core.compiled import kernel
 from core.double_double import Scaled, sc_abs, sc_add, sc_mul, sc_neg, sc_sqrt
 from core.rotation.closed_form.circulation import UNDECIDED, circulation, decision, exact_difference
 from core.rotation.closed_form.principal_frame import Resolved
 from core.rotation.precession.figures import angle_of_tangent, oriented
-from core.systems.system import Floats
 
 
 class MiddleAxisTilt(NamedTuple):
@@ -69,15 +69,15 @@ def _swing(
     return found.regime, angle_of_tangent(a, b, False), angle_of_tangent(a, b, True), tumbles
 
 
-def middle_axis_tilt(resolved: Resolved, axes: Floats) -> MiddleAxisTilt | None:
+def middle_axis_tilt(resolved: Resolved, inertia: PrincipalInertia) -> MiddleAxisTilt | None:
     """Return the range of the angle between middle axis and angular momentum.
 
     Parameters
     ----------
     resolved : Resolved
         Moments and start along ascending principal axes.
-    axes : ndarray, shape (3, 3)
-        Principal axes as columns, in body axes.
+    inertia : PrincipalInertia
+        Of the body, which says which of the moments differ.
 
     Returns
     -------
@@ -85,14 +85,13 @@ def middle_axis_tilt(resolved: Resolved, axes: Floats) -> MiddleAxisTilt | None:
         None at rest and where two moments are equal, so that there is no middle axis.
     """
     i, it, w, wt = resolved
-    a, b, c = zip(i.tolist(), it.tolist(), strict=True)
     turning = [k for k, x in enumerate(w.tolist()) if x != 0.0]
-    if a == b or b == c or not turning:
+    if not all(inertia.apart) or not turning:
         return None
     if len(turning) == 1:
         if turning != [1]:
             return MiddleAxisTilt(0.5 * math.pi, 0.5 * math.pi, False)
-        angle = 0.0 if oriented(axes, 1)[3] * w[1] > 0.0 else math.pi
+        angle = 0.0 if oriented(inertia.axes, 1)[3] * w[1] > 0.0 else math.pi
         return MiddleAxisTilt(angle, angle, False)
     regime, least, largest, tumbles = _swing(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
     if regime == UNDECIDED:

@@ -25,7 +25,7 @@ Mechanics", 3rd ed., section 5.6. R. Montgomery, "How much does the rigid body r
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf, isfinite
+from math import inf, isfinite, isnan
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
@@ -44,6 +44,7 @@ from core.rotation.closed_form.circulation import (
     too_near_the_separatrix,
 )
 from core.rotation.closed_form.principal_frame import Resolved
+from core.rotation.equal_moments import NEARLY_EQUAL, equal_within_rounding
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession import missing_reasons
 from core.rotation.precession.figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
@@ -69,8 +70,8 @@ class Precession(NamedTuple):
         Unit vector in body axes: the symmetry axis, or the principal axis that the angular velocity circles. It points
         along the positive side of the body axis that it is nearest to.
     body_rate : float or None
-        Rate at which the angular velocity goes round `axis` in the body, positive in the right-hand sense; symmetric
-        bodies only (rad/s).
+        Rate at which the angular velocity goes round `axis` in the body, positive in the right-hand sense; 0 for a spin
+        across the axis, None for one along it; symmetric bodies only (rad/s).
     space_rate : float or None
         Rate L/I at which the axis goes round the angular momentum; symmetric bodies only. For a spin along the
         axis it is the rate of an infinitesimal wobble (rad/s).
@@ -166,31 +167,37 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
     symmetry = inertia.symmetry
     if x == y == z == 0.0:
         return Precession(symmetry, "rest", absent=_AT_REST.copy(), warnings=warnings)
-    if symmetry == "spherical":
-        if len(set(zip(inertia.moments.tolist(), inertia.moments_tail.tolist(), strict=True))) > 1:
-            warnings += (_equal_within_rounding("the three moments"),)
+    if not any(inertia.apart):
         return Precession(symmetry, "steady", absent=_SPHERE.copy(), warnings=warnings)
-    k = _SYMMETRY_AXIS[symmetry]
-    parts = inertia.moments, inertia.moments_tail, inertia.axes, inertia.axes_tail
-    regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, False, 0.0, 0.0, 0)
+    k = _SYMMETRY_AXIS[symmetry] if symmetry != "spherical" else _AXIS_NEAR_A_SPHERE[inertia.apart]
+    resolved = Resolved.of(inertia, np.array((x, y, z)))
+    parts = inertia.moments, inertia.moments_tail, inertia.axes, *resolved
+    regime, beyond, apart, axis, figures = precession_figures(k, *parts, False, 0.0, 0.0, 0)
     if regime == UNDECIDED:
-        exact = exact_difference(Resolved.of(inertia, np.array((x, y, z))))
-        regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, True, *exact)
+        regime, beyond, apart, axis, figures = precession_figures(k, *parts, True, *exact_difference(resolved))
     if regime == UNREACHABLE:
         raise too_near_the_separatrix()
-    if apart:
-        warnings += (_DIFFERENT_AS_GIVEN if beyond else _equal_within_rounding("two moments"),)
-    told = _TOLD[symmetry, regime, beyond]
+    if symmetry == "spherical" or beyond:
+        warnings += (NEARLY_EQUAL,)
+    elif apart:
+        warnings += (_EQUAL_IN_FIGURES,)
+    told = _TOLD[symmetry if k < 0 else _SYMMETRY_ABOUT[k], regime, beyond]
     absent = told.absent.copy()
-    resolved = Resolved.of(inertia, np.array((x, y, z)))
-    tilt = middle_axis_tilt(resolved, inertia.axes) if symmetry == "triaxial" or beyond else None
-    if tilt is not None and not isfinite(tilt.least):
-        code, reason = _LOST[OUT_OF_RANGE]
-        absent["middle_axis_tilt"] = reason
-        warnings += (Notice(code, f"middle_axis_tilt {reason} and is null"),)
+    tilt = middle_axis_tilt(resolved, inertia)
+    if tilt is not None:
+        absent.pop("middle_axis_tilt", None)
+        if not isfinite(tilt.least):
+            code, reason = _LOST[OUT_OF_RANGE]
+            absent["middle_axis_tilt"] = reason
+            warnings += (Notice(code, f"middle_axis_tilt {reason} and is null"),)
     if told.regime == "steady" and inertia.moments[0] > 0.0:
-        why = unstable_spin(_RANKS[symmetry], resolved.angular_velocity.tolist())
+        why = unstable_spin(inertia.apart, resolved.angular_velocity.tolist())
         warnings += () if why is None else (unstable_axis(why),)
+    if told is _CONSTANT and isnan(figures[0]):
+        absent["body_rate"] = missing_reasons.STEADY_IN_BODY
+    if not isnan(figures[3]):
+        # Of two moments that are equal in the figures of a symmetric body, and differ as given.
+        absent.pop("flip_interval", None)
     if OUT_OF_RANGE in figures or UNRESOLVED in figures:
         lost = {name: _LOST[figure] for name, figure in zip(FIGURES, figures, strict=True) if figure in _LOST}
         absent |= {name: reason for name, (_, reason) in lost.items()}
@@ -220,10 +227,10 @@ def _components(vector: Floats | tuple[float, float, float]) -> tuple[float, flo
 _SYMMETRY_AXIS: Mapping[Symmetry, int] = {"triaxial": -1, "oblate": 2, "prolate": 0, "linear": 0}
 """Number, in ascending order, of the moment that is not equal to the other two."""
 
+_AXIS_NEAR_A_SPHERE = {(False, True): 2, (True, False): 0, (True, True): -1}
+"""The same of three nearly equal moments, by which of them differ."""
 
-_RANKS: Mapping[Symmetry, tuple[int, int, int]] = {"triaxial": (0, 1, 2), "oblate": (0, 0, 1), "prolate": (0, 1, 1)}
-"""Ranks of the moments in ascending order, equal ones alike."""
-
+_SYMMETRY_ABOUT: Mapping[int, Symmetry] = {2: "oblate", 0: "prolate"}
 
 _LOST: Mapping[float, tuple[str, str]] = {
     OUT_OF_RANGE: ("out-of-range", "leaves the range of double precision"),
@@ -255,12 +262,21 @@ _BEYOND = (
     "not move as a symmetric one",
     OF_SYMMETRIC_BODIES,
 )
+_NEAR_A_SPHERE = (
+    "the three moments are nearly equal, and the body moves neither as a sphere nor as one with an axis of symmetry",
+    OF_SYMMETRIC_BODIES,
+)
 _NEVER_RETURNS = missing_reasons.ON_THE_SEPARATRIX, _OF_A_CHANGE[:-1]
-_TRIAXIAL = {
-    STEADY: RegimeReport("steady", None, _absent(_THREE, (missing_reasons.STEADY_BY_AXIS, _OF_A_CHANGE))),
-    PERIODIC: RegimeReport("periodic", None, _absent(_THREE)),
-    SEPARATRIX: RegimeReport("separatrix", None, _absent(_THREE, _NEVER_RETURNS)),
-}
+
+
+def _of_three(reason: tuple[str, tuple[str, ...]]) -> dict[int, RegimeReport]:
+    return {
+        STEADY: RegimeReport("steady", None, _absent(reason, (missing_reasons.STEADY_BY_AXIS, _OF_A_CHANGE))),
+        PERIODIC: RegimeReport("periodic", None, _absent(reason)),
+        SEPARATRIX: RegimeReport("separatrix", None, _absent(reason, _NEVER_RETURNS)),
+    }
+
+
 _UNLIKE_SYMMETRIC = {
     PERIODIC: RegimeReport("periodic", None, _absent(_BEYOND)),
     SEPARATRIX: RegimeReport("separatrix", None, _absent(_BEYOND, _NEVER_RETURNS)),
@@ -269,7 +285,7 @@ _CONSTANT = RegimeReport(
     "steady",
     None,
     _absent(
-        (missing_reasons.STEADY_IN_BODY, ("body_rate", *_OF_A_CHANGE)),
+        (missing_reasons.STEADY_IN_BODY, _OF_A_CHANGE),
         (missing_reasons.SAME_DIRECTION, ("order_of_directions",)),
         (missing_reasons.NO_MIDDLE_AXIS, ("middle_axis_tilt",)),
     ),
@@ -287,9 +303,10 @@ def order_of_directions(symmetry: Symmetry) -> str:
 def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], RegimeReport]:
     """Return what is told by symmetry, regime and whether a symmetric body does not move as one."""
     found: dict[tuple[Symmetry, int, bool], RegimeReport] = {
-        ("triaxial", regime, False): told for regime, told in _TRIAXIAL.items()
+        ("triaxial", regime, False): told for regime, told in _of_three(_THREE).items()
     }
-    symmetric: tuple[Symmetry, ...] = ("oblate", "prolate", "linear")
+    found |= {("spherical", regime, False): told for regime, told in _of_three(_NEAR_A_SPHERE).items()}
+    symmetric: tuple[Symmetry, ...] = ("oblate", "prolate")
     for symmetry in symmetric:
         found[symmetry, STEADY, False] = _CONSTANT
         found[symmetry, PERIODIC, False] = RegimeReport("periodic", order_of_directions(symmetry), _NO_MIDDLE_AXIS)
@@ -300,14 +317,7 @@ def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], RegimeReport]:
 _TOLD = _told_of_all()
 
 
-_DIFFERENT_AS_GIVEN = Notice(
-    "moments-nearly-equal",
-    "two moments differ by less than 16 units in the last place of the largest; the difference is taken as given, and "
-    "half a unit in a moment may change the whole motion",
-    ("body",),
+_EQUAL_IN_FIGURES = equal_within_rounding(
+    "two moments",
+    "the figures that only a symmetric body has; period, and angle in it, are those of the moments as given",
 )
-
-
-def _equal_within_rounding(which: str) -> Notice:
-    detail = f"{which} differ by less than 16 units in the last place of the largest and are taken as equal"
-    return Notice("moments-equal-within-rounding", detail, ("body",))

@@ -83,18 +83,18 @@ def unstable_axis(why: str) -> Notice:
     return Notice("unstable-axis", why, ("angular_velocity",))
 
 
-def unstable_spin(ranks: Sequence[int], components: Sequence[float]) -> str | None:
+def unstable_spin(apart: tuple[bool, bool], components: Sequence[float]) -> str | None:
     """Return why a steady spin is unstable, None where it is stable.
 
     Parameters
     ----------
-    ranks : sequence of 3 int
-        As in `classify_equilibrium`.
+    apart : tuple of 2 bool
+        Whether the middle moment differs from the smallest, and the largest from the middle one.
     components : sequence of 3 float
         Of the spin along ascending principal axes; those that do not vanish lie along axes of equal moments.
     """
     axis = max(range(3), key=lambda k: abs(components[k]))
-    verdict = classify_equilibrium(ranks, axis, components[axis] != 0.0)
+    verdict = classify_equilibrium((0, int(apart[0]), sum(apart)), axis, components[axis] != 0.0)
     return None if verdict.stable else UNSTABLE_SPINS[verdict.kind]
 
 

@@ -13,6 +13,7 @@ from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.closed_form.principal_frame import PrincipalFrame
 from core.systems.system import Floats
+from core.work import spend
 
 Faces = NDArray[np.int64]
 
@@ -183,6 +184,7 @@ def check_resolution(resolution: int, least: int) -> None:
         raise BudgetExceeded(
             "subdivisions", resolution, FINEST, path=("resolution",), remedy="ask for a coarser surface"
         )
+    spend(20 * resolution * resolution)
 
 
 class Geodesic(NamedTuple):

@@ -8,6 +8,7 @@ from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from core.systems.system import Floats
+from core.work import spend
 
 MOST = 1_000_000
 
@@ -43,6 +44,7 @@ def initial_states(body: MassProperties, energy: float, count: int, seed: int) -
         raise BudgetExceeded("states", count, MOST, path=("count",), remedy="ask for fewer states")
     if seed < 0:
         raise InvalidParameter("seed", "be at least 0")
+    spend(count)
     surface = EnergyEllipsoid.of(body, energy)
     directions = np.random.Generator(np.random.PCG64(seed)).normal(size=(count, 3))
     directions /= np.sqrt((directions * directions).sum(axis=1))[:, None]

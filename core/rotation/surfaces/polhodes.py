@@ -26,8 +26,11 @@ from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.figures import OUT_OF_RANGE, stated
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from core.systems.system import Floats
+from core.work import spend
 
 MOST_POINTS = 100_000
+WORK_OF_A_CURVE = 20
+"""Units of work (`core.work`) beside those of its points: the constants of its motion are set up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +122,7 @@ def _shares(principal: PrincipalInertia) -> tuple[float, float] | None:
         return scaled(float(a[j] - a[k]), float((a[j] - (a[j] - a[k])) - a[k] + (b[j] - b[k])), 0)
 
     low, high, whole = difference(1, 0), difference(2, 1), difference(2, 0)
-    if low.high == 0.0 or high.high == 0.0:
+    if not all(principal.apart):
         return None
 
     def share(step: Scaled, outer: Scaled) -> float:
@@ -151,3 +154,4 @@ def check_count(count: int) -> None:
         raise InvalidParameter("points", "be at least 8")
     if count > MOST_POINTS:
         raise BudgetExceeded("points", count, MOST_POINTS, path=("points",), remedy="ask for fewer points on a curve")
+    spend(count + WORK_OF_A_CURVE)

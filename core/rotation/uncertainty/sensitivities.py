@@ -144,10 +144,7 @@ class Sensitivities:
             # The component along the third axis drifts, and turns the other two.
             turn = max(first, third) * self.largest * time
             return step * (1.0 + turn) + force * time * (1.0 + 0.5 * turn)
-        # Grönwall's lemma, with the symmetric part of the Jacobian; the middle coefficient has the other sign.
-        steepest = max(abs(first - second), abs(second - third), abs(third + first))
-        power = math.sqrt(1.0 / 3.0) * steepest * self.largest * time
-        return (step + force * time) * math.exp(power) if power < _MOST else math.inf
+        return (step + force * time) * growth_factor(first, second, third, math.sqrt(1.0 / 3.0) * self.largest * time)
 
     def crosswise(self, time: float) -> float:
         """Return by how much what is across a steady spin along a principal axis grows."""
@@ -168,6 +165,33 @@ class Sensitivities:
         for a, b in ((one, other), (other, one)):
             skew = max(skew, min(math.sqrt(b / a) if a else math.inf, 1.0 + b * rate))
         return skew
+
+
+def growth_factor(first: float, second: float, third: float, time: float) -> float:
+    """Return by how much a disturbance may have grown, by Grönwall's lemma in the norm that shows it best.
+
+    With the sizes q of Euler's coefficients (that of the middle axis has the other sign), the square of a difference of
+    two motions that weighs the axis k of an extreme moment s >= 1 times the others grows no faster than by the
+    symmetric part of the Jacobian in that norm: with k the axis of the largest moment by
+
+        max(|q_1 - q_2|, s q_3 + q_1/s, |s q_3 - q_2/s|)
+
+    per unit of time, and the difference itself is at most s times as large. Where two moments are nearly equal, q_3 is
+    small, and s in proportion to the time leaves a growth in proportion to it, as for two equal moments.
+
+    Parameters
+    ----------
+    first, second, third : float
+        (C - B)/A, (C - A)/B, (B - A)/C.
+    time : float
+        In units of sqrt(3) over the largest rate: |m.e|-type terms are at most 1/sqrt(3) of the product of norms.
+    """
+    least = math.inf
+    for own, other in ((third, first), (first, third)):
+        for weight in {1.0, max(1.0, time * max(other, second))}:
+            rate = max(abs(other - second), weight * own + other / weight, abs(weight * own - second / weight))
+            least = min(least, math.log(weight) + rate * time)
+    return math.exp(least) if least < _MOST else math.inf
 
 
 def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion) -> tuple[float, float]:

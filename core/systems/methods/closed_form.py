@@ -11,6 +11,7 @@ from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Family, Integration
 from core.systems.system import Floats, System
 from core.systems.trajectory import Work
+from core.work import spend
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,7 @@ class ClosedFormEvaluation(AbstractMethod):
 
     order: ClassVar[None] = None
     family: ClassVar[Family] = "closed form"
+    between_steps: ClassVar[str] = "There are no steps: the closed form is evaluated at every time by itself."
     when_to_use: ClassVar[str] = (
         "Always, where a closed form exists: it is right to the last digits at any time and faster than every "
         "integrator that reaches an error of 1e-3."
@@ -38,6 +40,7 @@ class ClosedFormEvaluation(AbstractMethod):
                 path=("kind",),
                 remedy="use dormand-prince-853, or leave the method to the service",
             )
+        spend(times.size)
         return Integration(exact.sample(times), Work(times.size))
 
     def finer(self) -> None:

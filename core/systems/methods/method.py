@@ -13,6 +13,7 @@ from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.systems.budget import Budget
 from core.systems.system import Floats, System
 from core.systems.trajectory import Work
+from core.work import WorkLimitReached, remaining, spend
 
 Family = Literal["closed form", "explicit", "implicit", "structure-preserving"]
 Invariance = Literal["every first integral", "quadratic invariants", "invariants of every part", "time symmetry"]
@@ -56,6 +57,8 @@ class AbstractMethod(ABC):
         ``"closed form"``, ``"explicit"``, ``"implicit"`` or ``"structure-preserving"``.
     preserves : tuple of str
         What the method keeps to round-off, whatever its step.
+    between_steps : str
+        How samples come about whose times lie between the ends of steps.
     when_to_use : str
         One sentence.
     """
@@ -64,6 +67,7 @@ class AbstractMethod(ABC):
     order: ClassVar[int | None]
     family: ClassVar[Family]
     preserves: ClassVar[tuple[Invariance, ...]] = ()
+    between_steps: ClassVar[str]
     when_to_use: ClassVar[str]
 
     @abstractmethod
@@ -162,6 +166,11 @@ class Marching(AbstractMethod):
 
     setting: ClassVar[str]
 
+    @property
+    def grid_step(self) -> float | None:
+        """Length of the steps (s), None for methods that choose them."""
+        return None
+
     def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
         """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""
         budget = budget or Budget()
@@ -182,12 +191,26 @@ class Marching(AbstractMethod):
             run = side[-1] - side[0] + 1 == side.size
             place = slice(side[0], side[-1] + 1) if run else side
             targets, rows = _outwards(times[place])
-            leg = self._march(system, begin, targets, budget.evaluations - evaluations, units)
+            leg = self._limited(system, begin, targets, budget.evaluations - evaluations, units)
             states[place] = leg.states if rows is None else leg.states[rows]
             evaluations += leg.evaluations
             steps += leg.steps
             rejected += leg.rejected
-        return Integration(units.given_states(states), Work(times.size, evaluations, steps, rejected))
+        return Integration(
+            units.given_states(states), Work(times.size, evaluations, steps, rejected, step=self.grid_step)
+        )
+
+    def _limited(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+        """March within the work that may be done here as well as within the budget."""
+        left = remaining()
+        try:
+            leg = self._march(system, start, targets, int(min(limit, max(0.0, left))), units)
+        except BudgetExceeded:
+            if left < limit:
+                raise WorkLimitReached from None
+            raise
+        spend(leg.evaluations)
+        return leg
 
     @abstractmethod
     def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:

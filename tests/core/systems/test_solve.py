@@ -97,7 +97,7 @@ def test_a_run_that_has_not_converged_is_judged_by_one_that_has(method, step: fl
     true = measured(trajectory.state, problem.exact.sample(times), times)
     assert true.largest <= trajectory.accuracy.error
     assert true.final <= trajectory.accuracy.final_error
-    assert {notice.code for notice in trajectory.warnings} <= {"accuracy-not-reached", "step-shortened"}
+    assert {notice.code for notice in trajectory.warnings} <= {"accuracy-not-reached"}
 
 
 def test_where_nothing_converges_the_statement_says_that_it_is_uncertain() -> None:
@@ -212,11 +212,11 @@ def test_near_the_separatrix_the_statement_owns_up() -> None:
     assert max(trajectory.accuracy.drifts.values()) < 1e-10
 
 
-def test_a_step_longer_than_every_interval_is_said_not_to_be_taken():
-    system = oscillator()
-    codes = [
-        {notice.code for notice in solve(system, np.linspace(0, 1, count), method=RungeKutta4(0.1)).warnings}
-        for count in (101, 6)
-    ]
-    assert "step-shortened" in codes[0]
-    assert "step-shortened" not in codes[1]
+@pytest.mark.parametrize("samples", [2, 6, 101])
+def test_a_named_step_is_the_step_that_is_run_and_the_work_says_so(samples: int) -> None:
+    system, times = oscillator(), np.linspace(0, 1, samples)
+    found = solve(system, times, method=RungeKutta4(0.1))
+    assert (found.work.step, found.work.steps) == (0.1, 10)
+    assert (found.state[-1] == solve(system, [1.0], method=RungeKutta4(0.1)).state[0]).all()
+    assert solve(system, times, method=DormandPrince853(1e-8)).work.step is None
+    assert solve(system, times).work.step is None

@@ -6,17 +6,16 @@ is returned, because an error that is stated covers what is sent.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil, floor, inf, log10
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import Field
 
 from core.notices import Notice
+from core.systems.system import Floats
 from core.systems.trajectory import Accuracy
-
-Floats = NDArray[np.float64]
+from core.work import spend
 
 ROUND_TRIP = 17
 """Significant digits that tell every double from every other."""
@@ -24,37 +23,15 @@ ROUND_TRIP = 17
 EXACT_POWERS = 22
 """Powers of ten up to this are doubles without rounding."""
 
+NUMBERS_PER_UNIT = 4
+"""Numbers that are rounded in a unit of work (`core.work`)."""
+
 NEAREST = 2.0**-53
 """From a decimal to the double nearest to it."""
 
 
-class _ReadAsOne:
-    """Has the union read and documented as one thing, so that a fault names its place and not its members."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
-        choices = [
-            {"type": "literal", "expected": ["meaningful"]},
-            {"type": "int", "strict": True, "ge": 1, "le": ROUND_TRIP},
-        ]
-        return {
-            "type": "custom-error",
-            "schema": {"type": "union", "mode": "left_to_right", "choices": choices},
-            "custom_error_type": "digits",
-            "custom_error_message": f"must be 'meaningful' or an integer from 1 to {ROUND_TRIP}",
-        }
-
-    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        whole = {"type": "integer", "minimum": 1, "maximum": ROUND_TRIP}
-        return {"anyOf": [{"type": "string", "const": "meaningful"}, whole]}
-
-
-Digits = Annotated[Literal["meaningful"] | int, _ReadAsOne()]
-DIGITS: Any = Field(
-    default=None,
-    description="Write samples with fewer digits: 'meaningful' keeps the decimal places that the error and the "
-    "inherited error support, a number keeps as many significant digits. The stated error covers it. "
-    "Default: every number reads back as the same double.",
-)
+Digits = Literal["meaningful"] | int
+"""Significant digits of each number, or ``"meaningful"``: the decimal places that the stated errors support."""
 
 
 def rounded(values: Floats, digits: Digits, error: float, scale: float | None = None) -> tuple[Floats, float]:
@@ -68,6 +45,8 @@ def rounded(values: Floats, digits: Digits, error: float, scale: float | None = 
     scale : float, optional
         Largest norm of the motion; the largest magnitude in `values` if omitted, which errs to more digits.
     """
+    # Most are rounded all at once, but any may have to go through its decimals.
+    spend(values.size / NUMBERS_PER_UNIT)
     if digits == "meaningful":
         largest = _largest(values) if scale is None else scale
         if not (0.0 < error < inf and 0.0 < largest < inf):
@@ -117,16 +96,10 @@ def to_significant(values: Floats, digits: int) -> Floats:
     return np.where(np.isfinite(out), out, flat).reshape(values.shape)
 
 
-def covering(stated: Accuracy, added: float) -> dict[str, Any]:
+def covering(stated: Accuracy, added: float) -> Accuracy:
     """Return the statement of error of samples to which rounding added an error."""
-    return {
-        "requested": stated.requested,
-        "error": stated.error + added,
-        "final_error": None if stated.final_error is None else stated.final_error + added,
-        "how": stated.how,
-        "inherited": stated.inherited,
-        "drifts": dict(stated.drifts),
-    }
+    final = None if stated.final_error is None else stated.final_error + added
+    return replace(stated, error=stated.error + added, final_error=final)
 
 
 def notices_of(stated: Accuracy, added: float) -> tuple[Notice, ...]:

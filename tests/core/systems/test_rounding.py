@@ -11,10 +11,10 @@ import orjson
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from service.responses.rounding import Digits, notices_of, rounded, to_places, to_significant
 
 from core.systems.trajectory import Accuracy
 from service.app import create_app
-from service.responses.rounding import Digits, notices_of, rounded, to_places, to_significant
 from service.settings import Settings
 from tests.service.conftest import client_of
 

@@ -1,0 +1,120 @@
+"""Requests as numpy archives: the mirror of `service.responses.npz`, for arrays that JSON would make ten times larger.
+
+The member ``metadata.json`` is the request, in which ``{"array": name}`` stands for each array; the array is the member
+``name.npy``. Everything is checked before it is unpacked: how many members there are and how large, that an array is
+one of plain numbers, and that its header says no more than is there. Nothing is unpickled.
+"""
+
+from __future__ import annotations
+
+import io
+import zlib
+from collections.abc import Mapping
+from typing import Any
+from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from service.problems import Refusal
+from service.responses.npz import METADATA
+
+MOST_MEMBERS = 64
+
+ENTRY = b"PK\x01\x02"
+"""How the entry of a member begins in the directory of an archive."""
+
+Arrays = Mapping[str, NDArray[Any]]
+
+
+def unpacked(body: bytes, most_bytes: int) -> tuple[bytes, Arrays]:
+    """Return the JSON document of an archive, and its arrays by name.
+
+    Parameters
+    ----------
+    most_bytes : int
+        That all members may have when they are unpacked.
+
+    Raises
+    ------
+    Refusal
+        For what is no such archive.
+    """
+    # Counted before the directory is read: it might have a hundred thousand entries.
+    if body.count(ENTRY) > MOST_MEMBERS:
+        raise Refusal("too-complex", f"the archive has more than {MOST_MEMBERS} members")
+    try:
+        with ZipFile(io.BytesIO(body)) as archive:
+            members = archive.infolist()
+            if sum(member.file_size for member in members) > most_bytes:
+                detail = f"the members have more than {most_bytes} bytes when unpacked, the limit max_body_bytes"
+                raise Refusal("body-too-large", detail, extra={"limit": most_bytes})
+            contents = {member.filename: archive.read(member) for member in members if _plain(member)}
+    except (BadZipFile, zlib.error, ValueError, EOFError, OSError, RuntimeError, NotImplementedError) as fault:
+        raise _invalid("cannot be read as a zip archive") from fault
+    if len(contents) < len(members):
+        raise _invalid("names a member twice")
+    document = contents.pop(METADATA, None)
+    if document is None:
+        raise _invalid(f"has no member {METADATA}")
+    return document, {name.removesuffix(".npy"): _array(name, content) for name, content in contents.items()}
+
+
+def _plain(member: ZipInfo) -> bool:
+    if member.filename != METADATA and not member.filename.endswith(".npy"):
+        raise _invalid(f"has a member that is neither {METADATA} nor an array (.npy)")
+    if member.compress_type not in (ZIP_STORED, ZIP_DEFLATED) or member.flag_bits & 1:
+        raise _invalid("has a member that is encrypted, or neither stored nor deflated")
+    return True
+
+
+def _array(name: str, content: bytes) -> NDArray[Any]:
+    """Return the array of a member."""
+    text = io.BytesIO(content)
+    try:
+        version = npy.read_magic(text)
+        read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+        shape, by_columns, dtype = read_header(text)
+    # A header is a literal of Python; what its reader makes of another text is not documented.
+    except Exception as fault:
+        raise _invalid(f"has a member whose header cannot be read: {name[:40]!r}") from fault
+    if dtype.kind not in "iuf" or dtype.itemsize > 8 or len(shape) not in (1, 2):
+        raise _invalid(f"has an array that is not one of plain numbers in one or two dimensions: {name[:40]!r}")
+    start = text.tell()
+    if len(content) - start != dtype.itemsize * int(np.prod(shape, dtype=object)):
+        raise _invalid(f"has an array of another size than its header says: {name[:40]!r}")
+    flat = np.frombuffer(content, dtype, offset=start)
+    return flat.reshape(shape, order="F" if by_columns else "C")
+
+
+def _invalid(rule: str) -> Refusal:
+    return Refusal("invalid-archive", f"the body {rule}")
+
+
+def taking_arrays(schema: Any) -> Any:
+    """Return a validator's schema that takes ``{"array": name}`` for every list, with the arrays as its context."""
+    if isinstance(schema, (list, tuple)):
+        return type(schema)(map(taking_arrays, schema))
+    if not isinstance(schema, Mapping):
+        return schema
+    walked = {key: value if key == "metadata" else taking_arrays(value) for key, value in schema.items()}
+    if walked.get("type") == "any" and (walked.get("metadata") or {}).get("rows"):
+        return {"type": "function-plain", "function": {"type": "with-info", "function": _array_for}}
+    if walked.get("type") == "list":
+        return {"type": "function-wrap", "function": {"type": "with-info", "function": _list_for}, "schema": walked}
+    return walked
+
+
+def _array_for(value: Any, info: Any) -> Any:
+    """Return the array that a value names, anything else as it is."""
+    name = value.get("array") if type(value) is dict and len(value) == 1 else None
+    return info.context.get(name, value) if type(name) is str else value
+
+
+def _list_for(value: Any, handler: Any, info: Any) -> Any:
+    found = _array_for(value, info)
+    if isinstance(found, np.ndarray):
+        # Rows of a fixed length are tuples to the validator.
+        found = found.tolist() if found.ndim == 1 else list(map(tuple, found.tolist()))
+    return handler(found)
