@@ -134,8 +134,9 @@ class Layout:
             steps, owner = self._steps(entry["loc"])
             cause = entry.get("ctx", {}).get("error")
             if isinstance(cause, InvalidParameter):
-                fault = Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy)
-                told.append((fault, code_of(cause)))
+                rule = f"must {cause.rule}"
+                remedy = cause.remedy or (_REMEDIES["float_type"] if rule == _RULES["float_type"] else None)
+                told.append((Fault(pointer_of((*steps, *cause.path)), rule, remedy), code_of(cause)))
             else:
                 told.append((self._fault(entry, steps, owner, document), "invalid-parameter"))
         told = sorted(told, key=lambda one: _rank(one[0]))[:MOST_FAULTS]

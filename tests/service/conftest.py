@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ import httpx
 import pytest
 
 from service.app import Service
+from service.routes import questions
+from service.routing import PostRoute
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[2]
@@ -34,8 +37,27 @@ async def client_of(app: Any) -> AsyncIterator[httpx.AsyncClient]:
         yield client
 
 
+INLINE: dict[str, Any] = {"inline_work": 10**12, "inline_bytes": 10**9}
+"""Settings with which everything that is small is answered in this process, whatever it costs."""
+
+
 def toy_service(**settings: Any) -> Service:
     return Service(Settings(cached_answers=0, **settings), TOYS)
+
+
+def inline_toys(**settings: Any) -> Service:
+    """Return the toys' service without compute processes."""
+    return Service(Settings(cached_answers=0, **INLINE, **settings), "tests.service.toy_routes:inline_table")
+
+
+def everything_inline() -> tuple[PostRoute, ...]:
+    """Return the route table with every question small."""
+    return tuple(replace(route, small=lambda question: True) for route in questions())
+
+
+def inline_service(**settings: Any) -> Service:
+    """Return the service without compute processes."""
+    return Service(Settings(cached_answers=0, **INLINE, **settings), "tests.service.conftest:everything_inline")
 
 
 class Server:

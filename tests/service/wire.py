@@ -8,11 +8,11 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import uvicorn
+from service.http.protocol import Protocol
+from service.http.rounds import ROUNDS
 from uvicorn.server import ServerState
 
 from service.app import Service
-from service.http.protocol import Protocol
-from service.http.rounds import ROUNDS
 from service.settings import Settings
 from tests.service.conftest import TOYS
 from tests.service.toy_routes import GOOD

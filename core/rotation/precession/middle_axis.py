@@ -84,7 +84,7 @@ def middle_axis_tilt(resolved: Resolved, inertia: PrincipalInertia) -> MiddleAxi
     MiddleAxisTilt or None
         None at rest and where two moments are equal, so that there is no middle axis.
     """
-    i, it, w, wt = resolved
+    i, it, w, wt = resolved.numbers
     turning = [k for k, x in enumerate(w.tolist()) if x != 0.0]
     if not all(inertia.apart) or not turning:
         return None
