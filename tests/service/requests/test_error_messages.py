@@ -144,7 +144,7 @@ def test_angles_in_degrees_are_told_to_be_radians() -> None:
 
 
 def test_angles_in_degrees_are_told_to_be_radians_beside_digits() -> None:
-    route = ROUTES["/v1/scenes/chain-on-wedge"]
+    route = ROUTES["/v1/certified/scenes/chain-on-wedge"]
     question = ANSWERING.read(route, json.dumps({**CHAIN, "slopes": ["30", "50"], "digits": 20}).encode())
     with pytest.raises(InvalidParameter) as caught:
         ANSWERING.answer(route, question)
@@ -167,7 +167,7 @@ def test_a_bound_is_told_with_its_unit() -> None:
     [
         (asked(outputs=["omega"]), "/v1/rotation/trajectory", "/outputs/0", "angular_velocity"),
         (asked(outputs=["time", "quaternion"]), "/v1/rotation/trajectory", "/outputs/1", "attitude"),
-        (asked(outputs=["omega"], digits=20), "/v1/rotation/trajectory", "/outputs/0", "angular_velocity"),
+        (asked(outputs=["omega"], digits=20), "/v1/certified/rotation/trajectory", "/outputs/0", "angular_velocity"),
         ({**CHAIN, "outputs": ["tension"]}, "/v1/scenes/chain-on-wedge", "/outputs/0", "apex_tension"),
         ({**CHAIN, "outputs": ["liftoff"]}, "/v1/scenes/chain-on-wedge", "/outputs/0", "lift_off"),
         ({**ROD, "hole": "halfcylinder"}, "/v1/scenes/rod-in-hole", "/hole", "half-cylinder"),
@@ -206,9 +206,12 @@ def test_the_headline_names_the_fault_that_explains_the_others() -> None:
         ({"start": 5.0, "stop": 0.0, "step": -0.5}, "step", "count = 11"),
     ],
 )
-@pytest.mark.parametrize("digits", [{}, {"digits": 20}])
-def test_times_by_a_step_are_answered_with_their_number(span: Any, key: str, remedy: str, digits: Any) -> None:
-    found = errors(asked(times=span, **digits))
+@pytest.mark.parametrize("certified", [False, True])
+def test_times_by_a_step_are_answered_with_their_number(span: Any, key: str, remedy: str, certified: bool) -> None:
+    if certified:
+        found = errors(asked(times=span, digits=20), "/v1/certified/rotation/trajectory")
+    else:
+        found = errors(asked(times=span))
     assert found[0][0] == f"/times/{key}"
     assert found[0][2] == f"give the number of times with both ends in its place: {remedy}"
 
