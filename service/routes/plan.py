@@ -20,6 +20,7 @@ from service.execution import cost_model as pricing
 from service.execution.cost_model import CalibratedCost, CostModel, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
+from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
 from service.routes.bodies import speed_to_follow
 from service.routes.rotation.trajectory import T_HANDLE
@@ -93,7 +94,9 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
     def plan(question: PlanRequest, budget: Budget) -> Answer:
         route = table.get(question.path)
         if route is None:
-            fault = Fault("/path", "must be the path of a question", "GET /openapi.json lists every path")
+            near = nearest_path(question.path, table)
+            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
+            fault = Fault("/path", "must be the path of a question", remedy)
             return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
         try:
             asked = reader(route.path).read(json.dumps(question.request).encode())

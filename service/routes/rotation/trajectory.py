@@ -48,6 +48,18 @@ TIMES: Any = Field(description="Measured from the given state, of either sign, i
 ACCURACY: Any = Field(
     default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the whole motion."
 )
+FLIP_INTERVAL: Any = Field(
+    description="Time between sign changes of the component along the middle axis. It exists about a stable axis too, "
+    "where the body does not turn over: see tumbles."
+)
+MIDDLE_AXIS_TILT: Any = Field(
+    description="Least and largest angle between the middle axis and the angular momentum in the whole motion; null at "
+    "rest and where two moments are equal. On the separatrix the limits 0 and pi."
+)
+TUMBLES: Any = Field(
+    description="Whether the middle axis turns over, from within 45 degrees of the angular momentum to within 45 "
+    "degrees of its opposite: every flip_interval, on the separatrix once."
+)
 METHOD: Any = Field(
     default=None, description="Leave it out to have the most accurate one chosen; it overrides the accuracy."
 )
@@ -124,7 +136,9 @@ class RotationSamples(Envelope, Generic[N]):
     model: Model
     method: str = Field(description="Kind of the method that computed the samples.")
     period: Seconds[N] | None = Field(description="Of the angular velocity in the body; null where there is none.")
-    flip_interval: Seconds[N] | None = Field(description="Between sign changes along the middle axis.")
+    flip_interval: Seconds[N] | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[Radians[N], Radians[N]] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     energy: Joules[N] | None = Field(description="Kinetic energy of the rotation.")
     angular_momentum: AngularMomentumMagnitude[N] | None = Field(description="Magnitude of the angular momentum.")
     work: Work
@@ -174,6 +188,8 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
         "method": found.motion.method,
         "period": found.period,
         "flip_interval": found.flip_interval,
+        "middle_axis_tilt": found.middle_axis_tilt,
+        "tumbles": found.tumbles,
         "energy": found.energy,
         "angular_momentum": found.angular_momentum,
         "accuracy": accuracy,

@@ -13,6 +13,8 @@ from core.bodies.composite import Composite, Part
 from core.bodies.mass_properties import MassProperties, diagonal
 from core.bodies.measured import PointMasses
 from core.bodies.solids import Cuboid, Cylinder, Disc
+from core.certified.exact_inertia import ExactInertia
+from core.certified.stability import certified_stability
 from core.errors import InvalidParameter, NotApplicable
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.precession import precession
@@ -207,3 +209,15 @@ def test_a_body_pinned_away_from_its_centre_of_mass_has_the_warning_not_free():
     body = PointMasses(1.0, [[1, 0, 0], [0, 2, 0], [0, 0, 3], [1, 1, 1]], "origin").mass_properties()
     assert "not-free" in {notice.code for notice in stability(body).warnings}
     assert "not-free" in {notice.code for notice in precession(body, np.array([1.0, 2.0, 3.0])).warnings}
+
+
+@pytest.mark.parametrize(("disturbance", "turns_over"), [((0.01, 0.01), True), ((20.0, 0.01), False)])
+def test_a_flip_is_said_of_a_body_that_turns_over_and_of_no_other(disturbance, turns_over):
+    flip = stability(diagonal((1.0, 2.0, 3.0)), 2.0, disturbance).flip
+    assert flip.interval is not None
+    assert flip.reason.startswith("it turns over every half period") == turns_over
+    assert ("never turns over" in flip.reason) != turns_over
+    exact = certified_stability(ExactInertia.of_moments((1, 2, 3)), 2, 20, disturbance).flip
+    assert exact.reason.split(";")[0] == flip.reason.split(";")[0]
+    oblique = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
+    assert certified_stability(oblique, 2, 20, disturbance).flip.reason.startswith("it turns") == turns_over
