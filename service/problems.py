@@ -251,6 +251,9 @@ class Problem:
             "code": self.type.code,
             **self.extra,
         }
+        wait = dict(self.headers).get("Retry-After")
+        if wait is not None:
+            document.setdefault("retry_after_seconds", float(wait))
         room = MOST_BYTES - len(orjson.dumps(document))
         entries: list[dict[str, str]] = []
         for fault in self.faults[:MOST_FAULTS]:

@@ -184,8 +184,8 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
         return None
     known = [entry if isinstance(entry, dict) else vars(entry) for entry in stated]
     worst: dict[str, Any] = max(known, key=lambda entry: float(entry["error"]))
-    # An error below the range of doubles is stated as a decimal string.
-    return {"error": float(worst["error"]), "how": worst["how"], "inherited": worst.get("inherited")}
+    # A certified answer's is a decimal string, as it may be below the range of doubles.
+    return {"error": worst["error"], "how": worst["how"], "inherited": worst.get("inherited")}
 
 
 def _evaluations(asked: Any, budget: Budget) -> int | None:

@@ -29,7 +29,24 @@ EXAMPLES = [(route, name) for route in ROUTES for name in route.examples]
 NUMBERED = {"DormandPrince853", "RungeKutta4"}
 """Names that end in a number in the field's own terms."""
 
-DATAMODEL = ["datamodel_code_generator", "--input-file-type", "openapi", "--output-model-type", "pydantic_v2.BaseModel", "--target-python-version", "3.11", "--use-annotated", "--use-type-alias", "--use-title-as-name", "--enum-field-as-literal", "all", "--naming-strategy", "full-path", "--formatters", "builtin"]
+DATAMODEL = [
+    "datamodel_code_generator",
+    "--input-file-type",
+    "openapi",
+    "--output-model-type",
+    "pydantic_v2.BaseModel",
+    "--target-python-version",
+    "3.11",
+    "--use-annotated",
+    "--use-type-alias",
+    "--use-title-as-name",
+    "--enum-field-as-literal",
+    "all",
+    "--naming-strategy",
+    "full-path",
+    "--formatters",
+    "builtin",
+]
 CLIENT = ["openapi_python_client", "generate", "--meta", "none"]
 
 
