@@ -85,7 +85,7 @@ class Service(FastAPI):
             keys=self._keys,
         )
         self._handlers, self._bodies = dispatcher.handlers, dispatcher.bodies
-        document_routes(self, self.table, dispatcher)
+        document_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
         self._http = self._with_cors(self._known_or_not)
         self._openapi_text = b""
 

@@ -78,7 +78,7 @@ class Settings(BaseSettings):
         "needs more is given to a compute process.",
     )
     inline_bytes: int = Field(
-        default=16_384, ge=0, description="Request bodies longer than this are read in another process."
+        default=8_192, ge=0, description="Request bodies longer than this are read in another process."
     )
     deadline_seconds: float = Field(
         default=30.0, gt=0, le=LONGEST, description="Longest computation; a longer one is killed (503)."

@@ -39,13 +39,13 @@ class Executor:
 
     async def answer(self, route: PostRoute, body: bytes, npz: bool, media: str | None, sender: Sender) -> Document:
         """Return the answer to a request; parameters and errors are those of `Compute.answer`."""
-        if not npz and media is None and len(body) <= self._bytes:
+        if sender.key is not None:
+            # What it costs is charged when that is known; who has debts is refused.
+            sender.key.work(0.0)
+        if not npz and len(body) <= self._bytes:
             since = perf_counter()
-            if sender.key is not None:
-                # What it will cost is charged when it is known; who has debts is refused.
-                sender.key.work(0.0)
             try:
-                document = self.answer_inline(route, body)
+                document = self.answer_inline(route, body, media)
             finally:
                 seconds = perf_counter() - since
                 if sender.key is not None:
@@ -60,8 +60,13 @@ class Executor:
                 return document
         return await self._compute.answer(route, body, npz, media, sender)
 
-    def answer_inline(self, route: PostRoute, body: bytes) -> Document | None:
+    def answer_inline(self, route: PostRoute, body: bytes, media: str | None = None) -> Document | None:
         """Return the answer to a small JSON request, None for one that belongs into a compute process.
+
+        Parameters
+        ----------
+        media : str or None
+            Media type of the document, None for JSON.
 
         Raises
         ------
@@ -73,7 +78,7 @@ class Executor:
                 question = self._handler.read(route, body)
                 if not route.small(question):
                     return None
-                return composed(route, self._handler.answer(route, question), None)
+                return composed(route, self._handler.answer(route, question), media)
         except WorkLimitReached:
             self._metrics.handed_over.labels(route.operation_id).inc()
             return None

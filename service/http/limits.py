@@ -163,7 +163,7 @@ class Bodies:
                         await _drop(receive, 4 * self._limit - size)
                     raise self._too_large()
                 if self.held + self._others() > self._held_limit:
-                    detail = f"bodies and answers under way take more than {self._held_limit} bytes, the limit max_held_bytes"
+                    detail = f"requests and answers take more than {self._held_limit} bytes, the limit max_held_bytes"
                     wait = {"retry_after_seconds": 1.0}
                     raise Refusal("too-busy", detail, headers=(("Retry-After", "1"), _CLOSE), extra=wait)
                 if not message.get("more_body"):

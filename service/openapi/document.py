@@ -15,7 +15,6 @@ from starlette.types import ASGIApp
 from core import bodies
 from core.quantities import members_of
 from service import VERSION
-from service.http.dispatch import Dispatcher
 from service.openapi import components
 from service.openapi.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
@@ -42,6 +41,14 @@ Refusals are application/problem+json (RFC 9457) with a stable code and JSON poi
 
 _PROBLEMS_OF_QUESTIONS = (400, 401, 406, 408, 413, 415, 422, 429, 500, 501, 503)
 
+PACKED = {
+    "type": "string",
+    "format": "binary",
+    "description": "numpy archive, as numpy.savez packs it: the JSON document as the member metadata.json, in which "
+    '{"array": "positions"} stands for the array of the member positions.npy.',
+}
+"""A request that is a numpy archive."""
+
 
 ABOUT: Mapping[str, Any] = {
     "title": "Polhode",
@@ -50,6 +57,7 @@ ABOUT: Mapping[str, Any] = {
     "openapi_url": None,
     "docs_url": None,
     "redoc_url": None,
+    "redirect_slashes": False,
     "separate_input_output_schemas": False,
 }
 """What FastAPI is told about the application as a whole."""
@@ -66,16 +74,18 @@ class _Dispatched(Response):
         await self._handler(scope, receive, send)
 
 
-def document_routes(app: FastAPI, routes: Sequence[Route], dispatcher: Dispatcher) -> None:
-    """Give FastAPI the route table, and what it is to answer where nothing of it fits."""
+def document_routes(
+    app: FastAPI, routes: Sequence[Route], handlers: Mapping[tuple[str, str], ASGIApp], unrouted: ASGIApp
+) -> None:
+    """Give FastAPI the routes, their handlers by method and path, and what answers where none of them fits."""
     for route in routes:
-        app.router.routes.append(_Route(route, dispatcher.handlers[route.method, route.path]))
+        app.router.routes.append(_Route(route, handlers[route.method, route.path]))
 
-    async def unrouted(request: Request, error: Exception) -> Response:
-        return _Dispatched(dispatcher.unrouted)
+    async def refuse(request: Request, error: Exception) -> Response:
+        return _Dispatched(unrouted)
 
-    app.add_exception_handler(404, unrouted)
-    app.add_exception_handler(405, unrouted)
+    app.add_exception_handler(404, refuse)
+    app.add_exception_handler(405, refuse)
 
 
 def openapi(app: FastAPI) -> dict[str, Any]:
@@ -100,6 +110,7 @@ def openapi(app: FastAPI) -> dict[str, Any]:
     for verbs in document["paths"].values():
         if "post" in verbs:
             verbs["post"]["security"] = [{}, {"key": []}]
+            verbs["post"]["requestBody"]["content"][archive.MEDIA_TYPE] = {"schema": PACKED}
         for operation in verbs.values():
             for status in operation["responses"]:
                 if int(status) >= 400:

@@ -74,7 +74,8 @@ def composed(route: PostRoute, answer: Answer, media: str | None) -> Document:
         For NaN and infinities.
     """
     numbers = array_size(answer)
-    spend(numbers / NUMBERS_PER_UNIT)
+    # A drawing is made point by point.
+    spend(numbers / (1 if media in route.representations else NUMBERS_PER_UNIT))
     if media == archive.MEDIA_TYPE:
         return Document(numbers, tuple(archive.archive(answer)))
     if media is not None:

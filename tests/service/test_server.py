@@ -328,7 +328,7 @@ from service.routes import questions
 from service.settings import Settings
 
 async def main():
-    service = create_app(Settings(cached_answers=0, compute_workers=1, inline_seconds=1e9))
+    service = create_app(Settings(cached_answers=0, compute_workers=1))
     async with service.lifespan():
         while not service.warm:
             await asyncio.sleep(0.02)

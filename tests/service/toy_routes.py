@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -71,11 +71,11 @@ class Told(Envelope):
 def handle(question: Ask, budget: Budget) -> dict[str, Any]:
     behaviour = question.behaviour
     if behaviour == "fail":
-        raise RuntimeError("secret of the house")
+        raise RuntimeError("secret of the service")
     if behaviour == "unreachable":
         raise AccuracyUnreachable(1e-30, 1e-15, "double precision")
     if behaviour == "sleep":
-        time.sleep(question.angular_velocity[0])
+        time.sleep(abs(question.angular_velocity[0]))
     if behaviour == "die":
         os.kill(os.getpid(), signal.SIGKILL)
     t = sample_times(question.times, budget)
@@ -88,9 +88,24 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
 
 def price(question: Ask, budget: Budget) -> float:
     samples = sample_count(question.times, budget)
-    if question.behaviour == "sleep":
-        return question.angular_velocity[0]
-    return 1.0 if question.behaviour == "die" else 1e-8 * samples
+    if question.behaviour in ("sleep", "die"):
+        # Less than no time is slept without being predicted.
+        return max(0.0, question.angular_velocity[0])
+    return 1e-8 * samples
+
+
+def is_small(question: Ask) -> bool:
+    return (
+        question.behaviour not in ("sleep", "die")
+        and (len(question.times) if isinstance(question.times, list) else question.times.count) <= 1000
+    )
+
+
+def is_small(question: Ask) -> bool:
+    return (
+        question.behaviour not in ("sleep", "die")
+        and (len(question.times) if isinstance(question.times, list) else question.times.count) <= 1000
+    )
 
 
 class Unlisted(MechanicsError):
@@ -106,9 +121,15 @@ TOY = PostRoute(
     Told,
     handle,
     price,
+    is_small,
     examples={"small": Example("three samples", GOOD)},
 )
 
 
 def table() -> tuple[PostRoute, ...]:
     return (TOY,)
+
+
+def inline_table() -> tuple[PostRoute, ...]:
+    """Return the same table with every question small, whatever it costs."""
+    return (replace(TOY, small=lambda question: True),)

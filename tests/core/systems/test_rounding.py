@@ -11,6 +11,7 @@ import orjson
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from service.responses.rounding import Digits, notices_of, rounded, to_places, to_significant
 
 from core.systems.rounding import Digits, notices_of, rounded, to_places, to_significant
 from core.systems.trajectory import Accuracy

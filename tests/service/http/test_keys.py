@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
+import hashlib
 import os
+import sys
+import threading
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +15,12 @@ import pytest
 
 from service.__main__ import main
 from service.http import keys as module
-from service.http.keys import Allowance, Keys, new_key
-from tests.service.conftest import client_of, toy_service
+from service.http.keys import Allowance, Key, Keys, new_key
+from service.problems import Refusal
+from tests.service.conftest import client_of, inline_toys
 from tests.service.toy_routes import GOOD
 
 pytestmark = pytest.mark.anyio
-
-INLINE: dict[str, Any] = {"inline_seconds": 1e9}
 
 
 class Clock:
@@ -44,7 +48,7 @@ async def test_only_known_keys_may_ask(tmp_path: Path) -> None:
     (first, one), (second, two) = new_key("alpha"), new_key("beta")
     file = tmp_path / "keys"
     file.write_text(f"# who may ask\n\n{one}\n{two}\n")
-    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
+    async with client_of(inline_toys(keys_file=file)) as client:
         for key in (first, second):
             assert (await client.post("/v1/toy", json=GOOD, headers=bearer(key))).status_code == 200
         unknown = [
@@ -88,7 +92,7 @@ async def test_the_rate_of_each_key_is_its_own(tmp_path: Path, clock: Clock) -> 
     (first, one), (second, two) = new_key("alpha"), new_key("beta")
     file = tmp_path / "keys"
     file.write_text(f"{one.replace('- -', '0.5 -')}\n{two}\n")
-    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
+    async with client_of(inline_toys(keys_file=file)) as client:
 
         async def ask(key: str) -> Any:
             return await client.post("/v1/toy", json=GOOD, headers=bearer(key))
@@ -101,18 +105,25 @@ async def test_the_rate_of_each_key_is_its_own(tmp_path: Path, clock: Clock) -> 
         assert [(await ask(first)).status_code for _ in range(2)] == [200, 429]
 
 
-async def test_work_is_counted_by_its_price(tmp_path: Path, clock: Clock) -> None:
-    key, line = new_key("alpha")
-    file = tmp_path / "keys"
-    file.write_text(line.replace("- -", "- 0.065"))
-    # The toy's price is 1e-8 s for each sample; a minute's 0.065 s are 6.5e6 samples.
-    large = GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 1_000_000}}
-    async with client_of(toy_service(keys_file=file, **INLINE)) as client:
-        head = bearer(key) | {"accept": "application/x-npz"}
-        found = [(await client.post("/v1/toy", json=large, headers=head)).status_code for _ in range(7)]
-        assert found == [200] * 6 + [429]
-        clock.now += 10.0
-        assert (await client.post("/v1/toy", json=large, headers=head)).status_code == 200
+def test_work_is_charged_with_what_it_came_to(clock: Clock) -> None:
+    """6.5 s a minute, of which a whole minute's may be saved up."""
+    key = Key("alpha", inf, 6.5, 1)
+    for _ in range(3):
+        key.work(2.0)
+    # Each took a second less than predicted.
+    key.charge(-3.0)
+    key.work(3.4)
+    with pytest.raises(Refusal):
+        key.work(2.0)
+    # One took far longer: nothing is admitted before the debt is paid.
+    key.charge(5.0)
+    for seconds, admitted in ((0.0, False), (40.0, False), (8.0, True)):
+        clock.now += seconds
+        if admitted:
+            key.work(0.0)
+        else:
+            with pytest.raises(Refusal):
+                key.work(0.0)
 
 
 def test_an_allowance_never_grows_beyond_its_most(clock: Clock) -> None:
@@ -125,52 +136,148 @@ def test_an_allowance_never_grows_beyond_its_most(clock: Clock) -> None:
     assert allowance.take(1.0) == pytest.approx(8.0)
 
 
-def test_keys_are_exchanged_while_the_service_runs(
-    tmp_path: Path, clock: Clock, caplog: pytest.LogCaptureFixture
+def known(keys: Keys, key: str) -> bool:
+    try:
+        keys.admit({b"authorization": b"Bearer " + key.encode()})
+    except Refusal as refusal:
+        if refusal.problem.type.status == 429:
+            raise
+        return False
+    return True
+
+
+def test_keys_are_exchanged_while_the_service_runs(tmp_path: Path, clock: Clock) -> None:
+    (first, one), (second, two) = new_key("alpha"), new_key("beta")
+    file = tmp_path / "keys"
+    file.write_text(one.replace("- -", "0.1 -") + "\n")
+    keys = Keys(file)
+    assert (known(keys, first), known(keys, second)) == (True, False)
+    file.write_text(f"{one.replace('- -', '0.1 -')}\n{two}\n")
+    keys.refresh()
+    assert known(keys, second)
+    # What a key has used stays used.
+    with pytest.raises(Refusal):
+        known(keys, first)
+    file.write_text(two + "\n# the other has gone\n")
+    keys.refresh()
+    assert (known(keys, first), known(keys, second)) == (False, True)
+
+
+def test_a_file_that_cannot_be_used_is_reported_and_the_keys_before_it_stay(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     (first, one), (second, two) = new_key("alpha"), new_key("beta")
     file = tmp_path / "keys"
-    file.write_text(one.replace("- -", "0.1 -"))
+    whole = f"{one}\n{two}\n"
+    file.write_text(whole)
     keys = Keys(file)
 
-    def known(key: str) -> bool:
-        try:
-            keys.admit({b"authorization": b"Bearer " + key.encode()})
-        except module.Refusal as refusal:
-            if refusal.problem.type.status == 429:
-                raise
-            return False
-        return True
+    def stay() -> bool:
+        caplog.clear()
+        keys.refresh()
+        return known(keys, first) and known(keys, second) and "the keys before it stay" in caplog.text
 
-    assert (known(first), known(second)) == (True, False)
-    file.write_text(f"{one.replace('- -', '0.1 -')}\n{two}\n")
-    clock.now += 1.5
-    assert known(second)
-    # What a key has used stays used.
-    with pytest.raises(module.Refusal):
-        known(first)
+    # Truncated in place: anywhere but at the end of a line, which is no different from a key that was removed.
+    for length in (0, 1, len(one) - 1, len(one), len(whole) - 1):
+        file.write_text(whole[:length])
+        assert stay(), length
+    # It is reported once.
+    caplog.clear()
+    keys.refresh()
+    assert not caplog.records
     file.write_text(two + "\nnonsense\n")
-    clock.now += 1.5
-    assert known(second)
-    assert "cannot be read" in caplog.text
+    assert stay()
     os.remove(file)
-    clock.now += 1.5
-    assert known(second)
+    assert stay()
     # Nobody writes to the pipe: whoever read it would wait for ever.
     os.mkfifo(file)
-    clock.now += 1.5
-    assert known(second)
+    assert stay()
     os.remove(file)
-    file.write_text("")
-    clock.now += 1.5
-    assert not known(second)
+    file.write_text(two + "\n")
+    keys.refresh()
+    assert not known(keys, first)
 
 
-def test_a_file_that_cannot_be_understood_stops_the_start(tmp_path: Path) -> None:
+async def test_the_file_is_followed_while_the_service_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "keys"
-    for text in ("alpha", "alpha 00 - -", "alpha " + "g" * 64 + " - -", "alpha " + "0" * 64 + " -1 -"):
-        file.write_text(text)
-        with pytest.raises(ValueError, match="line 1"):
-            Keys(file)
+    file.write_text(new_key("alpha")[1] + "\n")
+    keys, threads, loop = Keys(file), [], asyncio.get_running_loop()
+    read = asyncio.Event()
+
+    def noted() -> None:
+        threads.append(threading.current_thread())
+        loop.call_soon_threadsafe(read.set)
+
+    monkeypatch.setattr(module, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(keys, "refresh", noted)
+    following = asyncio.create_task(keys.follow())
+    await asyncio.wait_for(read.wait(), 20)
+    following.cancel()
+    assert threads[0] is not threading.main_thread()
+
+
+def test_a_key_among_many_is_found_in_one_step(tmp_path: Path) -> None:
+    lines = [f"key-{i} {hashlib.sha256(b'%d' % i).hexdigest()} - -" for i in range(20_000)]
+    file = tmp_path / "keys"
+    file.write_text("\n".join(lines) + "\n")
+    keys = Keys(file)
+    assert len(keys) == 20_000
+    # The last of them, within so few steps of the interpreter that it cannot have been searched for.
+    steps = 0
+
+    def counted(frame: Any, event: str, argument: Any) -> Any:
+        nonlocal steps
+        steps += 1
+        return counted
+
+    sys.settrace(counted)
+    try:
+        assert keys.admit({b"authorization": b"Bearer 19999"}).name == "key-19999"
+    finally:
+        sys.settrace(None)
+    assert 0 < steps < 100
+
+
+def test_unknown_keys_are_limited_by_address(tmp_path: Path, clock: Clock) -> None:
+    key, line = new_key("alpha")
+    file = tmp_path / "keys"
+    file.write_text(line + "\n")
+    keys = Keys(file)
+
+    def status(headers: dict[bytes, bytes], address: str) -> int:
+        try:
+            keys.admit(headers, address)
+        except Refusal as refusal:
+            return refusal.problem.type.status
+        return 200
+
+    wrong, right = {b"authorization": b"Bearer wrong"}, {b"authorization": b"Bearer " + key.encode()}
+    assert [status(wrong, "10.0.0.1") for _ in range(11)] == [401] * 10 + [429]
+    # Neither another address nor a known key from the same one is affected.
+    assert (status({}, "10.0.0.2"), status(right, "10.0.0.1")) == (401, 200)
+    clock.now += 1.0
+    assert [status(wrong, "10.0.0.1") for _ in range(2)] == [401, 429]
+    for i in range(3 * module.ADDRESSES):
+        status(wrong, str(i))
+    assert len(keys._wrong) == module.ADDRESSES
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        *(
+            (line + "\n", "line 1")
+            for line in ("alpha", "alpha 00 - -", f"alpha {'g' * 64} - -", f"alpha {'0' * 64} -1 -")
+        ),
+        (f"alpha {'0' * 64} - -", "line feed"),
+        ("# none\n", "no keys"),
+        ("", "line feed"),
+    ],
+)
+def test_a_file_that_cannot_be_used_stops_the_start(tmp_path: Path, text: str, reason: str) -> None:
+    file = tmp_path / "keys"
+    file.write_text(text)
+    with pytest.raises(ValueError, match=reason):
+        Keys(file)
     with pytest.raises(FileNotFoundError):
         Keys(tmp_path / "absent")
