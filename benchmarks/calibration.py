@@ -23,7 +23,7 @@ import numpy as np
 import orjson
 from scipy.optimize import nnls
 
-from benchmarks.machine import RESULTS, described
+from benchmarks.machine import RESULTS, T_HANDLE, described
 from core.bodies import measured as measured_bodies
 from core.bodies.measured import PrincipalMoments
 from core.errors import MechanicsError
@@ -45,7 +45,6 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.rotation.trajectory import T_HANDLE
 from service.routing import PostRoute
 
 ROOT = Path(__file__).parents[1]

@@ -22,8 +22,7 @@ from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, pro
 from service.requests.request_reader import Limits, Reader
 from service.responses.json_rows import written
 from service.routes.bodies import speed_to_follow
-from service.routes.rotation.trajectory import T_HANDLE
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
 
@@ -111,7 +110,6 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
         plan,
         CalibratedCost("plan", one),
         description="Always answered with 200: what the request would be refused for stands under `errors`.",
-        examples=EXAMPLES,
     )
 
 
@@ -233,24 +231,3 @@ def _refused(path: str, problem: Problem, within: str) -> Answer:
         "errors": errors,
         "warnings": [],
     }
-
-
-TUMBLING = {
-    "body": T_HANDLE,
-    "angular_velocity": [1.0, 10.0, 1.0],
-    "times": {"start": 0.0, "stop": 2e3, "count": 100_001},
-}
-
-EXAMPLES = {
-    "trajectory": Example(
-        "a hundred thousand samples", {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 1e-12}}
-    ),
-    "method": Example(
-        "the same by a method of low order",
-        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"method": {"kind": "explicit-euler", "step": 1e-3}}},
-    ),
-    "refused": Example(
-        "a request that would be refused",
-        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 2.0}},
-    ),
-}

@@ -101,13 +101,6 @@ def is_small(question: Ask) -> bool:
     )
 
 
-def is_small(question: Ask) -> bool:
-    return (
-        question.behaviour not in ("sleep", "die")
-        and (len(question.times) if isinstance(question.times, list) else question.times.count) <= 1000
-    )
-
-
 class Unlisted(MechanicsError):
     """An error that the table of problems does not name."""
 

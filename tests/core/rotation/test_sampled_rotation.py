@@ -1,4 +1,4 @@
-"""Samples of a free rotation: what is wanted, what rounding adds, and attitudes against the angular momentum in space."""
+"""Samples of a free rotation: what is wanted, what rounding adds, attitudes against the angular momentum in space."""
 
 from __future__ import annotations
 

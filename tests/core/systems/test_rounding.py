@@ -11,7 +11,6 @@ import orjson
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from service.responses.rounding import Digits, notices_of, rounded, to_places, to_significant
 
 from core.systems.rounding import Digits, notices_of, rounded, to_places, to_significant
 from core.systems.trajectory import Accuracy
