@@ -263,6 +263,9 @@ class Problem:
             **({"instance": f"urn:polhode:request:{request_id}", "request_id": request_id} if request_id else {}),
             **self.extra,
         }
+        wait = dict(self.headers).get("Retry-After")
+        if wait is not None:
+            document.setdefault("retry_after_seconds", float(wait))
         room = MOST_BYTES - len(orjson.dumps(document))
         entries: list[dict[str, str]] = []
         for fault in self.faults[:MOST_FAULTS]:

@@ -101,7 +101,13 @@ class Dispatcher:
                 raise
             LOG.exception("failed", extra={"request_id": context.id, "operation": route.operation_id})
             detail = "the service failed; the failure is logged under this id"
-            await context.problem(Problem(REGISTRY["internal-error"], detail, extra={"id": context.id}))
+            await context.problem(
+                Problem(
+                    REGISTRY["internal-error"],
+                    detail,
+                    extra={"id": context.id, "instance": f"urn:polhode:request:{context.id}"},
+                )
+            )
 
     async def _question(self, route: PostRoute, context: RequestContext) -> None:
         headers = context.headers

@@ -19,7 +19,7 @@ from core.errors import InvalidParameter
 from core.quantities import Unit
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, quickest, speed_of
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Matrix, Ratio, Request, Vector, View
 
 LOOKED_INTO = 8_000
@@ -183,21 +183,5 @@ BODIES = (
         mass_properties,
         CalibratedCost("mass_properties", counts),
         is_small,
-        examples={
-            "principal-moments": Example(
-                "a body known by its principal moments",
-                {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}},
-            ),
-            "point-masses": Example(
-                "four point masses",
-                {
-                    "body": {
-                        "kind": "point-masses",
-                        "masses": [1.0, 2.0, 1.0, 0.5],
-                        "positions": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]],
-                    }
-                },
-            ),
-        },
     ),
 )

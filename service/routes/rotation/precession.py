@@ -17,8 +17,8 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, T_HANDLE, TUMBLES
-from service.routing import Answer, Example, PostRoute
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
+from service.routing import Answer, PostRoute
 from service.schemas import (
     Envelope,
     N,
@@ -171,29 +171,6 @@ PRECESSION = (
         CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
         precession_probe,
-        examples={
-            "coin": Example(
-                "a spinning coin",
-                {
-                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
-                    "angular_velocity": [1.0, 1.0, 1.0],
-                },
-            ),
-            "t-handle": Example("a T-handle", {"body": T_HANDLE, "angular_velocity": [1.0, 10.0, 1.0]}),
-            "source": Example(
-                "the source's experiment: forward Euler and the first return within 0.035",
-                {
-                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
-                    "angular_velocity": [1.0, 1.0, 1.0],
-                    "measure": {
-                        "method": {"kind": "explicit-euler", "step": 0.0075037518759379685},
-                        "duration": 15.0,
-                        "samples": 2000,
-                        "tolerance": 0.035,
-                    },
-                },
-            ),
-        },
     ),
     PostRoute(
         "/v1/rotation/stability",
@@ -205,13 +182,5 @@ PRECESSION = (
         answer_stability,
         CalibratedCost("stability", counts),
         is_small,
-        examples={
-            "t-handle": Example(
-                "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}
-            ),
-            "coin": Example(
-                "two equal moments", {"body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]}, "rate": 1.0}
-            ),
-        },
     ),
 )

@@ -15,7 +15,7 @@ from core.systems.system import Model
 from core.systems.trajectory import How, Work
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
     AngularMomentumMagnitude,
@@ -233,8 +233,6 @@ def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
     return question.model_copy(update=changes)
 
 
-T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
-
 ROTATION = (
     PostRoute(
         "/v1/rotation/trajectory",
@@ -247,47 +245,5 @@ ROTATION = (
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
         trajectory_probe,
-        examples={
-            "t-handle": Example(
-                "a T-handle that tumbles",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "times": {"start": 0.0, "stop": 20.0, "count": 101},
-                },
-            ),
-            "attitude": Example(
-                "the same with its attitude in space",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "attitude": [1.0, 0.0, 0.0, 0.0],
-                    "times": [0.0, 1.0, 2.453763074],
-                    "accuracy": 1e-12,
-                },
-            ),
-            "points": Example(
-                "four point masses, their principal axes askew, with the attitude",
-                {
-                    "body": {
-                        "kind": "point-masses",
-                        "masses": [1.0, 2.0, 1.0, 0.5],
-                        "positions": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]],
-                    },
-                    "angular_velocity": [1.0, 2.0, 0.5],
-                    "attitude": [1.0, 0.0, 0.0, 0.0],
-                    "times": {"start": 0.0, "stop": 10.0, "count": 21},
-                },
-            ),
-            "explicit-euler": Example(
-                "the same by explicit Euler, to see what that does",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "times": {"start": 0.0, "stop": 5.0, "count": 51},
-                    "method": {"kind": "explicit-euler", "step": 0.002},
-                },
-            ),
-        },
     ),
 )
