@@ -144,7 +144,6 @@ def test_the_page_about_the_house_names_every_room_and_what_it_may_import() -> N
 
 
 PROVED_THROUGH = {
-    "core/compiled.py": "core/test_double_double.py",
     "core/bodies/uniform.py": "core/bodies/test_solids.py",
     "core/certified/scene_samples.py": "core/certified/test_scenes.py",
     "core/systems/budget.py": "core/systems/methods/test_fixed_step.py",

@@ -23,6 +23,9 @@ error, so a factor 2 is owed, and so is it where a sixteenth of the tolerance do
 2 is for methods that converge less evenly than their order says.
 """
 
+FARTHEST = 2.0**1020
+"""No error is stated that is as large as this: what `Errors.beyond` adds to it might not be a double."""
+
 ROUNDOFF = 8 * 2.0**-53
 """Added to every estimate: two runs of one method may round alike."""
 
@@ -114,12 +117,12 @@ def measured(states: Floats, reference: Floats, times: Floats) -> Errors:
     errors = np.empty(len(states))
     wrong, magnitudes = np.zeros(states.shape[1]), np.zeros(states.shape[1])
     norm = _differences(states, reference, unit, errors, wrong, magnitudes) or largest / unit
-    if not errors.max() / norm < math.inf:
+    if not errors.max() / norm < FARTHEST:
         raise _out_of_range()
     magnitudes[magnitudes == 0.0] = norm
     with np.errstate(over="ignore"):
         components = wrong / magnitudes
-    components = np.where(np.isfinite(components), components, wrong / norm)
+    components = np.where(components < FARTHEST, components, wrong / norm)
     final = int(np.abs(times).argmax())
     return Errors(float(errors.max()) / norm, float(errors[final]) / norm, tuple(map(float, components)))
 

@@ -123,6 +123,24 @@ EXAMPLES: Mapping[str, Mapping[str, Example]] = {
 }
 
 
+WARMING: Mapping[str, tuple[Mapping[str, Any], ...]] = {
+    # A rod that comes to rest upright, and never arrives.
+    "rod-in-hole": (
+        {
+            "hole_radius": 5.0,
+            "length": 6.0,
+            "mass": 1.0,
+            "gravity": 25.0,
+            "inertia_factor": 0.25,
+            "hole": "cylinder",
+            "angle": 0.0,
+            "angular_velocity": 4.0,
+            "times": [1.0],
+        },
+    ),
+}
+
+
 def members() -> tuple[type[ConstrainedSystem], ...]:
     """Return the scenes of core's catalogue."""
     return cast(tuple[type[ConstrainedSystem], ...], members_of(Scene))
@@ -239,6 +257,7 @@ def questions() -> tuple[PostRoute, ...]:
             lambda question: question.times is None or few_times(question.times),
             scene_probe,
             examples=EXAMPLES[name_of(scene)],
+            warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()
     )

@@ -254,6 +254,11 @@ def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
 
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
 
+RESTING, STEADY = (
+    {"body": T_HANDLE, "angular_velocity": rates, "attitude": [1.0, 0.0, 0.0, 0.0], "times": [1.0]}
+    for rates in ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+)
+
 ROTATION = (
     PostRoute(
         "/v1/rotation/trajectory",
@@ -308,5 +313,6 @@ ROTATION = (
                 },
             ),
         },
+        warming=(RESTING, STEADY),
     ),
 )

@@ -165,3 +165,17 @@ def test_an_error_against_a_reference_covers_what_that_leaves_open() -> None:
     found = Errors(1e9, 0.0, (1.0,)).beyond(1e-15)
     assert found.largest > 1e9 * (1 + 1e-15)
     assert (found.final, found.components[0] > 1.0 + 1e-15) == (1e-15, True)
+
+
+@pytest.mark.parametrize("far", [1e300, 1e307, 1.7e308])
+def test_no_stated_error_leaves_the_range_of_doubles(far: float) -> None:
+    """Errors next to the largest double, to which the reference's own is added."""
+    component = measured(np.array([[1.0, 0.5]]), np.array([[1.0, 1.0 / far]]), TIMES[:1]).beyond(2.0)
+    assert np.isfinite([component.largest, *component.components]).all()
+    assert component.components[1] >= 0.5
+    try:
+        whole = measured(np.array([[far]]), np.array([[1.0]]), TIMES[:1]).beyond(2.0)
+    except NotApplicable:
+        assert far > 1e307
+    else:
+        assert np.isfinite(whole.largest)
