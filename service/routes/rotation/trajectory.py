@@ -233,6 +233,13 @@ def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
     return question.model_copy(update=changes)
 
 
+T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
+
+RESTING, STEADY = (
+    {"body": T_HANDLE, "angular_velocity": rates, "attitude": [1.0, 0.0, 0.0, 0.0], "times": [1.0]}
+    for rates in ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+)
+
 ROTATION = (
     PostRoute(
         "/v1/rotation/trajectory",
@@ -245,5 +252,6 @@ ROTATION = (
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
         trajectory_probe,
+        warming=(RESTING, STEADY),
     ),
 )
