@@ -56,6 +56,12 @@ def _keep_by_content() -> None:
 _keep_by_content()
 
 
+def has_compiled_code() -> bool:
+    """Return whether an earlier process has kept compiled code, so that this one need not compile."""
+    directory = str(numba.config.CACHE_DIR)
+    return bool(directory) and any(Path(directory).rglob("*.nbc"))
+
+
 class CacheUnusable(RuntimeWarning):
     """Compiled code could not be kept, or what was kept is damaged; it is compiled again and everything works."""
 
