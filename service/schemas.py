@@ -86,7 +86,7 @@ class Signed(View):
 class Envelope(Signed):
     """What every answer carries."""
 
-    warnings: list[Notice]
+    warnings: list[Notice] = Field(description="What the client should know about the answer.")
 
 
 def fields_of(found: Any) -> dict[str, Any]:

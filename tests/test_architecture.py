@@ -43,7 +43,7 @@ SERVICE_LAYERS = (
     {"execution", "http"},
     {"routes", "openapi"},
     {"app"},
-    {"server", "running", "client", "__main__"},
+    {"server", "running", "__main__"},
 )
 """The packages and modules of the service in layers, lowest first; each imports from its own layer or a lower one."""
 

@@ -57,6 +57,8 @@ class MassProperties:
         The body that these are derived from; without one, the components of the tensor are the inputs.
     rounding : Rounding
         What is known of the components of the tensor.
+    unrounded : matrix of Fraction, optional
+        The tensor before it was rounded, where it is exact.
     """
 
     inertia: Floats
@@ -70,6 +72,7 @@ class MassProperties:
     conditions: tuple[Condition, ...] = ()
     described_by: Any = None
     rounding: Rounding = GIVEN
+    unrounded: Matrix | None = None
 
     def __post_init__(self) -> None:
         self.inertia.setflags(write=False)
@@ -107,7 +110,7 @@ class MassProperties:
         i, i_tail = tensor_pairs(inertia)
         return cls(
             i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions,
-            rounding=_after(inertia, i, i_tail, rounding),
+            rounding=_after(inertia, i, i_tail, rounding), unrounded=inertia if rounding.exact_zeros else None,
         )  # fmt: skip
 
     @property
@@ -132,7 +135,7 @@ class MassProperties:
     @cached_property
     def principal(self) -> PrincipalInertia:
         """Principal inertia about the centre of mass."""
-        return PrincipalInertia.of(self.inertia, self.inertia_tail, self.rounding)
+        return PrincipalInertia.of(self.inertia, self.inertia_tail, self.rounding, self.unrounded)
 
     def inertia_about(self, point: Sequence[float] | Floats) -> tuple[Floats, Floats]:
         """Return the tensor about another point, in body axes, as value and tail, each of shape (3, 3).

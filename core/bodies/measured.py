@@ -1,4 +1,4 @@
-"""Bodies given by measured data: principal moments, an inertia tensor, or point masses."""
+"""Bodies known by what was measured of them: principal moments, a tensor of inertia, or where their points are."""
 
 from __future__ import annotations
 
@@ -26,28 +26,28 @@ POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))
 
 MASS_RANGE = 900
-"""Largest binary exponent of the ratio of two masses: their products do not underflow."""
+"""Most binary orders of magnitude between the heaviest and the lightest point: no product of theirs is lost to zero."""
 
-SUMMED_EXACTLY = 24
-"""Largest number of points whose moments are formed in rational arithmetic."""
+SUMMED_EXACTLY = 400
+"""Points of which the moments are formed in whole numbers."""
 
 KEPT = 32
-"""Number of bodies given by principal moments whose mass properties are cached."""
+"""Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
 
 InertiaRow = tuple[InertiaComponent, InertiaComponent, InertiaComponent]
 
 SYMMETRIC = 8.0 * EPSILON
-"""Largest difference of two symmetric components that is attributed to rounding, relative to the largest component."""
+"""How much two components of a symmetric tensor may differ, as a share of its largest: what rounding explains."""
 
 
 @dataclass(frozen=True)
 class PrincipalMoments:
-    """A body given by its principal moments of inertia; its body axes are the principal axes, in the order given.
+    """A body known by its principal moments of inertia; its body axes are the principal axes, in the order given.
 
     Attributes
     ----------
     moments : tuple of 3 floats
-        Each greater than 0 (kg m^2). Physically impossible moments are answered with a warning.
+        Each greater than 0 (kg m^2). Moments that no matter can have are answered with a warning.
     """
 
     moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
@@ -57,28 +57,28 @@ class PrincipalMoments:
         check(self)
 
     def mass_properties(self) -> MassProperties:
-        """Return the mass properties; mass and centre of mass are unknown."""
+        """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
         a, b, c = self.moments
         return _of_moments(float(a), float(b), float(c))
 
 
 @lru_cache(KEPT)
 def _of_moments(a: float, b: float, c: float) -> MassProperties:
-    """Return the mass properties for principal moments; cached, because requests often repeat a body."""
-    # The cache keys are doubles greater than zero, so equal keys are identical numbers.
+    """Return the mass properties for principal moments, which are kept: a body is asked about again and again."""
+    # Doubles greater than zero, so that those which compare equal are the same.
     return diagonal((a, b, c)).judged("moments")
 
 
 @dataclass(frozen=True)
 class InertiaTensor:
-    """A body given by its inertia tensor about its centre of mass, in body axes.
+    """A body known by its tensor of inertia about its centre of mass, in body axes.
 
     Attributes
     ----------
     tensor : tuple of 3 rows
         Symmetric; off-diagonal components are I_xy = -(integral of x y dm) (kg m^2).
     mass : float, optional
-        kg.
+        Of the body (kg).
     center_of_mass : tuple of 3 floats, optional
         In the frame in which the body is described (m).
     """
@@ -94,7 +94,7 @@ class InertiaTensor:
         if size < SMALLEST:
             raise InvalidParameter("tensor", f"have a component of at least {SMALLEST:.3g} kg m^2")
         for i, j in ((0, 1), (0, 2), (1, 2)):
-            # Halved, because the difference of two doubles may overflow.
+            # Halved, as the difference of two doubles may exceed their range.
             if abs(self.tensor[i][j] / 2 - self.tensor[j][i] / 2) > SYMMETRIC * size / 2:
                 raise InvalidParameter(
                     ("tensor", j, i),
@@ -103,7 +103,7 @@ class InertiaTensor:
                 )
 
     def mass_properties(self) -> MassProperties:
-        """Return the mass properties.
+        """Return what the mechanics needs to know of the body.
 
         Components on opposite sides of the diagonal that differ by rounding are replaced by their exact mean, with a
         warning.
@@ -130,7 +130,7 @@ class InertiaTensor:
                 remedy="check the signs of the off-diagonal components: I_xy = -(integral of x y dm)",
             )
         if lowest < 0.0:
-            # For a needle this is a difference of components, whose sign depends on their rounding.
+            # A difference of components of a needle's tensor: its sign is that of their rounding.
             notice = Notice(
                 "moment-below-rounding",
                 f"the smallest principal moment, {lowest:.6g} kg m^2, is zero to within the rounding of the components",
@@ -158,7 +158,7 @@ class PointMasses:
     masses : float or sequence of n floats
         One mass for all, or one for each (kg).
     positions : array_like, shape (n, 3)
-        In body axes (m).
+        In body axes (m); kept as an array that cannot be written.
     about : {"center-of-mass", "origin"}
         The point about which the body turns. A free body turns about its centre of mass; "origin" is a body
         pinned there.
@@ -185,13 +185,12 @@ class PointMasses:
             raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
 
     def mass_properties(self) -> MassProperties:
-        """Return the mass properties, for few points in rational arithmetic, for more in double-double.
+        """Return what the mechanics needs to know of the body; few points exactly, more in double-double.
 
-        In rational arithmetic, products of inertia that cancel are exactly zero, and the axes of a symmetric set of
-        points are exact.
+        Exact products of inertia that cancel are zero, and the axes of a symmetric set of points exact.
         """
         masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
-        # Scaling by powers of two is exact, and products stay within range.
+        # Powers of two keep products within range and round nothing.
         heavy = int(np.frexp(masses.max())[1])
         m = np.ldexp(masses, -heavy)
         if float(m.min()) < 2.0**-MASS_RANGE:
@@ -199,7 +198,7 @@ class PointMasses:
         if len(m) <= SUMMED_EXACTLY:
             properties = MassProperties.from_exact(*_exact_properties(masses, self.positions))
             return replace(properties, about=self.about, described_by=self)
-        # Compiled code is imported only for the bodies that need it.
+        # Compiled code is fetched only for the bodies that need it.
         from core.bodies.point_sums import first_moments, second_moments
 
         local = Recentred.on(self.positions)
@@ -224,15 +223,27 @@ class PointMasses:
 
 def _exact_properties(masses: Floats, positions: Floats) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
     """Return mass, centre of mass and tensor of inertia about it, of few points, shapes (n,) and (n, 3)."""
-    m = [Fraction(x) for x in masses.tolist()]
-    columns = [[Fraction(x) for x in column] for column in positions.T.tolist()]
-    mass = sum(m, Fraction(0))
-    center = [sum((a * x for a, x in zip(m, column, strict=True)), Fraction(0)) / mass for column in columns]
-    d = [[x - c for x in column] for column, c in zip(columns, center, strict=True)]
+    m, kilogram = _whole(masses)
+    columns, units = zip(*(_whole(column) for column in positions.T), strict=True)
+    mass = sum(m)
+    first = [sum(a * x for a, x in zip(m, column, strict=True)) for column in columns]
+    # Times the mass, all is whole: M sum m x y - (sum m x)(sum m y).
     products = [[Fraction(0)] * 3 for _ in range(3)]
     for i in range(3):
-        weighted = [a * x for a, x in zip(m, d[i], strict=True)]
+        weighted = [a * x for a, x in zip(m, columns[i], strict=True)]
         for j in range(i, 3):
-            products[i][j] = products[j][i] = sum((a * x for a, x in zip(weighted, d[j], strict=True)), Fraction(0))
+            second = sum(a * x for a, x in zip(weighted, columns[j], strict=True))
+            central = Fraction(mass * second - first[i] * first[j], mass) * kilogram * units[i] * units[j]
+            products[i][j] = products[j][i] = central
     trace = products[0][0] + products[1][1] + products[2][2]
-    return mass, center, [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+    inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+    return mass * kilogram, [Fraction(x, mass) * unit for x, unit in zip(first, units, strict=True)], inertia
+
+
+def _whole(values: Floats) -> tuple[list[int], Fraction]:
+    """Return doubles as whole multiples of a power of two, and that power."""
+    mantissas, exponents = np.frexp(values)
+    whole, places = np.ldexp(mantissas, 53).astype(np.int64).tolist(), exponents.tolist()
+    least = min((place for x, place in zip(whole, places, strict=True) if x), default=0)
+    # A zero has no place of its own.
+    return [x << max(0, place - least) for x, place in zip(whole, places, strict=True)], Fraction(2) ** (least - 53)

@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.bodies.exact import exact_matrix
+from core.bodies.exact import Matrix, exact_matrix
 from core.errors import InvalidParameter
 
 Floats = NDArray[np.float64]
@@ -19,22 +19,26 @@ Symmetry = Literal["spherical", "oblate", "prolate", "triaxial", "linear", "poin
 
 EPSILON = 2.0**-52
 EQUAL = 16.0 * EPSILON
-"""Moments that differ by less than this fraction of the largest count as equal, as far as doubles can resolve."""
+"""Moments that differ by less than this share of the largest are called equal; inputs that are doubles say no more."""
 
 RESOLUTION = 2.0**-96
-"""Differences of derived moments, and derived components, below this fraction of the largest are rounding errors."""
+"""Differences of derived moments, and derived components, below this share of the largest are those of rounding."""
+
+
+NOTHING = Fraction(1, 2**3000)
+"""A share that is below any that doubles can make, and above the rounding of `core.bodies.mass_moments`."""
 
 
 class Rounding(NamedTuple):
-    """Error bound of the components of an inertia tensor, each the sum of two doubles.
+    """What is known of the components of a tensor of inertia, each the sum of two doubles.
 
     Attributes
     ----------
     share : float
-        Relative error of a component if zeros are exact; otherwise its error relative to the largest component.
+        What a component may be wrong by, as a share of itself where zeros are exact, else of the largest component.
     exact_zeros : bool
-        Whether components that are zero, and moments that are equal, are exactly so. The axes of a diagonal tensor are
-        then exact as well.
+        Whether components that are zero, and moments that are equal, are so exactly: then the axes of a diagonal tensor
+        are exact as well.
     """
 
     share: float
@@ -42,7 +46,7 @@ class Rounding(NamedTuple):
 
 
 GIVEN = Rounding(0.0, True)
-"""The components are inputs."""
+"""The components are the numbers that were given."""
 
 ROUNDED_ONCE = Rounding(2.0**-103, True)
 """Each component is a rational number, rounded to a pair of doubles."""
@@ -52,10 +56,9 @@ DERIVED = Rounding(2.0**-100, False)
 
 
 def summed(terms: int) -> Rounding:
-    """Return the rounding of sums of so many terms in double-double.
+    """Return what is known of sums of so many terms in double-double.
 
-    The error is 16 units of 2^-106 for a term and 3 units of the partial sum for an addition (Joldes, Muller, Popescu
-    2017).
+    A term is right to 16 units of 2^-106 and an addition to 3 of the sum so far (Joldes, Muller, Popescu 2017).
     """
     return Rounding(max(DERIVED.share, 2.0**-104 * (terms + 16)), False)
 
@@ -79,37 +82,27 @@ _EVEN, _ODD = ((0, 1, 2), (1, 2, 0), (2, 0, 1)), ((0, 2, 1), (1, 0, 2), (2, 1, 0
 _PERMUTED = {order: _along_body_axes(order, 1.0) for order in _EVEN} | {
     order: _along_body_axes(order, -1.0) for order in _ODD
 }
-"""Right-handed axes, by the body axes to which they are parallel."""
+"""Right-handed axes by the body axes along which they lie, up to sign."""
 
 
 class KnownTensor(NamedTuple):
-    """An inertia tensor, shape (3, 3), as value and tail, with the rounding of its components."""
+    """A tensor of inertia in rational numbers, as exact as the numbers that describe the body, and rounded."""
 
+    components: Matrix
     value: Floats
-    tail: Floats
-    rounding: Rounding
 
     def turns_steadily(self, angular_velocity: Floats) -> bool:
-        """Return whether a rotation with an angular velocity, shape (3,), is certainly steady: I w || w, exactly.
-
-        For rounded components this is certain only about a body axis whose products of inertia all vanish.
-        """
-        if not self.rounding.exact_zeros:
-            return False
-        # First a test in doubles, scaled to order one.
+        """Return whether a rotation about an angular velocity, shape (3,), is steady: I w along w, exactly."""
+        # First in doubles, of order one.
         rates = np.ldexp(angular_velocity, -math.frexp(float(np.abs(angular_velocity).max()))[1])
         momentum = np.ldexp(self.value, -math.frexp(float(np.abs(self.value).max()))[1]) @ rates
         if not np.abs(np.cross(momentum, rates)).max() <= 2.0**-40:
             return False
         w = [Fraction(float(x)) for x in angular_velocity]
-        if self.rounding.share > 0.0:
-            turning = [k for k in range(3) if w[k]]
-            return len(turning) == 1 and not np.any(np.delete(self.value[turning[0]], turning[0]))
-        x, y, z = (
-            sum((i * v for i, v in zip(row, w, strict=True)), Fraction(0))
-            for row in exact_matrix(self.value, self.tail)
-        )
-        return y * w[2] == z * w[1] and z * w[0] == x * w[2] and x * w[1] == y * w[0]
+        rows = [[i * v for i, v in zip(row, w, strict=True)] for row in self.components]
+        x, y, z = (sum(row, Fraction(0)) for row in rows)
+        least = NOTHING * max(abs(p) for row in rows for p in row) * max(map(abs, w))
+        return all(abs(c) <= least for c in (y * w[2] - z * w[1], z * w[0] - x * w[2], x * w[1] - y * w[0]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,12 +115,11 @@ class PrincipalInertia:
         Ascending; the moment is the unevaluated sum of both (kg m^2).
     axes, axes_tail : ndarray, shape (3, 3)
         Columns are the principal axes in body axes, right-handed (determinant +1), so that
-        ``inertia = axes @ diag(moments) @ axes.T``. If moments coincide, the choice of axes in their plane is
-        arbitrary.
+        ``inertia = axes @ diag(moments) @ axes.T``. Where moments coincide any choice within their plane is one.
     rounding : Rounding
-        Rounding of moments and axes; with exact zeros the axes are exactly body axes.
+        What is known of moments and axes; with exact zeros the axes are body axes, exactly.
     tensor : KnownTensor, optional
-        The tensor from which moments and axes were derived, if it is not diagonal.
+        The tensor from which moments and axes were derived, where it is not diagonal but exact.
     """
 
     moments: Floats
@@ -138,13 +130,21 @@ class PrincipalInertia:
     tensor: KnownTensor | None = None
 
     @classmethod
-    def of(cls, inertia: Floats, inertia_tail: Floats | None = None, rounding: Rounding = GIVEN) -> PrincipalInertia:
+    def of(
+        cls,
+        inertia: Floats,
+        inertia_tail: Floats | None = None,
+        rounding: Rounding = GIVEN,
+        exact: Matrix | None = None,
+    ) -> PrincipalInertia:
         """Diagonalise a symmetric tensor given as the sum of two arrays of shape (3, 3).
 
-        A diagonal tensor is only sorted: its moments do not change and its axes are an exact signed permutation.
-        Otherwise moments are accurate to about 1e-30 of the largest (decoupled ones to a relative 1e-31), and
-        those of a graded tensor relative to their own size. A moment below that resolution is set to zero, because
-        its digits and its sign would be rounding errors.
+        What is known of the components is `rounding`; before they were rounded they may have been `exact`.
+
+        A diagonal tensor is only sorted: its moments stay as they are and its axes are an exact signed permutation.
+        Otherwise moments are right to about 1e-30 of the largest (decoupled ones to 1e-31 of themselves) and
+        those of a graded tensor to their own size. A moment below that resolution is stated as zero: its
+        digits, and its sign, would be those of rounding.
 
         Raises
         ------
@@ -157,7 +157,10 @@ class PrincipalInertia:
             return cls.along_body_axes((a, b, c), tail, rounding)
         found = cls._diagonalised(inertia, tail)
         share = max(DERIVED.share, rounding.share)
-        return replace(found, rounding=Rounding(share, False), tensor=KnownTensor(inertia, tail, rounding))
+        if exact is None and rounding == GIVEN:
+            exact = exact_matrix(inertia, tail)
+        known = None if exact is None else KnownTensor(exact, inertia)
+        return replace(found, rounding=Rounding(share, False), tensor=known)
 
     @classmethod
     def along_body_axes(
@@ -165,7 +168,7 @@ class PrincipalInertia:
     ) -> PrincipalInertia:
         """Return the principal inertia of a diagonal tensor with these moments, their tails on the diagonal of `tail`.
 
-        The moments are only sorted, and the axes are an exact signed permutation.
+        The moments are only sorted: they stay as they are, and the axes are an exact signed permutation.
         """
         if tail is ZEROS:
             order = sorted((0, 1, 2), key=values.__getitem__)
@@ -182,7 +185,7 @@ class PrincipalInertia:
 
     @classmethod
     def _diagonalised(cls, inertia: Floats, tail: Floats) -> PrincipalInertia:
-        # Compiled code is imported only for the tensors that need it.
+        # Compiled code is fetched only for the tensors that need it.
         from core.bodies.jacobi import jacobi
 
         exponent = math.frexp(float(np.max(np.abs(inertia))))[1]
@@ -218,26 +221,26 @@ class PrincipalInertia:
     def apart(self) -> tuple[bool, bool]:
         """Whether the middle moment is known to differ from the smallest, and the largest from the middle one.
 
-        Every motion depends on this. Moments that were given, or rounded once, differ unless they are identical. For
-        derived moments a difference below the resolution is a rounding error.
+        This is what every motion goes by. Moments that were given, or rounded once, differ if they are not the same; of
+        derived ones a difference below the resolution is that of rounding.
         """
         i, tail = self.moments.tolist(), self.moments_tail.tolist()
         if self.rounding.exact_zeros:
             return (i[0], tail[0]) != (i[1], tail[1]), (i[1], tail[1]) != (i[2], tail[2])
-        # Tails included: over many turns a difference far below an ulp becomes visible.
+        # With the tails: over many turns a difference far below an ulp is seen.
         low, high = ((i[k + 1] - i[k]) + (tail[k + 1] - tail[k]) for k in (0, 1))
         return low > RESOLUTION * i[2], high > RESOLUTION * i[2]
 
     @property
     def nearly_equal(self) -> bool:
-        """Whether two moments that certainly differ do so by less than 16 eps of the largest."""
+        """Whether two moments that are known to differ do so by less than 16 eps of the largest."""
         low, middle, high = self.moments.tolist()
         first, second = self.apart
         return (first and middle - low <= EQUAL * high) or (second and high - middle <= EQUAL * high)
 
     @property
     def symmetry(self) -> Symmetry:
-        """The symmetry class, by a scale-free test: moments within 16 eps of the largest count as equal.
+        """The class of the body, by a test free of scale: moments within 16 eps of the largest are equal.
 
         ``"spherical"`` three equal; ``"oblate"`` the two smaller equal (coin); ``"prolate"`` the two larger equal
         (American football); ``"linear"`` prolate with a smallest moment below 16 eps of the largest (needle);
@@ -256,10 +259,10 @@ class PrincipalInertia:
 
 
 def _resolution(tensor: Floats, vectors: Floats) -> Floats:
-    """Return, for each eigenvalue, its change if each component of the tensor changes by one part in 2^102.
+    """Return, per eigenvalue, what one part in 2^102 of each component of the tensor would move it.
 
-    An eigenvalue is v.A.v, so the rounding of A contributes |v|.|A|.|v|: nothing for an axis that is decoupled from the
-    large components.
+    An eigenvalue is v.A.v, so its share of the rounding of A is |v|.|A|.|v|: nothing for an axis that is decoupled
+    from the large components.
     """
     v = np.abs(vectors)
     share: Floats = 2.0**-102 * np.einsum("ik,ij,jk->k", v, np.abs(tensor), v)

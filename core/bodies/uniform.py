@@ -45,9 +45,9 @@ class Uniform:
     Attributes
     ----------
     mass : float, optional
-        Not 0 (kg).
+        Given by this or by the density; not 0 (kg).
     density : float, optional
-        Not 0 (kg m^-3).
+        Given by this or by the mass; not 0 (kg m^-3).
     """
 
     mass: SignedMass | None = None

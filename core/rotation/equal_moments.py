@@ -1,13 +1,13 @@
-"""What is said of bodies of which two principal moments are nearly equal: one rule for every answer about them.
+"""Warnings about nearly equal principal moments: one rule for all answers.
 
-Which moments differ is decided in `PrincipalInertia.apart`: those that were given, or rounded once, unless they are the
-same; derived ones beyond the resolution of deriving them. Every motion is that of the moments so told apart: samples,
-attitude, regime, period, flips and polhodes. Where they differ by less than 16 units in the last place of the largest,
-half a unit in a moment may change all of that, and a warning says so.
+`PrincipalInertia.apart` decides which moments differ. Moments that were given, or rounded once, differ unless they are
+identical; derived moments differ if their difference exceeds the resolution of the derivation. All motions depend on
+these differences: samples, attitude, regime, period, flips and polhodes. If moments differ by less than 16 units in the
+last place of the largest, half a unit in a moment may change all of this; the answer has a warning.
 
-What is a class and no motion (the symmetry of a body, the figures that only symmetric bodies have, and the kinds of
-equilibria of a body whose moments were derived) goes by moments that are equal to within those 16 units, and a warning
-says so where they differ.
+What is a class and no motion goes by moments that are equal to within those 16 units: the symmetry of a body, the
+figures that only symmetric bodies have, and, where the moments were derived, the kinds of equilibria and whether there
+is a middle axis to flip about, unless the motion shows that there is. A warning says so where they differ.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ NEARLY_EQUAL = Notice(
 
 
 def equal_within_rounding(which: str, what: str) -> Notice:
-    """Return the warning that some moments, though not the same, are taken as equal for some statement."""
+    """Return the warning that moments which differ are treated as equal for some statement."""
     detail = f"{which} differ by less than 16 units in the last place of the largest and are taken as equal for {what}"
     return Notice("moments-equal-within-rounding", detail, ("body",))
 
 
 def curve_notices(inertia: PrincipalInertia) -> tuple[Notice, ...]:
-    """Return what is to be said of curves on the energy ellipsoid of a body, which are those of the moments as given.
+    """Return the warnings about curves on the energy ellipsoid of a body, which use the moments as given.
 
-    A motion has its own: `TorqueFree.moment_notices`.
+    The warnings of a motion are `TorqueFree.moment_notices`.
     """
     return (NEARLY_EQUAL,) if inertia.nearly_equal else ()
 
 
 def moments_of_kinds(inertia: PrincipalInertia) -> tuple[tuple[Floats, Floats], tuple[Notice, ...]]:
-    """Return the moments by which the kinds of equilibria are told, with their tails, and what is to be said of them.
+    """Return the moments that determine the kinds of equilibria, with their tails, and the warnings about them.
 
-    Those that are the body's own along its axes differ if they differ. Derived ones carry the rounding of the numbers
-    they were derived from, which are doubles, and the sign of a smaller difference would be that of rounding.
+    Moments with exact axes are used as they are. Derived moments are affected by the rounding of the doubles that they
+    were derived from, which determines the sign of a smaller difference.
     """
     given = inertia.moments, inertia.moments_tail
     low, middle, high = exact = exact_vector(*given)
@@ -60,6 +60,6 @@ def moments_of_kinds(inertia: PrincipalInertia) -> tuple[tuple[Floats, Floats], 
         merged = [low] + [(middle + high) / 2] * 2
     else:
         return given, ()
-    # What is left between the equal moments of a turned solid is not worth a word.
+    # The rounding between the equal moments of a rotated solid needs no warning.
     notices = (equal_within_rounding("moments", "the kinds of equilibria"),) if inertia.nearly_equal else ()
     return vector_pairs(merged), notices

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from core.bodies.principal_inertia import RESOLUTION, PrincipalInertia
+from core.bodies.principal_inertia import PrincipalInertia
 from core.double_double import Scaled, dd_div
 from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
@@ -106,7 +106,7 @@ class FreeRotation:
         AccuracyUnreachable
             If the start is so near the separatrix, or the figures so far apart, that doubles cannot hold the constants.
         """
-        i, it, w, wt = self.resolved
+        i, it, w, wt = self.resolved.numbers
         motion: Motion = constants_of_motion(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
         if motion.regime == UNDECIDED:
             motion = constants_of_motion(i, it, w, wt, True, exact_difference(self.resolved))
@@ -129,15 +129,21 @@ class FreeRotation:
 
     @property
     def flip_interval(self) -> float | None:
-        """Time between sign changes of the component along the middle axis, 2K/p (s); None without such an axis."""
-        return 0.5 * self.period if all(self.inertia.apart) and self.period is not None else None
+        """Time between sign changes of the component along the middle axis, 2K/p (s); None without such an axis.
+
+        A body that moves as one with two equal moments has none, though what was derived of them differs by rounding.
+        """
+        if self.period is None or not all(self.inertia.apart):
+            return None
+        derived = self.inertia.nearly_equal and not self.inertia.rounding.exact_zeros
+        return None if derived and not self.hangs_on_nearly_equal_moments else 0.5 * self.period
 
     @property
     def hangs_on_nearly_equal_moments(self) -> bool:
         """Whether nearly equal moments differ by enough for this motion to be none of equal ones."""
         if not self.inertia.nearly_equal or self.motion.regime in (REST, STEADY):
             return False
-        return not like_symmetric(circulation(*self.resolved, self.motion.circled))
+        return not like_symmetric(circulation(*self.resolved.numbers, self.motion.circled))
 
     @property
     def largest_rate(self) -> float:
@@ -201,11 +207,19 @@ class FreeRotation:
             computed = 0.0
         else:
             computed = EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR)
-            computed += m.computed.at(SET_UP_ROUNDING, horizon) + UNDERFLOW / self.largest_rate
+            computed += m.computed.at(SET_UP_ROUNDING, horizon) + self._underflow
         if self.derivation is None:
-            return computed
+            return min(WHOLE_MOTION, computed)
         derived: float = self.derivation.angular_velocity(self.derived_rounding, horizon)
         return min(WHOLE_MOTION, computed + derived)
+
+    @property
+    def _underflow(self) -> float:
+        """What a sample may be wrong by, relative, because a factor of it is below the normal doubles."""
+        m = self.motion
+        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'.
+        smallest = min(map(abs, m.weights if m.regime == PERIODIC else (m.A_c, m.A_b, m.A_d)))
+        return UNDERFLOW / smallest if smallest > 0.0 else math.inf
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
@@ -242,11 +256,22 @@ class FreeRotation:
             or (self.motion.regime == STEADY and (exact_zeros or self.certainly_steady))
         ):
             return None
-        # A line of matter stays one: nothing that rounds gives it a moment about itself.
-        if exact_zeros or self.resolved.moments[0] == 0.0:
+        if exact_zeros:
+            # Equal moments are so exactly, and move as one; the start is exact.
+            return self._uncertain(self._each_moment(), np.zeros(3))
+        if self.resolved.moments[0] == 0.0:
+            # A line of matter stays one: nothing that rounds gives it a moment about itself.
             return self._uncertain(None, self.angular_velocity)
         largest = math.ldexp(float(self.resolved.moments[2]), -self._exponent)
         return self._uncertain(largest * _BASIS, np.full(3, math.hypot(*self.angular_velocity.tolist())))
+
+    def _each_moment(self) -> Floats:
+        """Return the tensors, in body axes, that each moment by itself stands for; equal moments stand together."""
+        first, second = self.inertia.apart
+        groups = np.cumsum([0, first, second])
+        moments = np.ldexp(self.resolved.moments, -self._exponent)
+        axes = self.inertia.axes
+        return np.array([(axes * np.where(groups == g, moments, 0.0)) @ axes.T for g in range(groups[2] + 1)])
 
     @property
     def certainly_steady(self) -> bool:
@@ -257,13 +282,11 @@ class FreeRotation:
     @property
     def derived_rounding(self) -> float:
         """What derived moments, relative to the largest, and components, relative to the norm, may be wrong by."""
-        (low, _, high), share = self.resolved.moments.tolist(), self.inertia.rounding.share
+        (low, _, high), share = self.resolved.moments.tolist(), float(self.inertia.rounding.share)
         if self.inertia.rounding.exact_zeros:
-            return share + UNDERFLOW / low
+            return float(share + UNDERFLOW / low)
         share += UNDERFLOW / high + UNDERFLOW / float(np.abs(self.angular_velocity).max())
-        # What was taken for noise may have been none.
-        taken = not all(self.inertia.apart) or not np.all(self.resolved.angular_velocity)
-        return share + 2.0 * RESOLUTION if taken else share
+        return float(share + self.resolved.dropped)
 
     @property
     def _exponent(self) -> int:
@@ -272,7 +295,7 @@ class FreeRotation:
 
     def _uncertain(self, tensors: Floats | None, velocity: Floats) -> InputUncertainty:
         """Return what uncertain tensors, shape (n, 3, 3), or moments where None, and an uncertain start come to."""
-        i, it, w, _ = self.resolved
+        i, it, w, _ = self.resolved.numbers
         exponent, rate = self._exponent, math.frexp(float(np.abs(w).max()))[1]
         rate = max(-1000, min(1000, rate))
         low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))

@@ -95,7 +95,7 @@ class ChainOnWedge(ConstrainedSystem):
     slopes : tuple of float
         Angles of the faces below the horizontal (rad).
     gravity : float
-        (m/s^2).
+        Acceleration of free fall (m/s^2).
     length : float
         Of the whole chain (m).
     linear_density : float

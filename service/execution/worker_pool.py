@@ -326,7 +326,7 @@ class Processes:
     def _not_begun(self, job: Job) -> None:
         """Take a request from a process that does nothing, which is killed and replaced."""
         if job.process is not None:
-            LOG.error("a compute process did not begin a request", extra={"process": job.process.handle.pid})
+            LOG.error("a compute process did not begin a request", extra={"pid": job.process.handle.pid})
             job.process.job = None
             job.process.kill()
             job.process = None

@@ -41,6 +41,14 @@ Refusals are application/problem+json (RFC 9457) with a stable code and JSON poi
 
 _PROBLEMS_OF_QUESTIONS = (400, 401, 406, 408, 413, 415, 422, 429, 500, 501, 503)
 
+PACKED = {
+    "type": "string",
+    "format": "binary",
+    "description": "numpy archive, as numpy.savez packs it: the JSON document as the member metadata.json, in which "
+    '{"array": "positions"} stands for the array of the member positions.npy.',
+}
+"""A request that is a numpy archive."""
+
 
 ABOUT: Mapping[str, Any] = {
     "title": "Polhode",
@@ -102,6 +110,7 @@ def openapi(app: FastAPI) -> dict[str, Any]:
     for verbs in document["paths"].values():
         if "post" in verbs:
             verbs["post"]["security"] = [{}, {"key": []}]
+            verbs["post"]["requestBody"]["content"][archive.MEDIA_TYPE] = {"schema": PACKED}
         for operation in verbs.values():
             for status in operation["responses"]:
                 if int(status) >= 400:

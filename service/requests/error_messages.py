@@ -108,7 +108,9 @@ class Layout:
             steps, owner = self._steps(entry["loc"])
             cause = entry.get("ctx", {}).get("error")
             if isinstance(cause, InvalidParameter):
-                faults.append(Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy))
+                rule = f"must {cause.rule}"
+                remedy = cause.remedy or (_REMEDIES["float_type"] if rule == _RULES["float_type"] else None)
+                faults.append(Fault(pointer_of((*steps, *cause.path)), rule, remedy))
                 codes.add(code_of(cause))
             else:
                 faults.append(self._fault(entry, steps, owner))

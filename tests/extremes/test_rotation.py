@@ -1,8 +1,8 @@
 """Free motions at every border against two references that share nothing with the double kernels.
 
-Ball arithmetic (`digits`) judges every motion; the closed form in 60 digits of mpmath (`tests.oracles`) judges the step
-from one side of a border to the other. A hundred thousand random motions
-are judged by `tests/core/certified/judge.py`.
+Ball arithmetic (certified answers) judges every motion; the closed form in 60 digits of mpmath (`tests.oracles`) judges
+the step from one side of a border to the other. `tests/core/certified/judge.py` does so for a
+hundred thousand random motions.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.extremes.asking import Asked, ask
+from tests.extremes.asking import Asked, ask, certified
 from tests.extremes.motions import Motion, motions
 from tests.extremes.questions import MOTIONS, STARTS, turn_of
 from tests.oracles.free_rotation import free_motion
@@ -46,7 +46,7 @@ def times_of(motion: Motion) -> list[float]:
 
 def asked_both_ways(path: str, question: Asked, **only_in_doubles: Any) -> tuple[Any, Any]:
     """Return the answers in doubles and in 40 digits, either None where it is refused."""
-    found, exact = ask(path, question | only_in_doubles), ask(path, question | {"digits": 40})
+    found, exact = ask(path, question | only_in_doubles), certified(path, question, 40)
     return found, exact
 
 
@@ -244,7 +244,7 @@ def test_a_period_beyond_doubles_is_null_and_said_to_be() -> None:
 def test_rounded_extremes_stay_within_what_is_then_stated(digits: Any) -> None:
     for motion in MOTIONS[::2]:
         question = motion.question | {"times": times_of(motion)[:4]}
-        found, exact = ask(TRAJECTORY, question | {"round": digits}), ask(TRAJECTORY, question | {"digits": 40})
+        found, exact = ask(TRAJECTORY, question | {"round": digits}), certified(TRAJECTORY, question, 40)
         if found.answered:
             error = farthest(found.answer["angular_velocity"], exact.of()["angular_velocity"])
             assert error <= found.answer["accuracy"]["error"] + OWN, motion.name

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.extremes.asking import ask
+from tests.extremes.asking import ask, certified
 from tests.extremes.questions import CHAIN, QUESTIONS, ROD, SHAFTS, Asked
 from tests.extremes.test_rotation import OWN, UNIT_ROUNDOFF, common
 
@@ -25,7 +25,7 @@ FINE: dict[str, tuple[str, ...]] = {
 def test_samples_and_figures_are_within_the_stated_error(path: str) -> None:
     compared, refused = 0, []
     for name, question in QUESTIONS[path]():
-        found, exact = ask(path, question), ask(path, question | {"digits": 40})
+        found, exact = ask(path, question), certified(path, question, 40)
         if not found.answered:
             refused.append(name)
             continue

@@ -15,15 +15,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from service.app import create_app
 from service.routing import PostRoute
-from service.settings import Settings
+from tests.service.conftest import inline_service
 from tests.service.http.test_dispatch import receiving, scope, sending
 
 EXAMPLES = int(os.environ.get("POLHODE_FUZZ", "12"))
-SERVICE = create_app(
-    Settings(cached_answers=0, inline_seconds=1e9, inline_bytes=10**9, max_samples=500, max_evaluations=20_000)
-)
+SERVICE = inline_service(max_samples=500, max_evaluations=20_000)
 QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 
 NUMBERS = [

@@ -9,13 +9,11 @@ import orjson
 import pytest
 
 from core.systems.methods import Method
-from service.app import create_app
 from service.routes import questions
 from service.routing import PostRoute
-from service.settings import Settings
-from tests.service.conftest import client_of
+from tests.service.conftest import client_of, inline_service
 
-SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+SERVICE = inline_service()
 ROUTES = {route.path: route for route in questions()}
 # Plans are made of any other question.
 PLANNED = [(route, name) for route in ROUTES.values() if route.path != "/v1/plan" for name in route.examples]

@@ -7,12 +7,10 @@ from typing import Any
 
 import pytest
 
-from service.app import create_app
 from service.routes.work_precision import SVG, WORK_PRECISION
-from service.settings import Settings
-from tests.service.conftest import client_of
+from tests.service.conftest import client_of, inline_service
 
-SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+SERVICE = inline_service()
 PATH = WORK_PRECISION[0].path
 QUESTION: dict[str, Any] = dict(WORK_PRECISION[0].examples["t-handle"].question)
 

@@ -9,7 +9,13 @@ import socket
 import time
 from pathlib import Path
 
-from service.execution.worker_pool import HEADER, framed
+from service.execution.messages import LENGTH
+from service.execution.worker_pool import BEGUN
+
+
+def framed(message: bytes) -> bytes:
+    """Return a message as it travels."""
+    return len(message).to_bytes(LENGTH, "little") + message
 
 
 def main(channel: socket.socket, folder: str) -> None:
@@ -18,14 +24,14 @@ def main(channel: socket.socket, folder: str) -> None:
     if used_up(place / "stillborn"):
         os._exit(3)
     with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
-        channel.sendall(framed(b""))
-        while header := requests.read(HEADER):
+        channel.sendall(BEGUN)
+        while header := requests.read(LENGTH):
             word, _, rest = requests.read(int.from_bytes(header, "little")).partition(b" ")
             if word == b"vanish" and used_up(place / "vanish"):
                 os._exit(4)
             with (place / "begun").open("ab") as notes:
                 notes.write(rest[:20] + b"\n")
-            channel.sendall(framed(b""))
+            channel.sendall(BEGUN)
             behave(word, rest, channel, place)
             channel.sendall(framed(rest))
             if word == b"last":

@@ -75,7 +75,7 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
     if behaviour == "unreachable":
         raise AccuracyUnreachable(1e-30, 1e-15, "double precision")
     if behaviour == "sleep":
-        time.sleep(question.angular_velocity[0])
+        time.sleep(abs(question.angular_velocity[0]))
     if behaviour == "die":
         os.kill(os.getpid(), signal.SIGKILL)
     t = sample_times(question.times, budget)
@@ -88,9 +88,10 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
 
 def price(question: Ask, budget: Budget) -> float:
     samples = sample_count(question.times, budget)
-    if question.behaviour == "sleep":
-        return question.angular_velocity[0]
-    return 1.0 if question.behaviour == "die" else 1e-8 * samples
+    if question.behaviour in ("sleep", "die"):
+        # Less than no time is slept without being predicted.
+        return max(0.0, question.angular_velocity[0])
+    return 1e-8 * samples
 
 
 def is_small(question: Ask) -> bool:

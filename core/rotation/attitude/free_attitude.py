@@ -63,7 +63,7 @@ class FreeAttitude:
     @cached_property
     def constants(self) -> PrecessionConstants:
         """Constants of the precession about the angular momentum, where the angular velocity changes."""
-        i, it, w, wt = self.rotation.resolved
+        i, it, w, wt = self.rotation.resolved.numbers
         constants: PrecessionConstants = precession_constants(self.rotation.motion, i, it, w, wt)
         if not all(map(math.isfinite, (*constants[:-1], *constants.quarter))):
             raise self._beyond_doubles()
@@ -93,7 +93,7 @@ class FreeAttitude:
         else:
             inertia = self.rotation.inertia
             onto = from_precession(
-                motion, self.constants, *self.rotation.resolved, inertia.axes, inertia.axes_tail, start
+                motion, self.constants, *self.rotation.resolved.numbers, inertia.axes, inertia.axes_tail, start
             )
             sample_attitude(motion, self.constants, times, onto, out)
         if not np.isfinite(out).all():

@@ -200,7 +200,7 @@ def complement(c: Circulation, D: Scaled) -> Scaled:
 
 def exact_difference(resolved: Resolved) -> Scaled:
     """Return D_B = C (C - B) w_C^2 - A (B - A) w_A^2 from exact rational arithmetic, where `decision` left it open."""
-    i, it, w, wt = resolved
+    i, it, w, wt = resolved.numbers
     a, b, c = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(i, it, strict=True))
     wa, _, wc = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(w, wt, strict=True))
     exact = c * (c - b) * wc * wc - a * (b - a) * wa * wa

@@ -25,7 +25,7 @@ Mechanics", 3rd ed., section 5.6. R. Montgomery, "How much does the rigid body r
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf, isfinite, isnan
+from math import inf, isfinite, isnan, nan
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
@@ -162,7 +162,7 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
         return Precession(symmetry, "steady", absent=_SPHERE.copy(), warnings=warnings)
     k = _SYMMETRY_AXIS[symmetry] if symmetry != "spherical" else _AXIS_NEAR_A_SPHERE[inertia.apart]
     resolved = Resolved.of(inertia, np.array((x, y, z)))
-    parts = inertia.moments, inertia.moments_tail, inertia.axes, *resolved
+    parts = inertia.moments, inertia.moments_tail, inertia.axes, *resolved.numbers
     regime, beyond, apart, axis, figures = precession_figures(k, *parts, False, 0.0, 0.0, 0)
     if regime == UNDECIDED:
         regime, beyond, apart, axis, figures = precession_figures(k, *parts, True, *exact_difference(resolved))
@@ -176,9 +176,12 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
     absent = told.absent.copy()
     if told is _CONSTANT and isnan(figures[0]):
         absent["body_rate"] = missing_reasons.STEADY_IN_BODY
-    if not isnan(figures[3]):
-        # Of two moments that are equal in the figures of a symmetric body, and differ as given.
-        absent.pop("flip_interval", None)
+    if not isnan(figures[3]) and told.order is not None:
+        if inertia.rounding.exact_zeros:
+            # The moments are the body's own, and the middle one is known to differ.
+            absent.pop("flip_interval", None)
+        else:
+            figures = (*figures[:3], nan, *figures[4:])
     if OUT_OF_RANGE in figures or UNRESOLVED in figures:
         lost = {name: _LOST[figure] for name, figure in zip(FIGURES, figures, strict=True) if figure in _LOST}
         absent |= {name: reason for name, (_, reason) in lost.items()}

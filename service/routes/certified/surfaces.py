@@ -63,6 +63,7 @@ class CertifiedEllipsoidAnswer(Certified, EllipsoidSurface[DecimalString]):
 def energy_ellipsoid(question: CertifiedEllipsoidRequest, budget: Budget) -> Answer:
     """Answer with the semi-axes, and with the surface and the curves that are asked for."""
     body, digits = body_of(question.body), question.digits
+    curve_points(question, budget)
     check_digits(digits, _numbers(question))
     require_one(question)
     if question.energy is not None:

@@ -49,7 +49,9 @@ class PrecessionFigures(Envelope, Generic[N]):
     symmetry: Symmetry = Field(description="Which of the principal moments are equal.")
     regime: Regime = Field(description="Of the angular velocity in the body.")
     axis: UnitVector[N] | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
-    body_rate: RadiansPerSecond[N] | None = Field(description="(I3 - I)/I w3, signed.")
+    body_rate: RadiansPerSecond[N] | None = Field(
+        description="(I3 - I)/I w3, signed: 0 for a spin across the axis, null for one along it."
+    )
     space_rate: RadiansPerSecond[N] | None = Field(description="L/I.")
     period: Seconds[N] | None = Field(description="Of the angular velocity in the body.")
     flip_interval: Seconds[N] | None = Field(description="Between sign changes along the middle axis.")

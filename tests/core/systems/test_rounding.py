@@ -11,14 +11,12 @@ import orjson
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from service.responses.rounding import Digits, notices_of, rounded, to_places, to_significant
 
+from core.systems.rounding import Digits, notices_of, rounded, to_places, to_significant
 from core.systems.trajectory import Accuracy
-from service.app import create_app
-from service.settings import Settings
-from tests.service.conftest import client_of
+from tests.service.conftest import client_of, inline_service
 
-SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+SERVICE = inline_service()
 FREE: dict[str, Any] = {
     "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]},
     "angular_velocity": [0.3, 1.0, 0.2],

@@ -12,6 +12,7 @@ import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from multiprocessing import forkserver
+from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 from random import Random
 from threading import Event
@@ -29,9 +30,8 @@ from service.execution.worker_pool import (
     QueueTimeout,
     Stopped,
     WorkerDied,
-    framed,
 )
-from tests.service.toy_processes import main
+from tests.service.toy_processes import framed, main
 
 pytestmark = pytest.mark.anyio
 
@@ -42,7 +42,8 @@ LONG = 60.0
 def _fork_server() -> Iterator[None]:
     """Leave no fork server behind that has other modules imported than the next one wants."""
     yield
-    forkserver._forkserver._stop()  # type: ignore[attr-defined]
+    for pid in fork_servers():
+        kill_unnoticed(pid)
 
 
 @pytest.fixture
@@ -72,8 +73,32 @@ async def until(holds: Callable[[], Any]) -> None:
             await asyncio.sleep(0.002)
 
 
-def ask(processes: Processes, request: bytes, longest: float = LONG, patience: float = LONG) -> Job:
-    return processes.submit(request, longest, patience)
+def ask(
+    processes: Processes,
+    request: bytes,
+    longest: float = LONG,
+    patience: float = LONG,
+    client: str = "client",
+    predicted: float = 0.0,
+) -> Job:
+    return processes.submit([framed(request)], client, predicted, longest=longest, patience=patience)
+
+
+def parent_of(pid: int) -> int:
+    return int(Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1])
+
+
+def fork_servers() -> list[int]:
+    """Return the fork servers that this process has started."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if (
+                parent_of(int(place.name)) == os.getpid()
+                and b"multiprocessing.forkserver" in (place / "cmdline").read_bytes()
+            ):
+                found.append(int(place.name))
+    return found
 
 
 def begun(place: Path) -> list[str]:
@@ -93,6 +118,15 @@ def kill_unnoticed(pid: int) -> None:
     os.kill(pid, signal.SIGKILL)
     while running(pid):
         time.sleep(0.001)
+
+
+def receive(process: Process, data: bytes) -> None:
+    """Have a process's messages received, as the event loop does."""
+    while data:
+        buffer = process.get_buffer(len(data))
+        count = min(len(buffer), len(data))
+        buffer[:count], data = data[:count], data[count:]
+        process.buffer_updated(count)
 
 
 def holds_together(processes: Processes) -> bool:
@@ -179,14 +213,14 @@ class TestMessages:
         heard: list[bytes] = []
 
         class Pool:
-            def heard(self, process: Process, message: bytes) -> None:
-                heard.append(message)
+            def heard(self, process: Process, message: memoryview | None) -> None:
+                heard.append(bytes(message or b""))
 
         process = Process(Pool(), None)  # type: ignore[arg-type]
         stream = b"".join(map(framed, messages))
         edges = [0, *sorted(min(cut, len(stream)) for cut in cuts), len(stream)]
         for start, end in itertools.pairwise(edges):
-            process.data_received(stream[start:end])
+            receive(process, stream[start:end])
             # Nothing is held back that is whole.
             whole, count = 0, 0
             for message in messages:
@@ -236,11 +270,48 @@ class TestQueue:
             # It waits for longer than it may work, and works for longer than it may wait.
             ahead = ask(processes, b"wait a", patience=0.05)
             behind = ask(processes, b"echo b", longest=1.0)
-            await until(lambda: ahead.begun)
-            await asyncio.sleep(1.1)
+            waits_longer = ask(processes, b"echo c", patience=1.1)
+            with pytest.raises(QueueTimeout):
+                await waits_longer.reply
+            assert ahead.begun
             assert not ahead.reply.done()
             (place / "gate").touch()
             assert [await ahead.reply, await behind.reply] == [b"a", b"b"]
+
+    async def test_clients_have_their_turns_in_rotation(self, place: Path) -> None:
+        async with warm(place) as (processes, _):
+            jobs = [ask(processes, b"wait 0", client="many")]
+            await until(lambda: jobs[0].begun)
+            jobs += [ask(processes, b"echo %d" % i, client="many") for i in range(1, 5)]
+            jobs += [ask(processes, b"echo %d" % i, client="few") for i in (5, 6)]
+            (place / "gate").touch()
+            for job in jobs:
+                await job.reply
+            assert begun(place) == [*"0152634"]
+
+    async def test_the_wait_of_a_client_is_the_work_that_is_served_before(self, place: Path) -> None:
+        async with warm(place, 2) as (processes, _):
+            assert (processes.wait_of("many"), processes.backlog) == (0.0, 0.0)
+            running = [ask(processes, b"wait 0", client="many", predicted=1e6) for _ in range(2)]
+            await until(lambda: all(job.begun for job in running))
+            waiting = [ask(processes, b"echo 1", client="many", predicted=seconds) for seconds in (3e5, 4e5, 5e5)]
+            waiting.append(ask(processes, b"echo 2", client="few", predicted=7e5))
+            found = {client: processes.wait_of(client) for client in ("many", "few", "none")}
+            # Shared by two, but for the moment that has passed.
+            whole = {"many": 2e6 + 12e5 + 7e5, "few": 2e6 + 7e5 + 3e5 + 4e5, "none": 2e6 + 3e5 + 7e5}
+            for client, seconds in whole.items():
+                assert 0.0 <= seconds / 2 - found[client] < 60.0
+            assert 0.0 <= (2e6 + 12e5 + 7e5) / 2 - processes.backlog < 60.0
+            for job in (*running, *waiting):
+                processes.drop(job)
+
+    async def test_what_takes_longer_than_predicted_is_expected_to_take_as_long_again(self, place: Path) -> None:
+        async with warm(place) as (processes, _):
+            job = ask(processes, b"wait 0")
+            await until(lambda: job.begun)
+            before = job.seconds
+            assert before <= processes.wait_of("other") <= job.seconds
+            processes.drop(job)
 
     async def test_one_that_is_dropped_while_it_waits_is_never_begun(self, place: Path) -> None:
         async with warm(place) as (processes, lost):
@@ -311,6 +382,23 @@ class TestLoss:
             assert sorted(lost) == [-signal.SIGKILL, 4]
             assert before not in processes.pids
 
+    async def test_a_process_that_is_stopped_loses_its_request_to_another(
+        self, place: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        monkeypatch.setattr("service.execution.worker_pool.BEGIN_SECONDS", 0.2)
+        async with warm(place, 2) as (processes, _):
+            before = set(processes.pids)
+            for pid in before:
+                os.kill(pid, signal.SIGSTOP)
+            jobs = [ask(processes, b"echo %d" % i) for i in range(3)]
+            assert [await job.reply for job in jobs] == [b"0", b"1", b"2"]
+            assert sorted(begun(place)) == [*"012"]
+            await until(lambda: holds_together(processes))
+            assert not before & set(processes.pids)
+            assert not any(map(running, before))
+            messages = [record.message for record in caplog.records]
+            assert messages.count("a compute process did not begin a request") >= 2
+
     async def test_what_was_not_begun_is_not_left_without_an_end(
         self, place: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
@@ -333,7 +421,8 @@ class TestLoss:
     async def test_all_goes_on_though_the_fork_server_is_dead(self, place: Path) -> None:
         async with warm(place, 2) as (processes, _):
             before = set(processes.pids)
-            os.kill(forkserver._forkserver._forkserver_pid, signal.SIGKILL)  # type: ignore[attr-defined]
+            (server,) = {parent_of(pid) for pid in before}
+            os.kill(server, signal.SIGKILL)
             for job in [ask(processes, b"wait %d" % i, longest=0.1) for i in range(2)]:
                 with pytest.raises(DeadlineExceeded):
                     await job.reply
@@ -369,7 +458,7 @@ class TestLoss:
                 else:
                     assert outcome == b"%d" % i
                     assert word not in (b"die", b"tear")
-            assert {type(outcome) for outcome in outcomes} == {bytes, WorkerDied, asyncio.CancelledError}
+            assert {type(outcome) for outcome in outcomes} == {memoryview, WorkerDied, asyncio.CancelledError}
             found = begun(place)
             assert len(set(found)) == len(found)
             await until(lambda: holds_together(processes))
@@ -455,7 +544,7 @@ class TestKilled:
             assert process is not None
             processes.drop(late)
             job = ask(processes, b"echo b")
-            process.data_received(framed(b"a") + framed(b""))
+            receive(process, framed(b"a") + framed(b""))
             assert not job.begun
             assert await job.reply == b"b"
 
@@ -480,21 +569,22 @@ class TestStop:
         with pytest.raises(Stopped):
             await ask(processes, b"echo a").reply
         assert begun(place) == ["0", "1"] or begun(place) == ["1", "0"]
-        assert not processes._starting
         assert lost == []
 
-    async def test_processes_that_are_being_started_do_not_outlive_it(self, place: Path) -> None:
+    async def test_processes_that_are_being_started_do_not_outlive_it(
+        self, place: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
         processes = made(place, 2, [])
         asked, stopped, spawned = Event(), Event(), []
-        spawn = processes._spawn
+        start = ForkServerProcess.start
 
-        def slow(end: socket.socket) -> Any:
+        def slow(handle: ForkServerProcess) -> None:
             asked.set()
             stopped.wait(LONG)
-            spawned.append(spawn(end))
-            return spawned[-1]
+            start(handle)
+            spawned.append(handle)
 
-        processes._spawn = slow  # type: ignore[method-assign]
+        monkeypatch.setattr(ForkServerProcess, "start", slow)
         starting = asyncio.create_task(processes.start())
         await until(asked.is_set)
         starting.cancel()

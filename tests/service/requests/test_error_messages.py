@@ -105,16 +105,15 @@ def test_numbers_in_quotes_and_counts_with_a_point_are_told_how_to_write_them() 
     [(_, detail, remedy), *_] = errors(asked(angular_velocity=["1", "2", "3"]))
     assert (detail, remedy) == (
         "must be a number",
-        'give a JSON number; decimal strings are taken, as exact numbers, only beside "digits" (16 to 1000)',
+        "write a JSON number: no quotes, no true, false or null; /v1/certified takes decimal strings",
     )
     [(_, detail, remedy)] = errors(asked(times={"start": 0, "stop": 1, "count": 3.0}))
     assert (detail, remedy) == ("must be an integer", 'write a JSON integer: 10, not 10.0, 1e1 or "10"')
 
 
-def test_a_key_of_the_other_question_is_told_apart_from_one_that_is_unknown() -> None:
-    found = errors(asked(digits=30, accuracy=1e-9))
-    why = "does not go with digits: the digits say how accurate the answer is"
-    assert found == [("/accuracy", why, "leave out either accuracy or digits")]
+def test_a_key_of_another_route_is_told_apart_from_one_that_is_unknown() -> None:
+    remedy = "POST /v1/certified/rotation/trajectory answers to any number of digits from 16 to 1000"
+    assert errors(asked(digits=30)) == [("/digits", "is not known here", remedy)]
 
 
 def test_at_most_twenty_faults_are_told_of_many() -> None:

@@ -11,14 +11,12 @@ import httpx
 import numpy as np
 import pytest
 
-from service.app import create_app
 from service.responses.json_rows import NotFinite
 from service.responses.npz import CHUNK, MEDIA_TYPE, METADATA, archive
 from service.routing import PostRoute
-from service.settings import Settings
-from tests.service.conftest import client_of
+from tests.service.conftest import client_of, inline_service
 
-SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+SERVICE = inline_service()
 QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 NPZ = {"accept": MEDIA_TYPE}
 

@@ -7,12 +7,16 @@ from itertools import product
 
 import numpy as np
 import pytest
+from hypothesis import assume, settings
+from hypothesis import given as drawn
+from hypothesis import strategies as st
 
 from core.bodies.mass_properties import diagonal
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.rotation.attitude.free_attitude import FreeAttitude
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
+from core.rotation.uncertainty.sensitivities import growth_factor
 from core.systems.system import Floats
 from tests.oracles.cases import T_HANDLE
 from tests.oracles.perturbed import ATTITUDE, Perturbed
@@ -166,3 +170,30 @@ def test_at_the_ends_of_the_double_range_it_is_a_number(
     for uncertainty in (2.0**-53, 0.9):
         assert 0.0 < rotation.inherited(times, uncertainty) <= WHOLE
         assert 0.0 < free.inherited(times, uncertainty) <= np.pi
+
+
+@settings(deadline=None, derandomize=True, max_examples=150)
+@drawn(
+    st.floats(0.3, 3.0),
+    st.sampled_from((1e-15, 1e-9, 1e-4, 0.1, 1.0)),
+    st.floats(0.3, 3.0),
+    st.tuples(*3 * [st.floats(-1.0, 1.0)]),
+    st.tuples(*3 * [st.floats(-1.0, 1.0)]),
+    st.floats(-2.0, 4.0),
+)
+def test_no_difference_of_two_motions_grows_faster_than_groenwall_allows(first, gap, third, spin, away, late):
+    A, B, C = sorted((first, first * (1.0 + gap), third))
+    body = diagonal((A, B, C)).principal
+    step = 1e-4
+    one = FreeRotation(body, np.array(spin))
+    other = FreeRotation(body, np.array(spin) + step * np.array(away))
+    moved = step * float(np.linalg.norm(away))
+    assume(moved > 1e-6)
+    time = np.array([10.0**late])
+    apart = float(np.linalg.norm(one.sample(time) - other.sample(time)))
+    rate = max(one.largest_rate, other.largest_rate) / np.sqrt(3.0)
+    allowed = growth_factor((C - B) / A, (C - A) / B, (B - A) / C, rate * time[0])
+    assert apart <= moved * allowed + 1e-13
+    if min(B - A, C - B) <= 1e-14 and rate * time[0] < 1e4:
+        # Nearly symmetric: in proportion to the time.
+        assert allowed <= 3.0 * (1.0 + max((C - B) / A, (C - A) / B, (B - A) / C) * rate * time[0])

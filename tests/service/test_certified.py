@@ -1,4 +1,4 @@
-"""Questions with `digits`: answers against independent solutions, strings and doubles as they are, every refusal."""
+"""Certified questions: answers against independent solutions, strings and doubles as they are, every refusal."""
 
 from __future__ import annotations
 
@@ -13,19 +13,17 @@ import pytest
 from mpmath import mp, mpf
 
 from core.systems.budget import Budget
-from service.app import create_app
 from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
-from service.routing import PostRoute
-from service.settings import Settings
+from service.routes import questions
 from tests.oracles.free_rotation import flip_interval, period, reference_angular_velocity, reference_attitude
-from tests.service.conftest import Server, client_of
+from tests.service.conftest import Server, client_of, inline_service
 
-SERVICE = create_app(Settings(cached_answers=0, inline_seconds=1e9))
+SERVICE = inline_service()
 TRAJECTORY, PRECESSION, STABILITY, ELLIPSOID = (
-    f"/v1/rotation/{name}" for name in ("trajectory", "precession", "stability", "energy-ellipsoid")
+    f"/v1/certified/rotation/{name}" for name in ("trajectory", "precession", "stability", "energy-ellipsoid")
 )
-ROD = "/v1/scenes/rod-in-hole"
+ROD = "/v1/certified/scenes/rod-in-hole"
 HANDLE = (795.7921810699588, 713.5092592592592, 395.7829218106996)
 START = (1.0, 10.0, 1.0)
 TIMES = [0.0, 0.1, -3.0, 20.0, 1e6]
@@ -45,6 +43,11 @@ async def answer(path: str, question: Any) -> Any:
     response = await asked(path, question)
     assert response.status_code == 200, response.text
     return response.json()
+
+
+def ordinary(path: str) -> str:
+    """Return the path of the same question in doubles."""
+    return path.replace("/v1/certified/", "/v1/")
 
 
 def farthest(found: list[list[str]], true: Any) -> mpf:
@@ -104,7 +107,8 @@ async def test_the_answer_is_the_one_in_doubles_with_more_digits() -> None:
         question = {"body": body, "angular_velocity": start}
         times = {"times": {"start": 0.0, "stop": 8.0, "count": 9}, "attitude": [0.0, 1.0, 0.0, 0.0]}
         for path, asking in ((PRECESSION, {}), (TRAJECTORY, times)):
-            many, few = await answer(path, question | asking | {"digits": 20}), await answer(path, question | asking)
+            many = await answer(path, question | asking | {"digits": 20})
+            few = await answer(ordinary(path), question | asking)
             names = [
                 name for name in many if name not in ("signature", "warnings", "accuracy", "work", "model", "absent")
             ]
@@ -127,7 +131,7 @@ def close(many: Any, few: Any) -> bool:
 async def test_equilibria() -> None:
     body = {"kind": "principal-moments", "moments": ["1", "2", "3"]}
     many = await answer(STABILITY, {"body": body, "rate": "10", "digits": 40})
-    few = await answer(STABILITY, {"body": body | {"moments": [1.0, 2.0, 3.0]}, "rate": 10.0})
+    few = await answer(ordinary(STABILITY), {"body": body | {"moments": [1.0, 2.0, 3.0]}, "rate": 10.0})
     for found, wanted in zip(many["equilibria"], few["equilibria"], strict=False):
         assert found["kind"] == wanted["kind"]
         assert close(found["moment"], wanted["moment"])
@@ -152,7 +156,8 @@ async def test_every_scene_is_the_one_in_doubles_with_more_digits() -> None:
     for route in SERVICE.table:
         if route.path.startswith("/v1/scenes/"):
             question = dict(route.examples["motion"].question)  # type: ignore[union-attr]
-            many, few = await answer(route.path, question | {"digits": 20}), await answer(route.path, question)
+            many = await answer(route.path.replace("/v1/", "/v1/certified/"), question | {"digits": 20})
+            few = await answer(route.path, question)
             assert many["model"]["regime"] == few["model"]["regime"]
             assert many["ended"] == few["ended"]
             assert many["work"]["samples"] == few["work"]["samples"]
@@ -176,7 +181,7 @@ async def test_only_what_is_asked_for_is_answered() -> None:
 
 
 async def test_a_body_held_away_from_its_centre_of_mass_is_told_not_to_be_free() -> None:
-    """By every answer about it, with digits and without."""
+    """By every answer about it, certified or not."""
     body = {"kind": "composite", "parts": [WALL | {"position": ["3", 0, "4"]}], "about": "origin"}
     plain = {"body": {"kind": "cuboid", "edges": [1.0, 2.0, 0.1], "mass": 3.0}, "position": [3.0, 0.0, 4.0]}
     for path, more in (
@@ -185,8 +190,11 @@ async def test_a_body_held_away_from_its_centre_of_mass_is_told_not_to_be_free()
         (STABILITY, {}),
         (ELLIPSOID, {"energy": 1}),
     ):
-        for question in ({"body": body, "digits": 20}, {"body": body | {"parts": [plain]}}):
-            (told,) = (await answer(path, question | more))["warnings"]
+        for where, question in (
+            (path, {"body": body, "digits": 20}),
+            (ordinary(path), {"body": body | {"parts": [plain]}}),
+        ):
+            (told,) = (await answer(where, question | more))["warnings"]
             assert (told["code"], told["pointer"]) == ("not-free", "/body/about")
             assert "5 m from its centre of mass" in told["detail"]
 
@@ -339,17 +347,17 @@ async def test_refusals(path: str, change: dict[str, Any], code: str, pointer: s
     ],
     ids=str,
 )
-async def test_strings_are_no_numbers_without_digits(change: dict[str, Any], pointers: list[str]) -> None:
+async def test_strings_are_no_numbers_in_ordinary_questions(change: dict[str, Any], pointers: list[str]) -> None:
     question = {name: value for name, value in QUESTION.items() if name != "digits"} | change
-    response = await asked(TRAJECTORY, question)
+    response = await asked(ordinary(TRAJECTORY), question)
     assert response.status_code == 422
     faults = response.json()["errors"]
     assert [fault["pointer"] for fault in faults] == pointers
     if not pointers[0].endswith("digits"):
-        assert all(fault["detail"] == "must be a number" and '"digits"' in fault["remedy"] for fault in faults)
+        assert all(fault["detail"] == "must be a number" and "/v1/certified" in fault["remedy"] for fault in faults)
 
 
-BESIDE = [
+ONLY_ORDINARY = [
     (TRAJECTORY, "accuracy", 1e-9),
     (TRAJECTORY, "method", {"kind": "explicit-euler", "step": 0.1}),
     (TRAJECTORY, "round", 5),
@@ -358,40 +366,34 @@ BESIDE = [
 ]
 
 
-@pytest.mark.parametrize(("path", "name", "value"), BESIDE, ids=lambda value: str(value)[:40])
-async def test_what_cannot_go_with_digits_says_why(path: str, name: str, value: Any) -> None:
+@pytest.mark.parametrize(("path", "name", "value"), ONLY_ORDINARY, ids=lambda value: str(value)[:40])
+async def test_what_a_certified_question_lacks_is_refused_with_the_reason_and_where_it_belongs(
+    path: str, name: str, value: Any
+) -> None:
     fault = (await asked(path, whole(path) | {name: value})).json()["errors"][0]
     assert fault["pointer"] == f"/{name}"
-    assert fault["detail"].startswith("does not go with digits: ")
-    assert fault["remedy"] == f"leave out either {name} or digits"
+    assert fault["detail"] == "is not known here"
+    assert fault["remedy"].endswith(f"; POST {ordinary(path)} takes it")
 
 
-@pytest.mark.parametrize("digits", [15, 1001, 20.5, "50", None])
-async def test_digits_out_of_range_are_told_their_range(digits: Any) -> None:
-    fault = (await asked(TRAJECTORY, QUESTION | {"digits": digits})).json()["errors"][0]
-    assert fault["pointer"] == "/digits"
-    assert "16 to 1000" in fault["remedy"]
+@pytest.mark.parametrize(("path", "question"), [(TRAJECTORY, QUESTION), (ROD, LENGTHS)], ids=["trajectory", "rod"])
+async def test_digits_sent_to_an_ordinary_route_name_the_certified_one(path: str, question: dict[str, Any]) -> None:
+    faults = (await asked(ordinary(path), question)).json()["errors"]
+    [fault] = [fault for fault in faults if fault["pointer"] == "/digits"]
+    assert fault["detail"] == "is not known here"
+    assert f"POST {path} " in fault["remedy"]
 
 
-@pytest.mark.parametrize("body", [b"[]", b"3", b'"digits"', b'["digits"]', b"null"])
-async def test_a_document_that_is_no_object_is_refused_as_one(body: bytes) -> None:
-    async with client_of(SERVICE) as client:
-        response = await client.post(TRAJECTORY, content=body, headers={"content-type": "application/json"})
-    assert response.status_code == 422
-    [fault] = response.json()["errors"]
-    assert (fault["pointer"], fault["detail"]) == ("", "must be an object")
-    assert fault["remedy"].startswith("its keys: body, angular_velocity, ")
-    # Those of the question that is asked by default, even where the word is in it.
-    assert "accuracy" in fault["remedy"]
+async def test_digits_are_required() -> None:
+    question = {name: value for name, value in QUESTION.items() if name != "digits"}
+    assert (await asked(TRAJECTORY, question)).json()["errors"] == [{"pointer": "/digits", "detail": "is required"}]
 
 
-async def test_a_kind_that_does_not_go_with_digits_is_told_from_one_that_is_none() -> None:
-    for kind, remedy in (
-        ("mesh", "'mesh' does not go with digits; leave digits out for it"),
-        ("cubiod", "did you mean 'cuboid'?"),
-    ):
-        [fault] = (await asked(TRAJECTORY, QUESTION | {"body": {"kind": kind}})).json()["errors"]
-        assert (fault["pointer"], fault["remedy"]) == ("/body/kind", remedy)
+@pytest.mark.parametrize("kind", ["mesh", "cubiod"])
+async def test_a_kind_that_has_no_certified_form_is_told_those_that_have(kind: str) -> None:
+    [fault] = (await asked(TRAJECTORY, QUESTION | {"body": {"kind": kind}})).json()["errors"]
+    assert fault["pointer"] == "/body/kind"
+    assert "'cuboid'" in fault["detail"]
 
 
 @pytest.mark.parametrize("twice", [b'"digits": 20, "digits": 21', b'"digits": 20, "\\u0064igits": 20'])
@@ -404,17 +406,8 @@ async def test_digits_given_twice_are_refused_as_that(twice: bytes) -> None:
     assert [fault["pointer"] for fault in problem["errors"]] == ["/digits"]
 
 
-async def test_the_key_may_be_written_with_escapes() -> None:
-    async with client_of(SERVICE) as client:
-        plain = await client.post(TRAJECTORY, json=QUESTION)
-        escaped = plain.request.content.replace(b'"digits"', b'"d\\u0069gits"')
-        response = await client.post(TRAJECTORY, content=escaped, headers={"content-type": "application/json"})
-    assert response.status_code == 200
-    assert response.content == plain.content
-
-
 def test_none_runs_in_the_server_and_long_ones_cost_more() -> None:
-    routes = [route for route in SERVICE.table if isinstance(route, PostRoute)]
+    routes = questions()
     answering = RequestHandler(routes, Budget(), Limits())
     asking = [
         (route, dict(example.question))
@@ -425,7 +418,7 @@ def test_none_runs_in_the_server_and_long_ones_cost_more() -> None:
     assert len({route.path for route, _ in asking}) >= 6
     for route, question in asking:
         read = answering.read(route, orjson.dumps(question))
-        assert answering.price(route, read) > Settings().inline_seconds
+        assert not route.small(read)
         if "times" in question:
             long = question | {"times": {"start": 0, "stop": 1, "count": 3000}}
             assert answering.price(route, answering.read(route, orjson.dumps(long))) > 2 * answering.price(route, read)

@@ -1,4 +1,4 @@
-"""A question with digits is answered with the same fields as without, and with the same values to the stated error."""
+"""A certified question is answered with the fields of the ordinary one, and its values to the stated error."""
 
 from __future__ import annotations
 
@@ -13,10 +13,13 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.certified.questions import EitherPrice
 
-ROUTES = {route.path: route for route in questions() if isinstance(route.price, EitherPrice)}
-ANSWERING = RequestHandler(ROUTES.values(), Budget(), Limits())
+ALL = {route.path: route for route in questions()}
+CERTIFIED = "/v1/certified/"
+ROUTES = {
+    path: route for path, route in ALL.items() if path.replace("/v1/", CERTIFIED) in ALL and CERTIFIED not in path
+}
+ANSWERING = RequestHandler(ALL.values(), Budget(), Limits())
 FREE = "/v1/rotation/"
 EXACT = Context(prec=60)
 
@@ -97,21 +100,20 @@ def asking() -> list[Any]:
     for path, route in ROUTES.items():
         if path.startswith("/v1/scenes/"):
             for name, example in route.examples.items():
-                if "digits" not in example.question:
-                    found.append(pytest.param(path, dict(example.question), id=f"{path} {name}"))
+                found.append(pytest.param(path, dict(example.question), id=f"{path} {name}"))
     return found
 
 
 def answered(path: str, question: dict[str, Any]) -> Any:
-    route = ROUTES[path]
+    route = ALL[path]
     return orjson.loads(written(ANSWERING.answer(route, ANSWERING.read(route, orjson.dumps(question)))))
 
 
 @pytest.mark.parametrize(("path", "question"), asking())
-def test_digits_are_the_doubles_with_more_digits(path: str, question: dict[str, Any]) -> None:
+def test_certified_numbers_are_the_doubles_with_more_digits(path: str, question: dict[str, Any]) -> None:
     few = answered(path, question)
-    in_digits = {name: value for name, value in question.items() if name != "round"}
-    many = answered(path, in_digits | {"digits": 60})
+    exact = {name: value for name, value in question.items() if name != "round"}
+    many = answered(path.replace("/v1/", CERTIFIED), exact | {"digits": 60})
     assert set(many) == set(few) | {"accuracy"}
     assert [(entry["code"], entry.get("pointer")) for entry in many["warnings"]] == [
         (entry["code"], entry.get("pointer")) for entry in few["warnings"] if entry["code"] not in OF_DOUBLES
@@ -183,6 +185,7 @@ def shape(value: Any) -> Any:
     return [shape(entry) for entry in value] if isinstance(value, list) else isinstance(value, bool)
 
 
-def test_every_question_that_takes_digits_is_asked() -> None:
+def test_every_certified_question_is_asked() -> None:
     assert {param.values[0] for param in asking()} == set(ROUTES)
+    assert {path.replace("/v1/", CERTIFIED) for path in ROUTES} == {path for path in ALL if CERTIFIED in path}
     assert len(ROUTES) == 7
