@@ -58,7 +58,8 @@ _keep_by_content()
 
 def has_compiled_code() -> bool:
     """Return whether an earlier process has kept compiled code, so that this one need not compile."""
-    directory = str(numba.config.CACHE_DIR)
+    config: Any = numba.config
+    directory = str(config.CACHE_DIR)
     return bool(directory) and any(Path(directory).rglob("*.nbc"))
 
 
