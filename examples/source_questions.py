@@ -11,7 +11,7 @@ from math import acos, cos, degrees, sin, sqrt
 from pathlib import Path
 from typing import Any
 
-from examples.ask import SERVICE, ask
+from examples.ask import ask, service_url
 
 Answers = Sequence[Mapping[str, Any]]
 Figures = dict[str, float]
@@ -278,7 +278,7 @@ def page(found: Mapping[str, Figures]) -> str:
 def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--service", default=SERVICE, help="where it runs (default: %(default)s)")
+    parser.add_argument("--service", default=service_url(), help="where it runs (default: %(default)s)")
     service = parser.parse_args().service
     print(page(figures(lambda name: ask(name, service))), end="")
 
