@@ -17,8 +17,8 @@ from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
 from service.execution.cost_model import CalibratedCost, effort, extreme, speed_of
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE, TIMES
-from service.routing import Answer, Example, PostRoute
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
+from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
 
 
@@ -38,7 +38,7 @@ class WorkPrecisionRequest(Request):
 
 
 class MethodMeasurement(View):
-    """One method with one setting; errors are relative to the largest norm of the motion."""
+    """One method with one setting; errors are relative to the largest norm of the whole motion."""
 
     method: Method = Field(description="With its setting.")
     error: Ratio[float] | None = Field(description="Largest of any sample; null if the method failed.")
@@ -155,26 +155,6 @@ WORK_PRECISION = (
         CalibratedCost("work_precision", work_precision_counts),
         planning_probe=work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
-        examples={
-            "t-handle": Example(
-                "three methods on a T-handle that tumbles",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "times": {"start": 0.0, "stop": 5.0, "count": 21},
-                    "methods": [
-                        {"kind": "closed-form"},
-                        {"kind": "explicit-euler", "step": 0.01},
-                        {"kind": "explicit-euler", "step": 0.001},
-                        {"kind": "runge-kutta-4", "step": 0.02},
-                        {"kind": "runge-kutta-4", "step": 0.01},
-                        {"kind": "dormand-prince-853", "tolerance": 1e-6},
-                        {"kind": "dormand-prince-853", "tolerance": 1e-12},
-                    ],
-                    "accuracy": 1e-9,
-                },
-            ),
-        },
         representations={SVG: drawn},
     ),
 )

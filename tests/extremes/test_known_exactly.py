@@ -136,7 +136,7 @@ def test_a_solid_spun_exactly_about_an_axis_is_constant_for_ever(solid, axis, si
 def test_a_spin_in_the_plane_of_exactly_equal_moments_is_constant_for_ever(solid, spin, late):
     judge = certified(solid, spin)
     motion = FreeRotation(solid.mass_properties().principal, np.array(spin))
-    assert (motion.model.regime == "steady rotation") == (judge.regime == "steady")
+    assert (motion.model.regime.endswith("steady rotation")) == (judge.regime == "steady")
     if judge.regime == "steady":
         assert motion.error(np.array([10.0**late])) == 0.0
 
@@ -246,7 +246,7 @@ def test_a_body_turned_by_a_rational_rotation_and_spun_along_its_own_axis_is_con
         turned = Composite((Part(body, attitude=tuple(map(float, q))),))
     assert certified(turned, spin).regime == "steady"
     motion = FreeRotation(turned.mass_properties().principal, spin)
-    assert motion.model.regime == "steady rotation"
+    assert motion.model.regime.endswith("steady rotation")
     assert motion.error(np.array([10.0**late])) == 0.0
     assert precession(turned.mass_properties(), spin).regime == "steady"
 

@@ -1,7 +1,8 @@
 """Free motions at every border against two references that share nothing with the double kernels.
 
 Ball arithmetic (certified answers) judges every motion; the closed form in 60 digits of mpmath (`tests.oracles`) judges
-the step from one side of a border to the other. A hundred thousand random motions are judged by `tests/core/certified/judge.py`.
+the step from one side of a border to the other. `tests/core/certified/judge.py` does so for a
+hundred thousand random motions.
 """
 
 from __future__ import annotations
