@@ -1,0 +1,164 @@
+"""Two degrees of freedom that are symmetric about the vertical: spherical pendulums, and tops by their axis.
+
+The test is written for the gyroscopic terms too: every term of the table has to be unchanged by a turn about the
+vertical through the centre of the one quadratic measure.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from flint import arb
+
+from core.multibody.motion import States
+from core.multibody.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
+from core.multibody.packed import Floats, packed, pair, state, two_to, units_of
+from core.multibody.periods import Periodic, Section, closed, distance
+from core.multibody.polynomials import ONE, ZERO, Ball, Poly, is_zero
+from core.multibody.table import Table
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """A motion about a vertical that does not pass through the origin."""
+
+    motion: Periodic
+    centre: tuple[Ball, Ball]
+
+    @property
+    def name(self) -> str:
+        """The model."""
+        return self.motion.name
+
+    @property
+    def why(self) -> str:
+        """What made it suffice."""
+        return self.motion.why
+
+    @property
+    def how(self) -> str:
+        """How errors are stated."""
+        return self.motion.how
+
+    @property
+    def period(self) -> Ball | None:
+        """The period in seconds."""
+        return self.motion.period
+
+    @property
+    def winding(self) -> float:
+        """Angle of precession in a period (rad)."""
+        return self.motion.winding
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the states of the motion about its own vertical, moved back."""
+        found = self.motion.states(times, finer=finer)
+        for i, c in enumerate(self.centre):
+            high, low = pair(c, 0)
+            for s in range(len(times)):
+                x = arb(found.q[s, i, 0]) + arb(found.q[s, i, 1]) + arb(high) + arb(low)
+                found.q[s, i] = pair(x, 0)
+        return found
+
+    def nodes(self, end: float) -> Floats:
+        """Return times close enough for events."""
+        return self.motion.nodes(end)
+
+
+def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]) -> Periodic | Shifted | None:
+    """Return the motion of a part with symmetry about the vertical and two degrees of freedom, if it is one."""
+    centre = _centre(table, chosen)
+    if centre is None:
+        return None
+    shifted = not all(is_zero(c) for c in centre)
+    if shifted:
+        expressions: list[Poly] = [
+            {(i,): ONE, **({(): centre[i]} if i < 2 and not is_zero(centre[i]) else {})} for i in range(3)
+        ]
+        moved = table.changed(expressions, range(3))
+        moved.q = [table.q[0] - centre[0], table.q[1] - centre[1], table.q[2]]
+        table = moved
+    if not _invariant(table):
+        return None
+    z_rate, z_gain = table.v[2], acceleration[2]
+    if is_zero(z_rate) and is_zero(z_gain):
+        return None
+    units = units_of(table, acceleration)
+    arrays = packed(table, chosen, units)
+    start = state(table, units)
+    section = Section(np.array([0.0, 0.0, 1.0]), is_zero(z_rate), 2)
+    found = closed(arrays, start, section, [2], FINE_ORDER, FINE_TOLERANCE)
+    check = closed(arrays, start, section, [2], CHECK_ORDER, CHECK_TOLERANCE)
+    if found is None or check is None:
+        return None
+    run, time, end = found
+    late = abs((time[0] - check[1][0]) + (time[1] - check[1][1])) + 2.0**-100 * abs(time[0])
+    off = max(distance(end[k], check[2][k], range(3)) for k in range(2)) + 2.0**-98
+    turned = _angle(start, end)
+    motion = Periodic(table, units, run, time, False, np.zeros((3, 2)), (late, 4.0 * off), turned)
+    motion.why = "the motion is symmetric about the vertical: its height repeats, and each period turns it further"
+    motion.winding = _unwrapped(motion, float(turned))
+    return Shifted(motion, centre) if shifted else motion
+
+
+def _centre(table: Table, chosen: Sequence[int]) -> tuple[Ball, Ball] | None:
+    """Return the vertical about which the one measure of a triple of coordinates is symmetric."""
+    names = [name.rpartition(".") for name in table.names]
+    if [entry[2] for entry in names] != ["x", "y", "z"] or len({entry[0] for entry in names}) != 1 or len(chosen) != 1:
+        return None
+    measure = table.rows[chosen[0]].measure
+    if measure is None or table.rows[chosen[0]].rate != 0 or len(table.rows) != 1:
+        return None
+    a, b = measure.get((0, 0), ZERO), measure.get((1, 1), ZERO)
+    if is_zero(a) or not is_zero(a - b) or any(key in measure for key in ((0, 1), (0, 2), (1, 2))):
+        return None
+    return -measure.get((0,), ZERO) / (2 * a), -measure.get((1,), ZERO) / (2 * a)
+
+
+def _invariant(table: Table) -> bool:
+    """Return whether no term of a table of (x, y, z) changes by a turn about z."""
+
+    def same(entries: dict[tuple[int, int], Ball], sign: int) -> bool:
+        def get(i: int, j: int) -> Ball:
+            return entries.get((i, j), ZERO)
+
+        apart = [get(0, 2), get(2, 0), get(1, 2), get(2, 1), get(0, 0) - get(1, 1), get(0, 1) - sign * get(1, 0)]
+        return all(is_zero(x) for x in apart)
+
+    mass = {**table.mass, **{(j, i): x for (i, j), x in table.mass.items()}}
+    if not same(mass, 1) or (0, 1) in table.mass:
+        return False
+    if not is_zero(table.load.get(0, ZERO)) or not is_zero(table.load.get(1, ZERO)):
+        return False
+    if not same(table.stiffness, 1) or (0, 1) in table.stiffness:
+        return False
+    if not same(table.damping, -1) or (0, 0) in table.damping or (2, 2) in table.damping:
+        return False
+    if not table.gyration:
+        return True
+    p = table.gyration.get((0, 1, 2), ZERO)
+    cyclic = {(0, 1, 2), (1, 2, 0), (2, 0, 1)}
+    return all(
+        is_zero(x - p) if key in cyclic else is_zero(x + p) for key, x in table.gyration.items()
+    ) and len(table.gyration) == 6 and all(len(set(key)) == 3 for key in table.gyration)
+
+
+def _angle(start: tuple[Floats, Floats], end: tuple[Floats, Floats]) -> Ball:
+    """Return the angle by which a period turns place and velocity about the vertical."""
+    cosine, sine = ZERO, ZERO
+    for before, after in zip(start, end, strict=True):
+        x, y, u, w = (arb(p[0]) + arb(p[1]) for p in (before[0], before[1], after[0], after[1]))
+        cosine = cosine + x * u + y * w
+        sine = sine + x * w - y * u
+    return arb.atan2(sine, cosine)
+
+
+def _unwrapped(motion: Periodic, angle: float) -> float:
+    """Return the angle of a period with its full turns, followed along the period."""
+    length = float(motion.length[0]) * two_to(motion.units.time)
+    found = replace(motion, turned=None).states(np.linspace(0.0, length * (1 - 1e-12), 513))
+    azimuth = np.unwrap(np.arctan2(found.q[:, 1, 0], found.q[:, 0, 0]))
+    return angle + 2 * math.pi * round((azimuth[-1] - azimuth[0] - angle) / (2 * math.pi))
