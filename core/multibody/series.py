@@ -25,6 +25,7 @@ from core.multibody.pair_arrays import gathered
 SHORTEST = 1e-12
 """Shortest step, in the table's own unit of time or of the time reached: below it a place is singular."""
 
+
 DONE, FULL, SINGULAR, LOST = 0, 1, 2, 3
 """How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles."""
 

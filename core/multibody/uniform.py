@@ -11,7 +11,7 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.multibody.motion import States
 from core.multibody.packed import Floats, pair
-from core.multibody.polynomials import Ball, Poly, is_zero
+from core.multibody.polynomials import ZERO, Ball, Poly, is_zero
 from core.multibody.table import Table
 
 
@@ -44,28 +44,30 @@ class Uniform:
         """Return enough times for what is at most quadratic in the state."""
         return np.linspace(0.0, end, 33)
 
-    def first_zero(self, length: Poly) -> Ball | None:
-        """Return the first time after the start at which an affine polynomial of this part is zero, None for never."""
-        c = length.get((), 0)
-        b, a = c * 0, c * 0
-        for key, x in length.items():
-            if key:
-                c = c + x * self.table.q[key[0]]
-                b = b + x * self.table.v[key[0]]
-                a = a + x * self.acceleration[key[0]] / 2
-        if is_zero(a):
-            roots = [] if is_zero(b) else [-c / b]
-        else:
-            discriminant = b * b - 4 * a * c
-            if discriminant < 0:
-                return None
-            root = discriminant.sqrt() if discriminant > 0 else c * 0
-            s = -(b + root) / 2 if b > 0 else (root - b) / 2
-            roots = [s / a] + ([] if is_zero(s) else [c / s])
-        ahead = [r for r in roots if r > 0]
-        if not ahead:
+
+def first_zero(length: Poly, table: Table, gains: Sequence[Ball], backwards: bool) -> Ball | None:
+    """Return the first time after the start, or before it, at which an affine polynomial is zero; None for never.
+
+    The coordinates move with constant accelerations `gains`, and the time is a root of a quadratic in balls.
+    """
+    c: Ball = length.get((), ZERO)
+    b = a = ZERO
+    for key, x in length.items():
+        if key:
+            c = c + x * table.q[key[0]]
+            b = b + x * table.v[key[0]]
+            a = a + x * gains[key[0]] / 2
+    if is_zero(a):
+        roots = [] if is_zero(b) else [-c / b]
+    else:
+        discriminant = b * b - 4 * a * c
+        if discriminant < 0:
             return None
-        return ahead[0] if len(ahead) == 1 or ahead[0] < ahead[1] else ahead[1]
+        root = discriminant.sqrt() if discriminant > 0 else ZERO
+        s = -(b + root) / 2 if b > 0 else (root - b) / 2
+        roots = [s / a] + ([] if is_zero(s) else [c / s])
+    ahead = [r for r in roots if (r < 0 if backwards else r > 0)]
+    return min(ahead, key=lambda r: abs(float(r))) if ahead else None
 
 
 @kernel()
