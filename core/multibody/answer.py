@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from core.multibody.packed import Floats
+from core.multibody.packed import Floats, Integers
 
 How = Literal["closed form", "measured against pairs"]
 
@@ -154,7 +154,7 @@ class SceneTrajectory:
     """
 
     time: Floats
-    rows: Floats
+    rows: Integers
     columns: Mapping[str, Column]
 
 

@@ -118,7 +118,7 @@ def assemble_rates(table: Table, given: Sequence[Given], paths: Mapping[str, Pat
             follows = entry.value - left
             raise InvalidParameter(
                 entry.path,
-                f"agree with the connections and the velocities given before it: {float(follows):.10g} follows from them",
+                f"agree with the connections and the velocities before it, from which {float(follows):.10g} follows",
                 remedy="leave it out, or change what it contradicts",
             )
         noticed.append("/".join(map(str, entry.path)))
@@ -147,7 +147,7 @@ def _least_energy(table: Table, elimination: Elimination) -> list[Ball]:
             dense[j] = x
         pushed.append(table.inertial(dense))
     least = Elimination()
-    for a, mode in enumerate(modes):
+    for mode in modes:
         line = {b: sum((x * pushed[b][j] for j, x in mode.items()), ZERO) for b in range(len(modes))}
         least.add(
             {b: x for b, x in line.items() if not is_zero(x)}, -sum((x * momenta[j] for j, x in mode.items()), ZERO)

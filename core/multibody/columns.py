@@ -158,9 +158,7 @@ class Columns:
         """Return the quaternion from body to space, and the angular velocity in body axes."""
         e = np.stack([self.states.q[:, list(axis), 0] for axis in axes], axis=1)
         rate = np.stack([self.states.v[:, list(axis), 0] for axis in axes], axis=1)
-        omega = np.stack(
-            [np.einsum("ti,ti->t", rate[:, (k + 1) % 3], e[:, (k + 2) % 3]) for k in range(3)], axis=1
-        )
+        omega = np.stack([np.einsum("ti,ti->t", rate[:, (k + 1) % 3], e[:, (k + 2) % 3]) for k in range(3)], axis=1)
         flat = [i for axis in axes for i in axis]
         off, off_rate = (np.linalg.norm(x[:, flat], axis=1) for x in (self.states.q_error, self.states.v_error))
         fast = np.linalg.norm(rate, axis=(1, 2))

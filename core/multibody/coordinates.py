@@ -1,4 +1,4 @@
-"""From bodies to natural coordinates: positions, direction cosines where an orientation matters, angles where one turns.
+"""From bodies to natural coordinates: positions, direction cosines where an orientation matters, angles of what turns.
 
 In the plane a rigid body is (x, y, c, s) with M = diag(m, m, I, I) and c^2 + s^2 = 1, or an angle alone where nothing
 sees its direction. In space it is its centre and three unit vectors, weighted by the integrals of the squares of body
@@ -110,7 +110,7 @@ class Coordinates:
         body, _, spot = place.partition(".")
         frame = self.frames.get(body)
         if frame is None:
-            raise InvalidParameter(path, f'name a body of the scene or a point of the ground; "{place[:80]}" is neither')
+            raise InvalidParameter(path, f'name a body of the scene or a point of the ground, unlike "{place[:80]}"')
         centre = [coordinate(i) for i in frame.position]
         if spot in ("", "centre"):
             return Point(centre, body)
@@ -170,9 +170,7 @@ class Coordinates:
         path, numerals, table = ("bodies", name), self.numerals, self.table
         mass, tensor = self._inertia(name, body)
         where = numerals.vector(body.at, (*path, "at"), self.dimension)
-        position = [
-            table.coordinate(f"{name}.{axis}", "m", value) for axis, value in zip("xyz", where, strict=False)
-        ]
+        position = [table.coordinate(f"{name}.{axis}", "m", value) for axis, value in zip("xyz", where, strict=False)]
         frame = Frame(name, position)
         self.frames[name] = frame
         for i, pull in zip(position, self.gravity, strict=True):
@@ -237,7 +235,8 @@ class Coordinates:
     def _catalogued(self, body: Any, path: Path) -> tuple[Ball, Any]:
         if not isinstance(body, members_of(Body)):
             raise InvalidParameter(path, "be a body of the catalogue")
-        properties = body.mass_properties()
+        given: Any = body
+        properties = given.mass_properties()
         exact = properties.exact_inertia
         tensor = [[arb(fmpq(x.numerator, x.denominator)) for x in row] for row in exact]
         mass = properties.exact_mass
@@ -291,12 +290,11 @@ class Coordinates:
         if body.angular_velocity is not None:
             vector: Any = body.angular_velocity
             omega = numerals.vector(vector, (*path, "angular_velocity"), 3)
-        k = _symmetry_axis(tensor)
         spots = [frame.places[spot] for spot in seen if spot in frame.places]
-        on_axis = k is not None and all(is_zero(xi[i]) for xi in spots for i in range(3) if i != k)
-        if k is not None and on_axis and "orientation" not in seen:
-            self._top(frame, k, axes, tensor, omega)
-            return
+        for k in _symmetry_axes(tensor) if "orientation" not in seen else ():
+            if all(is_zero(xi[i]) for xi in spots for i in range(3) if i != k):
+                self._top(frame, k, axes, tensor, omega)
+                return
         # Unit vectors move as particles do whose masses are the integrals of products of body coordinates.
         half = (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 2
         frame.axes = [
@@ -391,11 +389,8 @@ def _check_axes(axes: Any, path: Path) -> None:
         raise InvalidParameter(path, "be right-handed")
 
 
-def _symmetry_axis(tensor: Any) -> int | None:
-    """Return the body axis about which the tensor is symmetric, None without one."""
+def _symmetry_axes(tensor: Any) -> list[int]:
+    """Return the body axes about which the tensor is symmetric."""
     if any(not is_zero(tensor[i][j]) for i in range(3) for j in range(i)):
-        return None
-    for k in range(3):
-        if is_zero(tensor[(k + 1) % 3][(k + 1) % 3] - tensor[(k + 2) % 3][(k + 2) % 3]):
-            return k
-    return None
+        return []
+    return [k for k in range(3) if is_zero(tensor[(k + 1) % 3][(k + 1) % 3] - tensor[(k + 2) % 3][(k + 2) % 3])]

@@ -32,7 +32,7 @@ def parts(table: Table) -> list[list[int]]:
             parent[root(i)] = root(seen[0])
 
     for part in (table.mass, table.stiffness, table.damping, table.gyration):
-        keys: list[tuple[int, ...]] = list(part)  # type: ignore[call-overload]
+        keys: list[tuple[int, ...]] = list(part)
         for key in keys:
             join(key)
     for row in table.rows:
@@ -52,13 +52,11 @@ def _sees(table: Table, group: list[int], clocks: list[int]) -> bool:
     if not timed:
         return False
     for part in (table.mass, table.stiffness, table.damping, table.gyration):
-        keys: list[tuple[int, ...]] = list(part)  # type: ignore[call-overload]
+        keys: list[tuple[int, ...]] = list(part)
         for key in keys:
             if timed & set(key) and inside & set(key):
                 return True
-    return any(
-        timed & (found := {*row.rates, *variables(row.rates.values())}) and inside & found for row in table.rows
-    )
+    return any(timed & (found := {*row.rates, *variables(row.rates.values())}) and inside & found for row in table.rows)
 
 
 def restricted(table: Table, indices: Sequence[int]) -> Table:
@@ -162,7 +160,7 @@ def _force(measures: Measures, force: Force, elimination: Elimination) -> ForceA
     # Whatever depends on the same free multipliers shares the undetermined load.
     shared = {table.rows[r].name for r in free}
     shared |= {table.rows[r].name for r, (rest, _) in elimination.pivots.items() if set(rest) & set(free)}
-    return ForceAtStart(None, tuple(sorted(shared)))
+    return ForceAtStart(None, tuple(sorted(shared - set(measures.coordinates.frames))))
 
 
 def redundant(table: Table) -> dict[str, tuple[str, ...]]:

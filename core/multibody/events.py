@@ -111,4 +111,3 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Scen
     off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(np.abs(curve)))
     error = off / abs(slope) if slope != 0.0 else abs(high)
     return SceneEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))
-

@@ -1,8 +1,8 @@
 """The language of described scenes: bodies, places, connections, as frozen dataclasses that hold what was written.
 
 Four nouns suffice. A *body* has mass, a *place* is a point of a body or of the ground, a *connection* ties places or
-turns, and a *question* (outputs, times) is put to the whole. Numbers are stored as they were written and read exactly by
-`core.multibody.numerals`; what they mean is checked where the table is built, with the path to the fault.
+turns, and a *question* (outputs, times) is put to the whole. Numbers are stored as they were written and read exactly
+by `core.multibody.numerals`; what they mean is checked where the table is built, with the path to the fault.
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ class Rod(Connection):
 
 @dataclass(frozen=True)
 class Rolling(Connection):
-    """A rim rolls without slip: `place` on a face or circle `on`, or body `a` on body `b` (`inside`: within its rim)."""
+    """A rim rolls without slip: `place` on a face or circle `on`, or body `a` on body `b`, or `inside` it."""
 
     place: str | None = None
     on: Mapping[str, Any] | None = None

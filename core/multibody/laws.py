@@ -16,6 +16,7 @@ from core.multibody.polynomials import (
     constant,
     coordinate,
     difference,
+    entry,
     evaluated,
     is_zero,
 )
@@ -130,7 +131,7 @@ def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -
         raise InvalidParameter((*path, "about"), "be about the z axis: gravity has to be along it")
     for frame in coordinates.frames.values():
         if frame.axis is not None or (measures.dimension == 2 and frame.turn is not None and frame.direction is None):
-            raise InvalidParameter(path, f'have no top or wheel in it whose spin is counted apart, as "{frame.name}" is')
+            raise InvalidParameter(path, f'have no top or wheel whose spin is counted apart, as "{frame.name}" is')
         vectors = [frame.position]
         if frame.direction is not None:
             vectors.append(list(frame.direction))
@@ -201,7 +202,7 @@ def _turn(measures: Measures, connection: Any, path: Path) -> Poly:
 def _potential(measures: Measures, away: Poly, k: Ball) -> None:
     """Add the energy k away^2/2 of an affine polynomial."""
     slopes = {key[0]: value for key, value in away.items() if key}
-    offset = away.get((), ZERO)
+    offset = entry(away, ())
     for i, x in slopes.items():
         for j, y in slopes.items():
             measures.table.add_stiffness(i, j, k * x * y)
@@ -222,7 +223,7 @@ def _horizontal(gravity: Any, path: Path) -> list[Ball]:
 def _outward(measures: Measures, position: list[int], across: list[Ball], at: Any, square: Ball) -> None:
     """Add the centrifugal force on a particle of the plane that spins about a line in the plane."""
     table = measures.table
-    mass = table.mass.get((position[0], position[0]), ZERO)
+    mass = entry(table.mass, (position[0], position[0]))
     away: Poly = combined(
         *((across[i], coordinate(position[i])) for i in range(2)),
         (-(across[0] * at[0] + across[1] * at[1]), constant(ONE)),
@@ -233,7 +234,7 @@ def _outward(measures: Measures, position: list[int], across: list[Ball], at: An
 def _rotating(measures: Measures, vector: list[int], at: Any, rate: Ball) -> None:
     """Add the forces m (2 rate v x z + rate^2 (q - at)) of a vector of the plane of rotation."""
     x, y = vector
-    mass = measures.table.mass.get((x, x), ZERO)
+    mass = entry(measures.table.mass, (x, x))
     if is_zero(mass):
         return
     measures.table.add_damping(x, y, -2 * mass * rate)
@@ -248,7 +249,7 @@ def _rotating_products(measures: Measures, axes: list[list[int]], rate: Ball) ->
     table = measures.table
     for a in range(3):
         for b in range(3):
-            weight = table.mass.get((min(axes[a][0], axes[b][0]), max(axes[a][0], axes[b][0])), ZERO)
+            weight = entry(table.mass, (min(axes[a][0], axes[b][0]), max(axes[a][0], axes[b][0])))
             if a == b or is_zero(weight):
                 continue
             table.add_damping(axes[a][0], axes[b][1], -2 * weight * rate)

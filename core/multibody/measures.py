@@ -138,7 +138,7 @@ class Measures:
     def length(self, name: str, a: Point, b: Point, path: Path) -> int:
         """Return the coordinate that is the distance of two places, made once for each pair."""
         self._two(a, b, path)
-        key = tuple(sorted((repr(sorted(x.items())) for p in (a, b) for x in p.at)))
+        key = tuple(sorted(repr(sorted(x.items())) for p in (a, b) for x in p.at))
         if key in self._lengths:
             return self._lengths[key]
         d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]

@@ -68,7 +68,7 @@ class Numerals:
         for name, number in let.items():
             plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
             if not plain or name in (*_FUNCTIONS, "pi"):
-                raise InvalidParameter(("let", str(name)[:80]), "be called by letters, digits and _, and not as a function")
+                raise InvalidParameter(("let", str(name)[:80]), "be a name of letters, digits and _, and no function")
             known[name] = cls(known, numbers == "doubles").number(number, ("let", name))
         return cls(known, numbers == "doubles")
 

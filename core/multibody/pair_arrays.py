@@ -9,7 +9,7 @@ from core.multibody.packed import Floats
 
 @kernel()
 def gathered(sh: float, sl: float, ah: float, al: float, bh: float, bl: float) -> Pair:
-    """Return s + a b where the tail of s is summed in doubles: n products are right to about n 2^-105 of their sizes."""
+    """Return s + a b with the tail of s summed in doubles: n products are right to about n 2^-105 of their sizes."""
     p, e = two_prod(ah, bh)
     s, t = two_sum(sh, p)
     return s, sl + (t + (e + fma(ah, bl, al * bh)))

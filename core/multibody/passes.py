@@ -18,6 +18,7 @@ from core.multibody.polynomials import (
     combined,
     constant,
     degree,
+    entry,
     evaluated,
     is_zero,
     product,
@@ -179,7 +180,7 @@ def _linear(state: Reduced) -> bool:
     for row in linear:
         measure = row.measure or {}
         line = {key[0]: value for key, value in measure.items() if key}
-        if elimination.add(line, -measure.get((), ZERO)) is not None:
+        if elimination.add(line, -entry(measure, ())) is not None:
             state.steps.append(f"{row.name}: follows from other measures")
     table.rows = [row for row in table.rows if row.measure is None or degree(row.measure) > 1]
     expressions: list[Poly | None] = [None] * len(table.names)
@@ -194,7 +195,9 @@ def _linear(state: Reduced) -> bool:
 
 def _readiness(table: Table, i: int) -> int:
     """Return how readily a coordinate is given away: lengths and positions first, time never."""
-    return {"s": 0, "1": 1, "rad": 2, "m": 3}[table.units[i]] + (0 if (i, i) in table.mass else 3 * (table.units[i] == "m"))
+    if table.units[i] == "m" and (i, i) not in table.mass:
+        return 6
+    return {"s": 0, "1": 1, "rad": 2, "m": 3}[table.units[i]]
 
 
 def _substitute(state: Reduced, expressions: list[Poly | None]) -> None:
@@ -218,15 +221,18 @@ def _pin(state: Reduced) -> bool:
     pinned = {i for i in range(len(table.names)) if is_zero(table.v[i]) and table.units[i] != "s"}
     coupled: dict[int, list[tuple[int, ...]]] = {i: [] for i in pinned}
     for part in (table.mass, table.stiffness, table.damping, table.gyration):
-        keys: list[tuple[int, ...]] = list(part)  # type: ignore[call-overload]
+        keys: list[tuple[int, ...]] = list(part)
         for key in keys:
             if key[0] in coupled:
                 coupled[key[0]].append(key)
             if part is table.mass and key[1] in coupled and key[0] != key[1]:
                 coupled[key[1]].append(key)
     while pinned:
-        live = [row for row in table.rows if any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items()
-                                                  if j not in pinned)]
+        live = [
+            row
+            for row in table.rows
+            if any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
+        ]
         leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
         if not leave:
             break
@@ -260,7 +266,7 @@ def _stays(table: Table, i: int, pinned: set[int], coupled: list[tuple[int, ...]
     for row in live:
         if i in row.rates and not _vanishes(table, row.rates[i], pinned):
             return False
-    push: Ball = table.load.get(i, ZERO)
+    push: Ball = entry(table.load, i)
     carried: dict[int, Ball] = {}
     for key in coupled:
         if len(key) == 3:
@@ -268,7 +274,7 @@ def _stays(table: Table, i: int, pinned: set[int], coupled: list[tuple[int, ...]
             if k not in pinned:
                 if j not in pinned:
                     return False
-                carried[k] = carried.get(k, ZERO) + table.gyration[(i, j, k)] * table.q[j]
+                carried[k] = entry(carried, k) + table.gyration[(i, j, k)] * table.q[j]
             continue
         other = key[1] if key[0] == i else key[0]
         if other in pinned:

@@ -81,7 +81,7 @@ class Periodic:
     half: bool
     shift: Floats
     uncertainty: tuple[float, float]
-    turned: Ball | None = None
+    turned: Ball = None
     winding: float = 0.0
     name: str = "one period"
     why: str = "one degree of freedom in a potential: the motion repeats"
@@ -263,13 +263,13 @@ def _root(series: Floats, low: float, high: float, origin: Floats, section: Sect
             low, below = middle, here
         else:
             high = middle
-    time = (0.5 * (low + high), 0.0)
+    time: tuple[float, float] = (0.5 * (low + high), 0.0)
     slope = _slope(series, time[0], section.normal, section.of_rates)
     for _ in range(4):
         if slope == 0.0:
             break
-        here = value(*time)
-        time = _sum(time, (-here[0] / slope, -here[1] / slope))
+        left = value(*time)
+        time = _sum(time, (-left[0] / slope, -left[1] / slope))
     return time
 
 
@@ -365,6 +365,7 @@ def _rotate(turns: Floats, q: Floats) -> None:
 
 
 def distance(first: Floats, second: Floats, indices: Sequence[int] | range) -> float:
+    """Return the largest difference of two arrays of pairs among some entries."""
     each = np.abs((first[:, 0] - second[:, 0]) + (first[:, 1] - second[:, 1]))
     return float(max((each[i] for i in indices), default=0.0))
 

@@ -1,8 +1,8 @@
 """Polynomials of degree at most two in a scene's coordinates, with coefficients in balls.
 
-A polynomial is a dictionary from monomials to coefficients: ``()`` is the constant, ``(i,)`` the coordinate i, ``(i, j)``
-with i <= j a product. A coefficient that contains zero is zero: the radius of a ball is its own measure of rounding, so
-no threshold of ours enters, whatever the units.
+A polynomial is a dictionary from monomials to coefficients: ``()`` is the constant, ``(i,)`` the coordinate i,
+``(i, j)`` with i <= j a product. A coefficient that contains zero is zero: the radius of a ball is its
+own measure of rounding, so no threshold of ours enters, whatever the units.
 """
 
 from __future__ import annotations
@@ -21,6 +21,12 @@ ZERO: Ball = arb(0)
 ONE: Ball = arb(1)
 BITS = 320
 """Working precision of the set-up: differences of 1e-90 of the terms are taken as zero."""
+
+
+def entry(numbers: Mapping[Any, Ball], key: Any) -> Ball:
+    """Return a number of a sparse array, zero where it has none."""
+    found = numbers.get(key)
+    return ZERO if found is None else found
 
 
 def is_zero(ball: Ball) -> bool:

@@ -106,7 +106,5 @@ def _on_circle(
     measures.force(f"{name}.normal", [(rows[i], coordinate(n[i])) for i in range(2)])
     across: list[Poly] = [{(n[1],): -ONE}, {(n[0],): ONE}]
     parts = [(across[i], rate_of(d[i])) for i in range(2)]
-    slip = measures.roll(
-        name, sum_of_rates(*parts, (constant(-b[1]), rate_of(b[2])), (constant(-a[1]), rate_of(a[2])))
-    )
+    slip = measures.roll(name, sum_of_rates(*parts, (constant(-b[1]), rate_of(b[2])), (constant(-a[1]), rate_of(a[2]))))
     measures.force(f"{name}.friction", [(slip, constant(ONE))])

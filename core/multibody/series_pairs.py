@@ -87,17 +87,13 @@ def coefficients_pairs(table: Packed, inverse: Floats, order: int, q: Floats, mu
             r, j = table.lines_at[e, 0], table.lines_at[e, 1]
             sh, sl = right[j, 0], right[j, 1]
             for a in range(k):
-                sh, sl = gathered(
-                    sh, sl, multipliers[r, a, 0], multipliers[r, a, 1], w[e, k - a, 0], w[e, k - a, 1]
-                )
+                sh, sl = gathered(sh, sl, multipliers[r, a, 0], multipliers[r, a, 1], w[e, k - a, 0], w[e, k - a, 1])
             right[j, 0], right[j, 1] = sh, sl
             sh, sl = 0.0, 0.0
             for a in range(1, k + 2):
                 sh, sl = gathered(sh, sl, w[e, a, 0], w[e, a, 1], u[j, k + 1 - a, 0], u[j, k + 1 - a, 1])
             sh, sl = settled(sh, sl)
-            right[n + r, 0], right[n + r, 1] = gathered(
-                right[n + r, 0], right[n + r, 1], -(k + 1.0), 0.0, sh, sl
-            )
+            right[n + r, 0], right[n + r, 1] = gathered(right[n + r, 0], right[n + r, 1], -(k + 1.0), 0.0, sh, sl)
         for i in range(n + m):
             right[i, 0], right[i, 1] = settled(right[i, 0], right[i, 1])
         for i in range(n + m):
@@ -237,9 +233,7 @@ def advance_pairs(
 
 
 @kernel()
-def sampled_pairs(
-    starts: Floats, series: Floats, times: Floats, which: Integers, q: Floats, v: Floats
-) -> None:
+def sampled_pairs(starts: Floats, series: Floats, times: Floats, which: Integers, q: Floats, v: Floats) -> None:
     """Evaluate the series of the steps `which` at the times, pairs of shape (t, 2), into q and v of shape (t, n, 2)."""
     for s in range(times.shape[0]):
         step = which[s]
@@ -301,4 +295,4 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
                 acceleration[s, i, 0], acceleration[s, i, 1] = sh, sl
             else:
                 multipliers[s, i - n, 0], multipliers[s, i - n, 1] = sh, sl
-    return q.shape[0]
+    return len(q)

@@ -33,6 +33,7 @@ from core.multibody.dynamics import (
     redundant,
     restricted,
 )
+from core.multibody.equilibria import equilibria_of
 from core.multibody.events import first_event
 from core.multibody.language import Scene
 from core.multibody.modes import Modes
@@ -45,7 +46,7 @@ from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
 from core.multibody.rank import independent
 from core.multibody.table import Table
 from core.multibody.uniform import Uniform
-from core.multibody.vertical_symmetry import Shifted, precessing
+from core.multibody.vertical_symmetry import Shifted, Steady, precessing
 from core.multibody.whole import Whole
 
 Output = Literal["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "equilibria"]
@@ -134,13 +135,12 @@ def _solve(scene: Scene, times: Floats, outputs: Sequence[Output], accuracy: flo
     whole = Whole(found.measures, small, full, gains, motions)
     forces = forces_at_start(found.measures, full)
     model = _model(found, small, pieces, motions, [*_noticed(found, small, moved, fitted, forces)])
-    trajectory, events = None, ()
+    trajectory: SceneTrajectory | None = None
+    events: tuple[SceneEvent, ...] = ()
     if len(times):
         trajectory, events = _trajectory(whole, forces, times, outputs, accuracy)
     equilibria = None
     if "equilibria" in outputs:
-        from core.multibody.equilibria import equilibria_of
-
         equilibria = equilibria_of(found)
     periods = [motion.period for _, motion in motions if motion.name != "rest"]
     single = periods[0] if len(periods) == 1 else None
@@ -229,7 +229,7 @@ def _model(
         if isinstance(motion, Modes):
             modes = tuple((float(mode.frequency), float(mode.growth)) for mode in motion.modes)
         period = motion.period
-        winding = motion.winding if isinstance(motion, (Periodic, Shifted)) and motion.winding else None
+        winding = motion.winding if isinstance(motion, (Periodic, Steady, Shifted)) and motion.winding else None
         apart.append(
             PartModel(
                 motion.name,
@@ -265,7 +265,7 @@ def _model(
 def _trajectory(
     whole: Whole, forces: Sequence[ForceAtStart], times: Floats, outputs: Sequence[Output], accuracy: float
 ) -> tuple[SceneTrajectory, tuple[SceneEvent, ...]]:
-    events = []
+    events: list[SceneEvent] = []
     rows = np.arange(len(times))
     determined = [value.value is not None for value in forces]
     watched = [limit for limit in whole.measures.limits if limit.force is None or determined[limit.force]]
@@ -333,7 +333,10 @@ def _accelerations(found: Described, full: Sequence[Ball]) -> Mapping[str, BodyA
 def _forces(found: Described, forces: Sequence[ForceAtStart]) -> Mapping[str, ForceAnswer]:
     return {
         force.name: ForceAnswer(
-            None if value.value is None else _double(value.value), force.unit, value.value is not None, value.shared_with
+            None if value.value is None else _double(value.value),
+            force.unit,
+            value.value is not None,
+            value.shared_with,
         )
         for force, value in zip(found.measures.forces, forces, strict=True)
     }
@@ -348,4 +351,3 @@ def _energy(found: Described) -> Energy:
     spin = sum((frame.spin_energy for frame in measures.coordinates.frames.values()), ZERO)
     moving, resting = kinetic(measures.table) + spin, potential(measures.table) + measures.potential
     return Energy(_double(moving), _double(resting), _double(moving + resting), measures.conservative)
-

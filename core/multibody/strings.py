@@ -43,7 +43,7 @@ class Knot:
 
     point: Point
     name: str
-    radius: Ball | None
+    radius: Ball
     turn: Poly | None
     sides: list[str | None]
     senses: list[int]

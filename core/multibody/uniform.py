@@ -34,11 +34,12 @@ class Uniform:
         ]
         n = len(self.table.q)
         q, v = np.empty((len(times), n, 2)), np.empty((len(times), n, 2))
-        _evaluate(*numbers, np.ascontiguousarray(times, dtype=np.float64), q, v)
+        start, rate, gain = numbers
+        _evaluate(start, rate, gain, np.ascontiguousarray(times, dtype=np.float64), q, v)
         t = np.abs(times)[:, None]
-        start, rate, gain = (np.abs(x[:, 0])[None, :] for x in numbers)
-        q_error = 2.0**-100 * (start + rate * t + gain * t * t)
-        return States(q, v, q_error, 2.0**-100 * (rate + gain * t))
+        place, fast, pull = (np.abs(x[:, 0])[None, :] for x in numbers)
+        q_error = 2.0**-100 * (place + fast * t + pull * t * t)
+        return States(q, v, q_error, 2.0**-100 * (fast + pull * t))
 
     def nodes(self, end: float) -> Floats:
         """Return enough times for what is at most quadratic in the state."""

@@ -17,15 +17,51 @@ from core.multibody.motion import States
 from core.multibody.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.packed import Floats, packed, pair, state, two_to, units_of
 from core.multibody.periods import Periodic, Section, closed, distance
-from core.multibody.polynomials import ONE, ZERO, Ball, Poly, is_zero
+from core.multibody.polynomials import ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.table import Table
+
+
+@dataclass(frozen=True)
+class Steady:
+    """The height stays, and the rest turns about the vertical at a constant rate."""
+
+    table: Table
+    rate: Ball
+    name: str = "steady precession"
+    why: str = "the motion is symmetric about the vertical, and its height is in equilibrium"
+    how: str = "closed form"
+
+    @property
+    def period(self) -> Ball | None:
+        """Time of one turn."""
+        return 2 * arb.pi() / abs(self.rate)
+
+    @property
+    def winding(self) -> float:
+        """Angle of a period."""
+        return math.copysign(2 * math.pi, float(self.rate))
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the start, turned."""
+        q, v = np.zeros((len(times), 3, 2)), np.zeros((len(times), 3, 2))
+        x, y, z = self.table.q
+        for s, t in enumerate(times):
+            sine, cosine = (self.rate * float(t)).sin_cos()
+            a, b = x * cosine - y * sine, x * sine + y * cosine
+            q[s] = [pair(a, 0), pair(b, 0), pair(z, 0)]
+            v[s, :2] = [pair(-self.rate * b, 0), pair(self.rate * a, 0)]
+        return States(q, v, np.abs(q[..., 0]) * 2.0**-100, np.abs(v[..., 0]) * 2.0**-100)
+
+    def nodes(self, end: float) -> Floats:
+        """Return the two ends: no force or length changes."""
+        return np.linspace(0.0, end, 33)
 
 
 @dataclass(frozen=True)
 class Shifted:
     """A motion about a vertical that does not pass through the origin."""
 
-    motion: Periodic
+    motion: Periodic | Steady
     centre: tuple[Ball, Ball]
 
     @property
@@ -68,7 +104,7 @@ class Shifted:
         return self.motion.nodes(end)
 
 
-def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]) -> Periodic | Shifted | None:
+def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]) -> Periodic | Steady | Shifted | None:
     """Return the motion of a part with symmetry about the vertical and two degrees of freedom, if it is one."""
     centre = _centre(table, chosen)
     if centre is None:
@@ -85,7 +121,11 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
         return None
     z_rate, z_gain = table.v[2], acceleration[2]
     if is_zero(z_rate) and is_zero(z_gain):
-        return None
+        radius = table.q[0] * table.q[0] + table.q[1] * table.q[1]
+        if is_zero(radius):
+            return None
+        steady = Steady(table, (table.q[0] * table.v[1] - table.q[1] * table.v[0]) / radius)
+        return Shifted(steady, centre) if shifted else steady
     units = units_of(table, acceleration)
     arrays = packed(table, chosen, units)
     start = state(table, units)
@@ -112,10 +152,10 @@ def _centre(table: Table, chosen: Sequence[int]) -> tuple[Ball, Ball] | None:
     measure = table.rows[chosen[0]].measure
     if measure is None or table.rows[chosen[0]].rate != 0 or len(table.rows) != 1:
         return None
-    a, b = measure.get((0, 0), ZERO), measure.get((1, 1), ZERO)
+    a, b = entry(measure, (0, 0)), entry(measure, (1, 1))
     if is_zero(a) or not is_zero(a - b) or any(key in measure for key in ((0, 1), (0, 2), (1, 2))):
         return None
-    return -measure.get((0,), ZERO) / (2 * a), -measure.get((1,), ZERO) / (2 * a)
+    return -entry(measure, (0,)) / (2 * a), -entry(measure, (1,)) / (2 * a)
 
 
 def _invariant(table: Table) -> bool:
@@ -123,7 +163,7 @@ def _invariant(table: Table) -> bool:
 
     def same(entries: dict[tuple[int, int], Ball], sign: int) -> bool:
         def get(i: int, j: int) -> Ball:
-            return entries.get((i, j), ZERO)
+            return entry(entries, (i, j))
 
         apart = [get(0, 2), get(2, 0), get(1, 2), get(2, 1), get(0, 0) - get(1, 1), get(0, 1) - sign * get(1, 0)]
         return all(is_zero(x) for x in apart)
@@ -131,7 +171,7 @@ def _invariant(table: Table) -> bool:
     mass = {**table.mass, **{(j, i): x for (i, j), x in table.mass.items()}}
     if not same(mass, 1) or (0, 1) in table.mass:
         return False
-    if not is_zero(table.load.get(0, ZERO)) or not is_zero(table.load.get(1, ZERO)):
+    if not is_zero(entry(table.load, 0)) or not is_zero(entry(table.load, 1)):
         return False
     if not same(table.stiffness, 1) or (0, 1) in table.stiffness:
         return False
@@ -139,11 +179,13 @@ def _invariant(table: Table) -> bool:
         return False
     if not table.gyration:
         return True
-    p = table.gyration.get((0, 1, 2), ZERO)
+    p = entry(table.gyration, (0, 1, 2))
     cyclic = {(0, 1, 2), (1, 2, 0), (2, 0, 1)}
-    return all(
-        is_zero(x - p) if key in cyclic else is_zero(x + p) for key, x in table.gyration.items()
-    ) and len(table.gyration) == 6 and all(len(set(key)) == 3 for key in table.gyration)
+    return (
+        all(is_zero(x - p) if key in cyclic else is_zero(x + p) for key, x in table.gyration.items())
+        and len(table.gyration) == 6
+        and all(len(set(key)) == 3 for key in table.gyration)
+    )
 
 
 def _angle(start: tuple[Floats, Floats], end: tuple[Floats, Floats]) -> Ball:
@@ -161,4 +203,5 @@ def _unwrapped(motion: Periodic, angle: float) -> float:
     length = float(motion.length[0]) * two_to(motion.units.time)
     found = replace(motion, turned=None).states(np.linspace(0.0, length * (1 - 1e-12), 513))
     azimuth = np.unwrap(np.arctan2(found.q[:, 1, 0], found.q[:, 0, 0]))
-    return angle + 2 * math.pi * round((azimuth[-1] - azimuth[0] - angle) / (2 * math.pi))
+    gone = float(azimuth[-1] - azimuth[0])
+    return angle + 2 * math.pi * round((gone - angle) / (2 * math.pi))
