@@ -173,10 +173,11 @@ class Measures:
     def unturned(self, name: str, a: Point, b: Point, path: Path) -> None:
         """Hold the orientation of one body to another."""
         frames = self.coordinates.frames
-        if a.body is None or not frames[a.body].orients:
-            a, b = b, a
-        if a.body is None or not frames[a.body].orients:
+        if any(point.body is not None and not frames[point.body].orients for point in (a, b)):
+            # A particle has no orientation that could be held or hold.
             return
+        if a.body is None:
+            a, b = b, a
         unit = [[ONE if i == j else ONE - ONE for j in range(self.dimension)] for i in range(self.dimension)]
         for components in unit[: 1 if self.dimension == 2 else 3]:
             self.aligned(name, a.body, b.body, components, path)

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
-from core.multibody.answer import SceneAnswer
 from core.multibody.solve import solve_scene
 from core.scenes.unwinding_shafts import UnwindingShafts
 from tests.core.multibody.worked_examples import (
@@ -19,28 +18,14 @@ from tests.core.multibody.worked_examples import (
     MASSIVE_PULLEY,
     TWO_RODS,
     YO_YO,
+    column,
+    force,
+    linear,
     points,
     read,
 )
 
 EPS = 2.0**-52
-
-
-def column(answer: SceneAnswer, name: str) -> Any:
-    assert answer.trajectory is not None
-    return answer.trajectory.columns[name]
-
-
-def force(answer: SceneAnswer, name: str) -> float:
-    assert answer.forces is not None
-    value = answer.forces[name].value
-    assert value is not None
-    return value
-
-
-def linear(answer: SceneAnswer, body: str) -> tuple[float, ...]:
-    assert answer.accelerations is not None
-    return answer.accelerations[body].linear
 
 
 def test_massive_pulley_is_constant_acceleration_in_one_coordinate() -> None:

@@ -1,10 +1,11 @@
-"""The worked examples of the language, as a client writes them."""
+"""The worked examples of the language, as a client writes them, and what tests read of an answer."""
 
 from __future__ import annotations
 
 import json
 from typing import Any
 
+from core.multibody.answer import SceneAnswer
 from core.multibody.language import Scene, scene_from
 
 MASSIVE_PULLEY = """{"gravity":[0,-9.81],"bodies":{"a":{"mass":1,"at":[-0.1,-1]},"b":{"mass":2,"at":[0.1,-1]},
@@ -54,3 +55,20 @@ def points(
         connections.append({"kind": "rod", "name": f"r{i}", "a": f"p{i}", "b": before})
         before = f"p{i}"  # type: ignore[assignment]
     return {"gravity": [0, f"-{gravity}"], "let": let, "bodies": bodies, "connections": connections}
+
+
+def column(answer: SceneAnswer, name: str) -> Any:
+    assert answer.trajectory is not None
+    return answer.trajectory.columns[name]
+
+
+def force(answer: SceneAnswer, name: str) -> float:
+    assert answer.forces is not None
+    value = answer.forces[name].value
+    assert value is not None
+    return value
+
+
+def linear(answer: SceneAnswer, body: str) -> tuple[float, ...]:
+    assert answer.accelerations is not None
+    return answer.accelerations[body].linear
