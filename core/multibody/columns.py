@@ -201,11 +201,14 @@ def _stated(values: Floats, errors: Floats) -> float:
 
 
 def worst(columns: Mapping[str, Column]) -> float:
-    """Return the largest error of a column relative to its largest value."""
-    found = 0.0
+    """Return the largest error of a column, relative to the largest value among the columns of its unit.
+
+    What is zero by symmetry has no scale of its own.
+    """
+    largest: dict[str, float] = {}
     for column in columns.values():
         size = np.abs(column.values) if column.values.ndim == 1 else np.linalg.norm(column.values, axis=1)
-        largest = float(np.max(size, initial=0.0))
-        if largest > 0.0:
-            found = max(found, column.error / largest)
-    return found
+        largest[column.unit] = max(largest.get(column.unit, 0.0), float(np.max(size, initial=0.0)))
+    return max(
+        (column.error / largest[column.unit] for column in columns.values() if largest[column.unit] > 0.0), default=0.0
+    )

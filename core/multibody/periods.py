@@ -9,8 +9,9 @@ number of periods, stays small.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from flint import arb
@@ -45,19 +46,27 @@ _PARTS = 8
 
 @dataclass(frozen=True)
 class Section:
-    """Where a motion is looked for again: the zeros of normal . (q - q_0), or of normal . q'.
+    """Where a motion is looked for again: the zeros of normal . (q - q_0), or of normal . q', the start apart.
 
     Attributes
     ----------
     normal : ndarray, shape (n,)
     of_rates : bool
-    passage : int
-        Which zero after the start is the period, or half of it.
+    sign : float
+        Sign of the function just after the start.
     """
 
     normal: Floats
     of_rates: bool
-    passage: int
+    sign: float
+
+
+class Passage(NamedTuple):
+    """A zero: its time as a pair, and places and rates there."""
+
+    time: Floats
+    q: Floats
+    v: Floats
 
 
 @dataclass
@@ -148,16 +157,23 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
         normal[free] = v[free, 0]
     if not np.any(normal):
         return None
-    section = Section(normal, at_rest, 1)
-    found = closed(arrays, (q, v), section, free, FINE_ORDER, FINE_TOLERANCE)
-    if found is None:
+    section = Section(normal, at_rest, 1.0)
+
+    def returned(passages: list[Passage]) -> bool:
+        end, rate = passages[-1].q, passages[-1].v
+        size = max(1.0, float(np.max(np.abs(v[:, 0]))))
+        if at_rest:
+            return distance(rate, np.zeros_like(rate), free) < CLOSED * size
+        return distance(end, q, free) < CLOSED and distance(rate, v, range(len(v))) < CLOSED * size
+
+    found = followed(arrays, (q, v), section, returned, FINE_ORDER, FINE_TOLERANCE)
+    check = None if found is None else followed(arrays, (q, v), section, returned, CHECK_ORDER, CHECK_TOLERANCE)
+    if found is None or check is None or len(found[1]) != len(check[1]):
         return None
-    run, time, (end, rate) = found
-    check = closed(arrays, (q, v), section, free, CHECK_ORDER, CHECK_TOLERANCE)
-    if check is None:
-        return None
-    late = abs((time[0] - check[1][0]) + (time[1] - check[1][1])) + 2.0**-100 * abs(time[0])
-    off = max(distance(end, check[2][0], range(len(q))), distance(rate, check[2][1], range(len(q)))) + 2.0**-98
+    run, (*_, (time, end, rate)) = found
+    other = check[1][-1]
+    late = abs((time[0] - other.time[0]) + (time[1] - other.time[1])) + 2.0**-100 * abs(time[0])
+    off = max(distance(end, other.q, range(len(q))), distance(rate, other.v, range(len(q)))) + 2.0**-98
     if at_rest:
         return Periodic(table, units, run, 2.0 * time, True, np.zeros((len(q), 2)), (2.0 * late, off))
     shift = np.zeros((len(q), 2))
@@ -181,20 +197,21 @@ def _cyclic(table: Table, i: int) -> bool:
     return not any((i,) in poly for row in table.rows for poly in row.rates.values())
 
 
-def closed(
+def followed(
     arrays: Packed,
     start: tuple[Floats, Floats],
     section: Section,
-    free: Sequence[int],
+    done: Callable[[list[Passage]], bool],
     order: int,
     tolerance: float,
-) -> tuple[Run, Floats, tuple[Floats, Floats]] | None:
-    """Return the steps up to a return, its time as a pair, and the state then; None if there is none."""
+) -> tuple[Run, list[Passage]] | None:
+    """Return the steps up to a return, and the passages through the section; None if there is no return."""
     q, v = start[0].copy(), start[1].copy()
     clock = np.zeros(2)
     starts: list[Floats] = []
     series: list[Floats] = []
-    passed, before = 0, 0.0
+    passages: list[Passage] = []
+    sign = section.sign
     while len(series) * _CHUNK < MOST_STEPS:
         chunk_starts, chunk = np.empty((_CHUNK + 1, 2)), np.empty((_CHUNK, len(q), order + 1, 2))
         ended, count = advance_pairs(arrays, q, v, clock, 1e300, tolerance, chunk_starts, chunk)
@@ -202,65 +219,50 @@ def closed(
             return None
         for step in range(count):
             width = (chunk_starts[step + 1, 0] - chunk_starts[step, 0]) + chunk_starts[step + 1, 1]
-            first = not series and step == 0
-            for low, high in _sign_changes(chunk[step], width, start[0], section, first, before):
-                passed += 1
-                local = _root(chunk[step], low, high, start[0], section)
+            changes, sign = _sign_changes(chunk[step], width, start[0], section, sign)
+            for low, high, before in changes:
+                local = _root(chunk[step], low, high, before, start[0], section)
                 end, rate = np.empty_like(q), np.empty_like(v)
                 moved_pairs(chunk[step], local[0], local[1], end, rate)
-                if _returned(start, end, rate, section, free, passed):
-                    starts.append(chunk_starts[: step + 1])
-                    time = np.array(_sum(chunk_starts[step], local))
-                    starts.append(time[None, :])
+                time = np.array(_sum(chunk_starts[step], local))
+                passages.append(Passage(time, end, rate))
+                if done(passages):
+                    starts.extend([chunk_starts[: step + 1], time[None, :]])
                     series.append(chunk[: step + 1])
-                    return Run(np.concatenate(starts), np.concatenate(series)), time, (end, rate)
-            value = _value(chunk[step], width, 0.0, start[0], section.normal, section.of_rates)[0]
-            before = value if value != 0.0 else before
+                    return Run(np.concatenate(starts), np.concatenate(series)), passages
         starts.append(chunk_starts[:count])
         series.append(chunk[:count])
     return None
 
 
-def _returned(
-    start: tuple[Floats, Floats], end: Floats, rate: Floats, section: Section, free: Sequence[int], passed: int
-) -> bool:
-    if section.passage == 2:
-        return passed == 2
-    if section.of_rates:
-        return distance(rate, np.zeros_like(rate), free) < CLOSED * max(1.0, float(np.max(np.abs(start[1]))))
-    size = max(1.0, float(np.max(np.abs(start[1][:, 0]))))
-    return distance(end, start[0], free) < CLOSED and distance(rate, start[1], range(len(rate))) < CLOSED * size
-
-
 def _sign_changes(
-    series: Floats, width: float, origin: Floats, section: Section, first: bool, before: float
-) -> list[tuple[float, float]]:
-    """Return brackets of the zeros in a step, that at the start itself apart."""
+    series: Floats, width: float, origin: Floats, section: Section, sign: float
+) -> tuple[list[tuple[float, float, float]], float]:
+    """Return brackets of the zeros in a step with the sign before each, and the sign at its end."""
     found = []
-    last, sign = 0.0, before
+    last = 0.0
     for part in range(1, _PARTS + 1):
         time = width * part / _PARTS
         value = _value(series, time, 0.0, origin, section.normal, section.of_rates)[0]
-        if value == 0.0:
-            continue
-        if sign * value < 0.0 and not (first and part == 1):
-            found.append((last, time))
-        sign, last = value, time
-    return found
+        if sign * value < 0.0:
+            found.append((last, time, sign))
+        if value != 0.0:
+            sign, last = math.copysign(1.0, value), time
+    return found, sign
 
 
-def _root(series: Floats, low: float, high: float, origin: Floats, section: Section) -> tuple[float, float]:
+def _root(
+    series: Floats, low: float, high: float, before: float, origin: Floats, section: Section
+) -> tuple[float, float]:
     """Return a zero in a step as a pair: bisection in doubles, then Newton's method in pairs."""
 
     def value(hh: float, hl: float) -> Pair:
         return _value(series, hh, hl, origin, section.normal, section.of_rates)
 
-    below = value(low, 0.0)[0]
     for _ in range(40):
         middle = 0.5 * (low + high)
-        here = value(middle, 0.0)[0]
-        if here * below > 0.0:
-            low, below = middle, here
+        if value(middle, 0.0)[0] * before > 0.0:
+            low = middle
         else:
             high = middle
     time: tuple[float, float] = (0.5 * (low + high), 0.0)

@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from flint import arb
 
+from core.double_double import dd_sub
 from core.multibody.motion import States
 from core.multibody.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.packed import Floats, packed, pair, state, two_to, units_of
-from core.multibody.periods import Periodic, Section, closed, distance
+from core.multibody.periods import Passage, Periodic, Section, distance, followed
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.table import Table
 
@@ -129,15 +130,30 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
     units = units_of(table, acceleration)
     arrays = packed(table, chosen, units)
     start = state(table, units)
-    section = Section(np.array([0.0, 0.0, 1.0]), is_zero(z_rate), 2)
-    found = closed(arrays, start, section, [2], FINE_ORDER, FINE_TOLERANCE)
-    check = closed(arrays, start, section, [2], CHECK_ORDER, CHECK_TOLERANCE)
+    # The height turns back at an extreme, and there again a period later.
+    resting = is_zero(z_rate)
+    sign = math.copysign(1.0, float(z_gain if resting else z_rate))
+    section = Section(np.array([0.0, 0.0, 1.0]), True, sign)
+    count = 2 if resting else 3
+
+    def returned(passages: list[Passage]) -> bool:
+        return len(passages) == count
+
+    found = followed(arrays, start, section, returned, FINE_ORDER, FINE_TOLERANCE)
+    check = None if found is None else followed(arrays, start, section, returned, CHECK_ORDER, CHECK_TOLERANCE)
     if found is None or check is None:
         return None
-    run, time, end = found
-    late = abs((time[0] - check[1][0]) + (time[1] - check[1][1])) + 2.0**-100 * abs(time[0])
-    off = max(distance(end[k], check[2][k], range(3)) for k in range(2)) + 2.0**-98
-    turned = _angle(start, end)
+    run, passages = found
+    first = Passage(np.zeros(2), *start) if resting else passages[0]
+    other = Passage(np.zeros(2), *start) if resting else check[1][0]
+    last, other_last = passages[-1], check[1][-1]
+    time, other_time = _between(first, last), _between(other, other_last)
+    size = max(1.0, float(np.max(np.abs(start[1][:, 0]))))
+    if abs(float(last.q[2, 0] - first.q[2, 0])) > 1e-12 or abs(other_time[0] - time[0]) > 1e-12 * time[0]:
+        return None
+    late = abs((time[0] - other_time[0]) + (time[1] - other_time[1])) + 2.0**-100 * time[0]
+    off = size * 2.0**-96 + max(distance(last.q, other_last.q, range(3)), distance(last.v, other_last.v, range(3)))
+    turned = _angle((first.q, first.v), (last.q, last.v))
     motion = Periodic(table, units, run, time, False, np.zeros((3, 2)), (late, 4.0 * off), turned)
     motion.why = "the motion is symmetric about the vertical: its height repeats, and each period turns it further"
     motion.winding = _unwrapped(motion, float(turned))
@@ -186,6 +202,11 @@ def _invariant(table: Table) -> bool:
         and len(table.gyration) == 6
         and all(len(set(key)) == 3 for key in table.gyration)
     )
+
+
+def _between(first: Passage, last: Passage) -> Floats:
+    high, low = dd_sub(last.time[0], last.time[1], first.time[0], first.time[1])
+    return np.array([high, low])
 
 
 def _angle(start: tuple[Floats, Floats], end: tuple[Floats, Floats]) -> Ball:
