@@ -15,7 +15,8 @@ from core.multibody.whole import Whole, WholeStates
 
 _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
-_TELL = 1.01
+_TELL = 1.02
+"""The judge is more accurate than what it judges by 2^-9 at least."""
 
 
 @dataclass(frozen=True)

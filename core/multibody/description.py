@@ -76,7 +76,7 @@ def _seen(scene: Scene) -> dict[str, set[str]]:
         if kind in ("weld", "slider") or (kind == "pin" and connection.axis is not None):
             see(connection.a, "direction", "orientation")
             see(connection.b, "direction", "orientation")
-        if kind == "string" and not isinstance(connection.through, (str, Mapping)):
+        if kind == "string" and isinstance(connection.through, (list, tuple)):
             for place in connection.through:
                 see(place)
                 body = scene.bodies.get(place) if isinstance(place, str) else None

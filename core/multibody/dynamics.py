@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from flint import arb_mat
@@ -108,13 +108,31 @@ def accelerations(table: Table) -> tuple[list[Ball], list[int]]:
     try:
         solved = arb_mat(entries).solve(arb_mat([[x] for x in right])).entries()
     except ZeroDivisionError:
-        raise InvalidParameter(
-            ("bodies",),
-            "have mass or inertia wherever they can move by themselves; among "
-            f"{', '.join(sorted({name.split('.')[0] for name in table.names}))} something without any can",
-            remedy="give it mass or inertia, or connect it to what has some",
-        ) from None
+        raise weightless(table, range(count), lines) from None
     return solved[:count], chosen
+
+
+def weightless(table: Table, indices: Iterable[int], lines: Iterable[dict[int, Ball]]) -> InvalidParameter:
+    """Return the fault of coordinates that nothing determines: no mass, and no connection to what has some."""
+    among = set(indices)
+    free = undetermined(table, among, lines)
+    names = sorted({table.names[i].split(".")[0] for i in free or among})
+    return InvalidParameter(
+        ("bodies", names[0]) if len(names) == 1 else ("bodies",),
+        f"have mass and inertia where they move by themselves, unlike what {', '.join(names)} leaves free",
+        remedy="give it mass or inertia, connect it to what has some, or start away from a singular place",
+    )
+
+
+def undetermined(table: Table, among: set[int], lines: Iterable[dict[int, Ball]]) -> list[int]:
+    """Return coordinates of a set that neither mass nor rows determine."""
+    elimination = Elimination()
+    for i in among:
+        column = {j: x for j in among if (x := table.mass.get((min(i, j), max(i, j)))) is not None}
+        elimination.add(column, ZERO)
+    for line in lines:
+        elimination.add({j: x for j, x in line.items() if j in among}, ZERO)
+    return [i for i in sorted(among) if i not in elimination.pivots]
 
 
 @dataclass(frozen=True)
@@ -133,8 +151,37 @@ class ForceAtStart:
     shared_with: tuple[str, ...] = field(default=())
 
 
-def forces_at_start(measures: Measures, acceleration: Sequence[Ball]) -> list[ForceAtStart]:
-    """Return every named force; one is determined if it is the same for all multipliers that give the accelerations."""
+@dataclass(frozen=True)
+class Multipliers:
+    """All multipliers that give the accelerations at the start.
+
+    Attributes
+    ----------
+    elimination : Elimination
+        Multipliers by the numbers of their rows: those determined, in terms of those that are free.
+    """
+
+    table: Table
+    elimination: Elimination
+
+    @property
+    def rank(self) -> int:
+        """Number of rows that do not follow from others."""
+        return len(self.elimination.pivots)
+
+    def redundant(self) -> dict[str, tuple[str, ...]]:
+        """Return the connections with a row that follows from others at the start, each with those others."""
+        found: dict[str, tuple[str, ...]] = {}
+        pivots = self.elimination.pivots
+        for r, row in enumerate(self.table.rows):
+            if r not in pivots:
+                others = {self.table.rows[k].name for k, (rest, _) in pivots.items() if r in rest}
+                found[row.name] = tuple(sorted(others - {row.name}))
+        return found
+
+
+def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Multipliers:
+    """Return the multipliers that give the accelerations."""
     table = measures.table
     pushed, given = table.inertial(acceleration), table.forces()
     lines: list[dict[int, Ball]] = [{} for _ in table.names]
@@ -145,7 +192,12 @@ def forces_at_start(measures: Measures, acceleration: Sequence[Ball]) -> list[Fo
     for line, inertia, force in zip(lines, pushed, given, strict=True):
         left = elimination.add(line, inertia - force)
         assert left is None or is_zero(left), "accelerations that no multipliers give"
-    return [_force(measures, force, elimination) for force in measures.forces]
+    return Multipliers(table, elimination)
+
+
+def forces_at_start(measures: Measures, multipliers: Multipliers) -> list[ForceAtStart]:
+    """Return every named force; one is determined if it is the same for all multipliers that give the accelerations."""
+    return [_force(measures, force, multipliers.elimination) for force in measures.forces]
 
 
 def _force(measures: Measures, force: Force, elimination: Elimination) -> ForceAtStart:
@@ -161,24 +213,6 @@ def _force(measures: Measures, force: Force, elimination: Elimination) -> ForceA
     shared = {table.rows[r].name for r in free}
     shared |= {table.rows[r].name for r, (rest, _) in elimination.pivots.items() if set(rest) & set(free)}
     return ForceAtStart(None, tuple(sorted(shared - set(measures.coordinates.frames))))
-
-
-def redundant(table: Table) -> dict[str, tuple[str, ...]]:
-    """Return the connections with a row that follows from others at the start, each with those others."""
-    lines = [row.line(table.q) for row in table.rows]
-    columns: list[dict[int, Ball]] = [{} for _ in table.names]
-    for r, line in enumerate(lines):
-        for j, value in line.items():
-            columns[j][r] = value
-    elimination = Elimination()
-    for column in columns:
-        elimination.add(column, ZERO)
-    found: dict[str, tuple[str, ...]] = {}
-    for r in range(len(lines)):
-        if r not in elimination.pivots:
-            others = {table.rows[k].name for k, (rest, _) in elimination.pivots.items() if r in rest}
-            found[table.rows[r].name] = tuple(sorted(others - {table.rows[r].name}))
-    return found
 
 
 def kinetic(table: Table) -> Ball:

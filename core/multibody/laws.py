@@ -6,6 +6,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Point
+from core.multibody.language import GROUND
 from core.multibody.measures import Force, Measures
 from core.multibody.polynomials import (
     ONE,
@@ -182,6 +183,8 @@ def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
 
 def _ends(measures: Measures, connection: Any, path: Path) -> tuple[Point, Point]:
     point = measures.coordinates.point
+    if connection.b == GROUND:
+        raise InvalidParameter((*path, "b"), "be given: a place, or of the ground its coordinates")
     return point(connection.a, (*path, "a")), point(connection.b, (*path, "b"))
 
 

@@ -89,7 +89,9 @@ class Numerals:
             if isinstance(inner, Mapping):
                 raise InvalidParameter((*path, "degrees"), "be a number or a formula")
             return self.number(inner, (*path, "degrees")) * arb.pi() / 180
-        return _ball(_exact(value, path, self.doubles))
+        if isinstance(value, float) and isfinite(value) and not self.doubles:
+            return _decimal(repr(value))
+        return _ball(_exact(value, path))
 
     def angle(self, value: Any, path: Path) -> tuple[Ball, Ball]:
         """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""
@@ -116,21 +118,21 @@ class Numerals:
         return tuple(self.number(entry, (*path, i)) for i, entry in enumerate(value))
 
 
-def _exact(value: Any, path: Path, doubles: bool) -> Fraction:
+def _exact(value: Any, path: Path) -> Fraction:
     if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, Fraction)):
         raise InvalidParameter(path, "be a number")
     if isinstance(value, Fraction):
         return value
+    if isinstance(value, int):
+        if value.bit_length() > 4 * LARGEST_EXPONENT:
+            raise InvalidParameter(path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
+        return Fraction(value)
     if not isfinite(value):
         raise InvalidParameter(path, "be finite")
     if isinstance(value, float):
-        return Fraction(value) if doubles else Fraction(repr(value))
-    if isinstance(value, Decimal):
-        if abs(value.adjusted()) > LARGEST_EXPONENT or len(value.as_tuple().digits) > LONGEST_FORMULA:
-            raise InvalidParameter(path, f"have at most {LONGEST_FORMULA} digits and a moderate exponent")
         return Fraction(value)
-    if value.bit_length() > 4 * LARGEST_EXPONENT:
-        raise InvalidParameter(path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
+    if abs(value.adjusted()) > LARGEST_EXPONENT or len(value.as_tuple().digits) > LONGEST_FORMULA:
+        raise InvalidParameter(path, f"have at most {LONGEST_FORMULA} digits and a moderate exponent")
     return Fraction(value)
 
 
@@ -138,6 +140,15 @@ def _ball(value: Fraction) -> Ball:
     if value.denominator == 1:
         return arb(value.numerator)
     return arb(fmpq(value.numerator, value.denominator))
+
+
+def _decimal(text: str) -> Ball:
+    """Return the rational number of decimal digits, in one rounding."""
+    digits, _, exponent = text.lower().partition("e")
+    whole, _, part = digits.partition(".")
+    power = int(exponent or 0) - len(part)
+    number = int(whole + part)
+    return arb(number * 10**power) if power >= 0 else arb(fmpq(number, 10**-power))
 
 
 class _Formula:
@@ -211,7 +222,7 @@ class _Formula:
                 raise InvalidParameter(
                     self.path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}"
                 )
-            return _ball(Fraction(digits))
+            return _decimal(digits)
         if name in _FUNCTIONS and self.at + 1 < len(self.tokens) and self.tokens[self.at + 1][2] == "(":
             self.at += 1
             argument = self._parenthesis()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from core.multibody.dynamics import undetermined, weightless
 from core.multibody.polynomials import (
     ONE,
     ZERO,
@@ -239,6 +240,8 @@ def _pin(state: Reduced) -> bool:
         pinned -= leave
     if not pinned:
         return False
+    if undetermined(table, pinned, (row.line(table.q) for row in table.rows)):
+        raise weightless(table, pinned, (row.line(table.q) for row in table.rows))
     state.pinned.extend(table.names[i] for i in sorted(pinned))
     state.steps.append(f"nothing ever moves {', '.join(table.names[i] for i in sorted(pinned))}")
     expressions: list[Poly | None] = [None] * len(table.names)

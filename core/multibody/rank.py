@@ -39,7 +39,7 @@ class Elimination:
         rest, value = self.reduced(line, value)
         if not rest:
             return value
-        pivot = max(rest, key=lambda j: self._merit(j, rest[j]))
+        pivot = max(rest, key=lambda j: self._merit(j, rest[j])) if len(rest) > 1 else next(iter(rest))
         factor = rest.pop(pivot)
         rest = {j: x / factor for j, x in rest.items()}
         value = value / factor

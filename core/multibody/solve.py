@@ -25,12 +25,13 @@ from core.multibody.columns import Columns, worst
 from core.multibody.description import Described, described
 from core.multibody.dynamics import (
     ForceAtStart,
+    Multipliers,
     accelerations,
     forces_at_start,
     kinetic,
+    multipliers_at_start,
     parts,
     potential,
-    redundant,
     restricted,
 )
 from core.multibody.equilibria import equilibria_of
@@ -43,7 +44,6 @@ from core.multibody.packed import Floats
 from core.multibody.passes import Reduced, reduced
 from core.multibody.periods import Periodic, repeating
 from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
-from core.multibody.rank import independent
 from core.multibody.table import Table
 from core.multibody.uniform import Uniform
 from core.multibody.vertical_symmetry import Shifted, Steady, precessing
@@ -133,8 +133,10 @@ def _solve(scene: Scene, times: Floats, outputs: Sequence[Output], accuracy: flo
     full = [sum((c * gains[key[0]] for key, c in e.items() if key), ZERO) for e in small.expressions]
     motions = [(indices, _motion(part, gain, chosen)) for indices, part, gain, chosen in pieces]
     whole = Whole(found.measures, small, full, gains, motions)
-    forces = forces_at_start(found.measures, full)
-    model = _model(found, small, pieces, motions, [*_noticed(found, small, moved, fitted, forces)])
+    multipliers = multipliers_at_start(found.measures, full)
+    forces = forces_at_start(found.measures, multipliers)
+    noticed = _noticed(found, small, moved, fitted, forces, multipliers)
+    model = _model(found, small, pieces, motions, noticed, multipliers.rank)
     trajectory: SceneTrajectory | None = None
     events: tuple[SceneEvent, ...] = ()
     if len(times):
@@ -189,9 +191,14 @@ def _motion(part: Table, gain: list[Ball], chosen: list[int]) -> Motion:
 
 
 def _noticed(
-    found: Described, small: Reduced, moved: list[str], fitted: list[str], forces: list[ForceAtStart]
+    found: Described,
+    small: Reduced,
+    moved: list[str],
+    fitted: list[str],
+    forces: list[ForceAtStart],
+    multipliers: Multipliers,
 ) -> list[str]:
-    table, measures = found.measures.table, found.measures
+    measures = found.measures
     bodies = set(found.scene.bodies)
     said = []
     if moved:
@@ -201,7 +208,7 @@ def _noticed(
     still = [name for name in small.pinned if name.split(".")[0] in bodies]
     if still:
         said.append(f"nothing ever moves {', '.join(still)}")
-    for name, others in redundant(table).items():
+    for name, others in multipliers.redundant().items():
         beside = f" beside {', '.join(others)}" if others else ""
         said.append(f"{name} holds more than it has to{beside}: forces that it shares are not determined")
     for force, value in zip(measures.forces, forces, strict=True):
@@ -221,6 +228,7 @@ def _model(
     pieces: Sequence[Piece],
     motions: Sequence[tuple[list[int], Motion]],
     noticed: list[str],
+    rank: int,
 ) -> SceneModel:
     table = found.measures.table
     apart = []
@@ -248,7 +256,6 @@ def _model(
         name, why = apart[0].name, apart[0].why
     else:
         name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
-    rank = len(independent(row.line(table.q) for row in table.rows))
     return SceneModel(
         name,
         why,

@@ -78,7 +78,7 @@ def string(measures: Measures, name: str, connection: Any, path: Path) -> None:
 
 def _knots(measures: Measures, connection: Any, path: Path) -> list[Knot]:
     through = connection.through
-    if isinstance(through, (str, Mapping)) or not isinstance(through, Sequence) or len(through) < 2:
+    if not isinstance(through, (list, tuple)) or len(through) < 2:
         raise InvalidParameter((*path, "through"), "be a list of at least two places")
     if len(through) > MOST_THROUGH:
         raise InvalidParameter((*path, "through"), f"have at most {MOST_THROUGH} entries, not {len(through)}")
