@@ -9,7 +9,7 @@ from flint import arb_mat
 
 from core.errors import InvalidParameter
 from core.multibody.measures import Force, Measures
-from core.multibody.polynomials import ZERO, Ball, evaluated, is_zero, variables
+from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, entry, evaluated, is_zero, variables
 from core.multibody.rank import Elimination, independent
 from core.multibody.table import Row, Table
 
@@ -135,6 +135,47 @@ def undetermined(table: Table, among: set[int], lines: Iterable[dict[int, Ball]]
     return [i for i in sorted(among) if i not in elimination.pivots]
 
 
+def singular_row(table: Table, chosen: Sequence[int]) -> Row | None:
+    """Return a measure that follows from others at the start only, which makes the start a singular place.
+
+    Where a row of W depends on others, what is left of its second derivative has to vanish along every direction that
+    the connections leave free; else the free places branch there, or there are none.
+    """
+    others = [r for r in range(len(table.rows)) if r not in set(chosen)]
+    if not others:
+        return None
+    lines = [row.line(table.q) for row in table.rows]
+    elimination = Elimination()
+    for r in chosen:
+        elimination.add(lines[r], ZERO)
+    free = [j for j in range(len(table.names)) if j not in elimination.pivots]
+    directions = [{f: ONE, **{j: -line[f] for j, (line, _) in elimination.pivots.items() if f in line}} for f in free]
+    for r in others:
+        measure = table.rows[r].measure
+        if measure is None:
+            continue
+        weights = Elimination()
+        for j in range(len(table.names)):
+            column = {i: lines[i][j] for i in chosen if j in lines[i]}
+            weights.add(column, lines[r].get(j, ZERO))
+        terms: list[tuple[Ball, Poly]] = [(ONE, measure)]
+        terms.extend((-weights.pivots[i][1], table.rows[i].measure or {}) for i in weights.pivots)
+        bend: Poly = {key: x for key, x in combined(*terms).items() if len(key) == 2}
+        for a, first in enumerate(directions):
+            for second in directions[: a + 1]:
+                if not is_zero(_bilinear(bend, first, second)):
+                    return table.rows[r]
+    return None
+
+
+def _bilinear(form: Poly, first: dict[int, Ball], second: dict[int, Ball]) -> Ball:
+    total = ZERO
+    for key, x in form.items():
+        i, j = key
+        total = total + x * (entry(first, i) * entry(second, j) + entry(first, j) * entry(second, i))
+    return total
+
+
 @dataclass(frozen=True)
 class ForceAtStart:
     """A force of a connection at the start.
@@ -159,10 +200,13 @@ class Multipliers:
     ----------
     elimination : Elimination
         Multipliers by the numbers of their rows: those determined, in terms of those that are free.
+    bodies : frozenset of str
+        Names that are no connections: their rows are what makes a body rigid.
     """
 
     table: Table
     elimination: Elimination
+    bodies: frozenset[str]
 
     @property
     def rank(self) -> int:
@@ -176,8 +220,8 @@ class Multipliers:
         for r, row in enumerate(self.table.rows):
             if r not in pivots:
                 others = {self.table.rows[k].name for k, (rest, _) in pivots.items() if r in rest}
-                found[row.name] = tuple(sorted(others - {row.name}))
-        return found
+                found[row.name] = tuple(sorted(others - {row.name} - self.bodies))
+        return {name: others for name, others in found.items() if others and name not in self.bodies}
 
 
 def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Multipliers:
@@ -192,7 +236,7 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
     for line, inertia, force in zip(lines, pushed, given, strict=True):
         left = elimination.add(line, inertia - force)
         assert left is None or is_zero(left), "accelerations that no multipliers give"
-    return Multipliers(table, elimination)
+    return Multipliers(table, elimination, frozenset(measures.coordinates.frames))
 
 
 def forces_at_start(measures: Measures, multipliers: Multipliers) -> list[ForceAtStart]:

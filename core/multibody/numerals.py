@@ -30,7 +30,9 @@ MOST_NAMES = 100
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 """What bodies, places, connections and numbers may be called."""
 
-_TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+*/()]))\s*", re.ASCII)
+_TOKEN = re.compile(
+    r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+*/()]))\s*", re.ASCII
+)
 _FUNCTIONS = ("sqrt", "sin", "cos")
 
 

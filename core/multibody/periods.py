@@ -40,6 +40,9 @@ MOST_STEPS = 400
 CLOSED = 1e-20
 """How closely a state has to return, in units of the scene."""
 
+UNCERTAIN = 2.0**-54
+"""Share of a period by which two runs may differ: beside a separatrix what brings a motion back is rounding."""
+
 _CHUNK = 16
 _PARTS = 8
 
@@ -174,6 +177,8 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
     other = check[1][-1]
     late = abs((time[0] - other.time[0]) + (time[1] - other.time[1])) + 2.0**-100 * abs(time[0])
     off = max(distance(end, other.q, range(len(q))), distance(rate, other.v, range(len(q)))) + 2.0**-98
+    if late > UNCERTAIN * abs(time[0]):
+        return None
     if at_rest:
         return Periodic(table, units, run, 2.0 * time, True, np.zeros((len(q), 2)), (2.0 * late, off))
     shift = np.zeros((len(q), 2))

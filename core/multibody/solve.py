@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from core.balls import precision
-from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
+from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, NotApplicable
 from core.multibody.answer import (
     BodyAcceleration,
     Column,
@@ -33,6 +33,7 @@ from core.multibody.dynamics import (
     parts,
     potential,
     restricted,
+    singular_row,
 )
 from core.multibody.equilibria import equilibria_of
 from core.multibody.events import first_event
@@ -60,6 +61,9 @@ OUTPUTS: tuple[Output, ...] = (
     "equilibria",
 )
 DEFAULT_OUTPUTS: tuple[Output, ...] = ("accelerations", "forces", "energy", "trajectory")
+
+_HOLDS = 1e-8
+"""Relative mismatch of a measure above which it is not held."""
 
 MOST_NUMBERS = 5_000_000
 """Numbers that one trajectory may have."""
@@ -125,14 +129,15 @@ def _solve(scene: Scene, times: Floats, outputs: Sequence[Output], accuracy: flo
     moved = assemble_places(table, found.paths)
     fitted = assemble_rates(table, found.measures.coordinates.given, found.paths)
     small = reduced(table, pinning=True)
-    pieces = [_piece(small.table, indices) for indices in parts(small.table)]
+    pieces = [_piece(found, small.table, indices) for indices in parts(small.table)]
     gains: list[Ball] = [ZERO] * len(small.table.names)
     for indices, _, gain, _ in pieces:
         for i, x in zip(indices, gain, strict=True):
             gains[i] = x
     full = [sum((c * gains[key[0]] for key, c in e.items() if key), ZERO) for e in small.expressions]
     motions = [(indices, _motion(part, gain, chosen)) for indices, part, gain, chosen in pieces]
-    whole = Whole(found.measures, small, full, gains, motions)
+    dropped = any(len(chosen) < len(part.rows) for _, part, _, chosen in pieces)
+    whole = Whole(found.measures, small, full, gains, motions, dropped)
     multipliers = multipliers_at_start(found.measures, full)
     forces = forces_at_start(found.measures, multipliers)
     noticed = _noticed(found, small, moved, fitted, forces, multipliers)
@@ -163,9 +168,17 @@ Piece = tuple[list[int], Table, list[Ball], list[int]]
 """Coordinates of a part, its table, its accelerations and its independent rows."""
 
 
-def _piece(table: Table, indices: list[int]) -> Piece:
+def _piece(found: Described, table: Table, indices: list[int]) -> Piece:
     part = restricted(table, indices)
     gain, chosen = accelerations(part)
+    singular = singular_row(part, chosen)
+    if singular is not None:
+        raise InvalidParameter(
+            found.paths.get(singular.name, ("connections",)),
+            f'leave the motion determined: the start is a singular place, where "{singular.name}" and the connections '
+            "around it lose their hold, and several motions are possible",
+            remedy="start elsewhere",
+        )
     return indices, part, gain, chosen
 
 
@@ -301,6 +314,12 @@ def _columns(
     whole: Whole, determined: Sequence[bool], times: Floats, outputs: Sequence[Output], *, finer: bool
 ) -> dict[str, Column]:
     states = whole.states(times, finer=finer)
+    if whole.dropped and whole.misfit(states.q) > _HOLDS:
+        raise NotApplicable(
+            "connections that depend on one another at the start do not do so later: the start is a singular place",
+            path=("connections",),
+            remedy="start elsewhere",
+        )
     closed = all(motion.how == "closed form" for _, motion in whole.parts)
     columns = Columns(whole, times, states, "closed form" if closed else "measured against pairs")
     found: dict[str, Column] = {}

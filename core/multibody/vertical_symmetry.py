@@ -17,7 +17,7 @@ from core.double_double import dd_sub
 from core.multibody.motion import States
 from core.multibody.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.packed import Floats, packed, pair, state, two_to, units_of
-from core.multibody.periods import Passage, Periodic, Section, distance, followed
+from core.multibody.periods import UNCERTAIN, Passage, Periodic, Section, distance, followed
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.table import Table
 
@@ -149,7 +149,7 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
     last, other_last = passages[-1], check[1][-1]
     time, other_time = _between(first, last), _between(other, other_last)
     size = max(1.0, float(np.max(np.abs(start[1][:, 0]))))
-    if abs(float(last.q[2, 0] - first.q[2, 0])) > 1e-12 or abs(other_time[0] - time[0]) > 1e-12 * time[0]:
+    if abs(float(last.q[2, 0] - first.q[2, 0])) > 1e-12 or abs(other_time[0] - time[0]) > UNCERTAIN * time[0]:
         return None
     late = abs((time[0] - other_time[0]) + (time[1] - other_time[1])) + 2.0**-100 * time[0]
     off = size * 2.0**-96 + max(distance(last.q, other_last.q, range(3)), distance(last.v, other_last.v, range(3)))

@@ -47,6 +47,8 @@ class Whole:
     acceleration : sequence of balls
         Of every coordinate as described, at the start; `gains`, of those of the reduced table.
     parts : sequence of (coordinates of the reduced table, motion)
+    dropped : bool
+        Whether rows were left out because they followed from others at the start.
     """
 
     measures: Measures
@@ -54,6 +56,7 @@ class Whole:
     acceleration: Sequence[Ball]
     gains: Sequence[Ball]
     parts: Sequence[tuple[Sequence[int], Motion]]
+    dropped: bool = False
 
     @cached_property
     def _affine(self) -> tuple[Floats, Floats]:
@@ -105,6 +108,16 @@ class Whole:
             w_error @ size,
             reference,
         )
+
+    def misfit(self, q: Floats) -> float:
+        """Return by how much the measures are missed at most, relative to the sum of their terms."""
+        worst = 0.0
+        for row in self.measures.table.rows:
+            if row.measure is not None:
+                value, size = values(row.measure, q)
+                held = size > 0.0
+                worst = max(worst, float(np.max(np.abs(value[held]) / size[held], initial=0.0)))
+        return worst
 
     def multipliers(self, q: Floats, v: Floats) -> Floats:
         """Return the multipliers of every row, shape (t, rows), those of redundant rows zero.

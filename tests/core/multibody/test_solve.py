@@ -413,3 +413,111 @@ def test_what_no_pairs_reach_is_refused_with_what_can_be() -> None:
 def test_too_many_samples_are_refused() -> None:
     with pytest.raises(BudgetExceeded):
         solve_scene(read(TWO_RODS), np.zeros(1_000_000))
+
+
+def arm(at: list[Any], angle: Any, length: Any) -> dict[str, Any]:
+    ends = {"l": [f"-{length}/2", 0], "r": [f"{length}/2", 0]}
+    return {"mass": 1, "inertia": 0.1, "at": at, "angle": angle, "places": ends}
+
+
+def parallelogram(angle: str) -> dict[str, Any]:
+    c, s = f"cos({angle})", f"sin({angle})"
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "a": arm([f"0.5*{c}", f"0.5*{s}"], angle, 1),
+            "b": arm([f"2+0.5*{c}", f"0.5*{s}"], angle, 1),
+            "m": arm([f"1+0.5*{c}", f"0.5*{s}"], angle, 1),
+            "c": arm([f"1+{c}", s], 0, 2),
+        },
+        "connections": [
+            {"kind": "pin", "a": "a.l", "b": [0, 0]},
+            {"kind": "pin", "a": "b.l", "b": [2, 0]},
+            {"kind": "pin", "a": "m.l", "b": [1, 0]},
+            {"kind": "pin", "a": "c.l", "b": "a.r"},
+            {"kind": "pin", "a": "c.r", "b": "b.r"},
+            {"kind": "pin", "name": "more", "a": "c", "b": "m.r"},
+        ],
+    }
+
+
+def test_a_parallelogram_with_three_cranks_swings_as_a_pendulum() -> None:
+    answer = solve_scene(read(parallelogram("-1.2")), [0.0, 1.0, 4.0])
+    assert answer.model.degrees_of_freedom == 1
+    assert any(sentence.startswith("more holds more than it has to") for sentence in answer.model.noticed)
+    with mpmath.workdps(30):
+        # Cranks turn about their ends, the coupler does not turn: I = 3 (0.1 + 1/4) + 1, moment = 3/2 + 1.
+        omega = mpmath.sqrt(mpmath.mpf("9.81") * mpmath.mpf("2.5") / mpmath.mpf("2.05"))
+        m = mpmath.sin((mpmath.pi / 2 - mpmath.mpf("1.2")) / 2) ** 2
+        assert answer.period == pytest.approx(float(4 * mpmath.ellipk(m) / omega), rel=2 * EPS)
+
+
+def test_a_flat_parallelogram_is_a_singular_place() -> None:
+    with pytest.raises(InvalidParameter, match="singular place"):
+        solve_scene(read(parallelogram("0")))
+
+
+def test_a_pendulum_on_its_separatrix_is_followed_for_a_while() -> None:
+    bob = {"mass": 1, "at": [0, -1], "velocity": ["sqrt(4*9.81)", 0]}
+    scene = {"gravity": [0, -9.81], "bodies": {"p": bob}, "connections": [{"kind": "rod", "a": "p", "b": [0, 0]}]}
+    answer = solve_scene(read(scene), [1.5])
+    assert answer.period is None
+    with mpmath.workdps(30):
+        # theta = 2 gd(omega t)
+        theta = 2 * mpmath.atan(mpmath.sinh(mpmath.sqrt(mpmath.mpf("9.81")) * mpmath.mpf("1.5"))) * 1
+        place = column(answer, "p.position")
+        away = (place.values[0, 0] - mpmath.sin(theta), place.values[0, 1] + mpmath.cos(theta))
+        assert mpmath.hypot(*away) <= place.error < 1e-11
+
+
+def test_weights_that_reach_the_pulley_end_the_scene() -> None:
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"m": {"mass": 3, "at": [-1, -1]}, "b": {"mass": 1, "at": [1, -1]}},
+        "connections": [{"kind": "string", "name": "s", "through": ["m", [-1, 0], [1, 0], "b"]}],
+    }
+    answer = solve_scene(read(scene), [0.1, 1.0])
+    assert answer.ended is not None
+    assert (answer.ended.kind, answer.ended.name) == ("singular", "s")
+    # One metre at g/2
+    assert answer.ended.time == pytest.approx(math.sqrt(4 / 9.81), rel=2 * EPS)
+    assert answer.trajectory is not None
+    assert list(answer.trajectory.rows) == [0]
+
+
+def test_a_string_that_would_push_is_slack_from_the_start() -> None:
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"p": {"mass": 1, "at": [0, 1]}},
+        "connections": [{"kind": "string", "name": "s", "through": ["p", [0, 0]]}],
+    }
+    answer = solve_scene(read(scene), [0.0, 1.0])
+    assert answer.ended is not None
+    assert (answer.ended.kind, answer.ended.time) == ("slack", 0.0)
+    assert force(answer, "s.tension") < 0
+
+
+def test_parts_that_see_nothing_of_each_other_have_models_of_their_own() -> None:
+    scene = points((1,), ("0.4",), (1,))
+    scene["bodies"]["stone"] = {"mass": 1, "at": [5, 5], "velocity": [1, 2]}
+    answer = solve_scene(read(scene), [0.5])
+    assert answer.model.name == "parts apart"
+    assert sorted(part.name for part in answer.model.apart) == ["constant acceleration", "constant acceleration",
+                                                                "one period"]  # fmt: skip
+    assert column(answer, "stone.position").values[0] == pytest.approx((5.5, 6 - 9.81 / 8), rel=2 * EPS)
+
+
+def test_free_asymmetric_body_keeps_momentum_and_energy() -> None:
+    body = {"mass": 1, "at": [0, 0, 0], "moments": [1, 2, 3], "angular_velocity": [0.1, 1, 0.1]}
+    answer = solve_scene(read({"gravity": [0, 0, 0], "bodies": {"b": body}}), [0.0, 7.0, 20.0])
+    spin = column(answer, "b.angular_velocity")
+    moments = np.array([1, 2, 3])
+    momentum = np.linalg.norm(spin.values * moments, axis=1)
+    assert momentum == pytest.approx(momentum[0], abs=10 * spin.error)
+    with mpmath.workdps(25):
+
+        def rate(_: Any, w: Any) -> list[Any]:
+            return [-w[1] * w[2], w[2] * w[0], -w[0] * w[1] / 3]
+
+        expected = mpmath.odefun(rate, 0, [mpmath.mpf("0.1"), 1, mpmath.mpf("0.1")])(7)
+        assert mpmath.norm([spin.values[1, k] - expected[k] for k in range(3)]) <= spin.error
