@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from core.multibody.dynamics import undetermined, weightless
+from core.multibody.dynamics import weightless
 from core.multibody.polynomials import (
     ONE,
     ZERO,
@@ -240,8 +240,10 @@ def _pin(state: Reduced) -> bool:
         pinned -= leave
     if not pinned:
         return False
-    if undetermined(table, pinned, (row.line(table.q) for row in table.rows)):
-        raise weightless(table, pinned, (row.line(table.q) for row in table.rows))
+    # A weightless pulley between strings stays where they pull it; what nothing touches at all is nowhere.
+    touched = {j for row in table.rows for j in row.line(table.q)} | {i for key in table.mass for i in key}
+    if pinned - touched:
+        raise weightless(table, pinned - touched, ())
     state.pinned.extend(table.names[i] for i in sorted(pinned))
     state.steps.append(f"nothing ever moves {', '.join(table.names[i] for i in sorted(pinned))}")
     expressions: list[Poly | None] = [None] * len(table.names)

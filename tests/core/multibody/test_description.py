@@ -13,6 +13,7 @@ import pytest
 from core.bodies import Cuboid
 from core.multibody.language import Pin, Scene, SceneBody
 from core.multibody.solve import solve_scene
+from tests.core.multibody.oracles import integrated
 from tests.core.multibody.worked_examples import column, force, linear, points, read
 
 G = 9.81
@@ -24,7 +25,7 @@ def scene(bodies: dict[str, Any], connections: list[dict[str, Any]], gravity: An
 
 
 def flow(rate: Callable[..., Any], start: list[Any]) -> Any:
-    return mpmath.odefun(lambda _, y: rate(*y), 0, [mpmath.mpf(x) for x in start])
+    return lambda t: integrated(rate, start, t)
 
 
 def test_disc_rolls_down_a_slope() -> None:
