@@ -28,6 +28,7 @@ LEDGER: dict[str, set[str]] = {
 }
 LEDGER["rotation"] = {"integration", "bodies", "elliptic"} | LEDGER["bodies"] | LEDGER["elliptic"]
 LEDGER["scenes"] = {"integration", "elliptic", "balls"} | LEDGER["integration"] | LEDGER["elliptic"]
+LEDGER["multibody"] = {"bodies", "balls"} | LEDGER["bodies"]
 LEDGER["certified"] = {"rotation", "scenes"} | LEDGER["rotation"] | LEDGER["scenes"]
 """What each room of core may import beside itself; a file that is not named here may import all of core."""
 
@@ -192,6 +193,15 @@ PROVED_THROUGH = {
     "core/scenes/rod_motion.py": "core/scenes/test_rod_in_hole.py",
     "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
+}
+PROVED_THROUGH |= {
+    f"core/multibody/{name}.py": f"core/multibody/test_{through}.py"
+    for through, names in {
+        "description": "coordinates laws measures rolling strings",
+        "numerical": "packed periods series series_pairs vertical_symmetry",
+        "solve": "answer columns dynamics events motion uniform whole",
+    }.items()
+    for name in names.split()
 }
 """Modules of core without a test file of their own name, and the one that proves them through what they serve."""
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from core.multibody.answer import SceneEvent
 from core.multibody.measures import Limit
+from core.multibody.modes import Modes
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats
 from core.multibody.polynomials import substituted
@@ -41,14 +42,27 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEven
             if time is not None and abs(time) <= abs(end):
                 found.append(SceneEvent("singular", limit.name, time, 2.0**-52 * abs(time)))
         watched = [limit for limit in watched if limit.force is not None]
-    grid = _grid(whole, end)
+    watched = [limit for limit in watched if not _safe(whole, limit)]
     if watched:
+        grid = _grid(whole, end)
         curves = _curves(whole, watched, grid)
         for number, limit in enumerate(watched):
             event = _first_loss(whole, limit, grid, curves[number])
             if event is not None:
                 found.append(event)
     return min(found, key=lambda event: abs(event.time)) if found else None
+
+
+def _safe(whole: Whole, limit: Limit) -> bool:
+    """Return whether a length stays positive for all time, as the amplitudes of modes show."""
+    if limit.length is None:
+        return False
+    length = substituted(limit.length, whole.reduced.expressions)
+    for indices, motion in whole.parts:
+        if isinstance(motion, Modes) and {key[0] for key in length if key} <= set(indices):
+            number = {i: k for k, i in enumerate(indices)}
+            return motion.lowest({tuple(number[i] for i in key): x for key, x in length.items()}) > 0.0
+    return False
 
 
 def _grid(whole: Whole, end: float) -> Floats:

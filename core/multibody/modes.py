@@ -16,10 +16,14 @@ import numpy as np
 from flint import acb, acb_mat, arb, arb_mat
 
 from core.balls import precision
+from core.errors import BudgetExceeded
 from core.multibody.motion import States
 from core.multibody.packed import Floats, pair
-from core.multibody.polynomials import BITS, ONE, ZERO, Ball, is_zero
+from core.multibody.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.table import Table
+
+MOST_NODES = 20000
+"""Times at which events may be looked for."""
 
 
 @dataclass(frozen=True)
@@ -153,4 +157,25 @@ class Modes:
     def nodes(self, end: float) -> Floats:
         """Return times eight to the shortest period."""
         fastest = max((float(abs(acb(mode.growth, mode.frequency))) for mode in self.modes), default=1.0)
-        return np.linspace(0.0, end, min(20000, 33 + int(abs(end) * fastest * 2)))
+        count = abs(end) * fastest * 2.0
+        if count > MOST_NODES:
+            raise BudgetExceeded(
+                "looks for events",
+                int(min(count, 1e18)),
+                MOST_NODES,
+                path=("times",),
+                remedy="ask for a shorter time; lengths or tensions may reach zero on the way",
+            )
+        return np.linspace(0.0, end, 33 + int(count))
+
+    def lowest(self, poly: Poly) -> float:
+        """Return what an affine polynomial of the coordinates is never below, minus infinity without a bound."""
+        start = [*self.table.q, *self.table.v, ONE]
+        terms = self._terms(start)
+        if terms is None or any(root.real > 0 for root, _ in terms if not is_zero(root.real)):
+            return -math.inf
+        total = entry(poly, ())
+        for root, column in terms:
+            part = sum((x * column[key[0]] for key, x in poly.items() if key), acb(0))
+            total = total + part.real if 0 in root.real and 0 in root.imag else total - abs(part)
+        return float(total.lower())
