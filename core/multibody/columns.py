@@ -16,7 +16,7 @@ from core.multibody.whole import Whole, WholeStates
 _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
 _TELL = 1.02
-"""The judge is more accurate than what it judges by 2^-9 at least."""
+"""Margin for the judge's own error, which is some 2^-14 of what it judges."""
 
 
 @dataclass(frozen=True)

@@ -111,13 +111,16 @@ class Periodic:
         scaled = np.ascontiguousarray(np.asarray(times, dtype=np.float64) * two_to(-self.units.time))
         q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
         counts = np.zeros(len(times))
-        _fold(self.run.starts, self.run.series, self.length, self.half, self.shift, scaled, q, v, counts)
+        late, off = self.uncertainty
+        shape = (self.run.starts, self.run.series, self.length, self.half, self.shift)
+        _fold(*shape, scaled, 0.0, q, v, counts)
+        other, rate = np.zeros_like(q), np.zeros_like(v)
+        _fold(*shape, scaled, late, other, rate, np.zeros(len(times)))
         if self.turned is not None:
             with precision(BITS):
                 cosines = np.array([self._turn(k) for k in counts]).reshape(-1, 2, 2)
-            _rotate(cosines, q)
-            _rotate(cosines, v)
-        late, off = self.uncertainty
+            for vector in (q, v, other, rate):
+                _rotate(cosines, vector)
         fastest = float(np.max(np.abs(self.run.series[:, :, 1, 0]), initial=0.0))
         hardest = 2.0 * float(np.max(np.abs(self.run.series[:, :, 2, 0]), initial=0.0))
         drift = (np.abs(counts) + 1.0) * late + np.abs(scaled) * 2.0**-104
@@ -125,7 +128,8 @@ class Periodic:
         down = two_to(-self.units.time)
         q_error = np.outer(drift * fastest + off * (np.abs(counts) + 1.0), up)
         v_error = np.outer(drift * hardest + off * (np.abs(counts) + 1.0), up * down)
-        return States(q * up[None, :, None], v * (up * down)[None, :, None], q_error, v_error)
+        place, speed = up[None, :, None], (up * down)[None, :, None]
+        return States(q * place, v * speed, q_error, v_error, (other * place, rate * speed))
 
     def _turn(self, count: float) -> tuple[Pair, Pair]:
         if count not in self._turns:
@@ -319,6 +323,7 @@ def _fold(
     half: bool,
     shift: Floats,
     times: Floats,
+    late: float,
     q: Floats,
     v: Floats,
     counts: Floats,
@@ -337,6 +342,8 @@ def _fold(
             count += 1.0
             th, tl = dd_add(th, tl, -length[0], -length[1])
         counts[s] = count
+        # As late as the period's uncertainty would have it, for the judge of what follows from the state.
+        th, tl = dd_add(th, tl, (abs(count) + 1.0) * late, 0.0)
         back = half and th > 0.5 * length[0]
         if back:
             th, tl = dd_add(length[0], length[1], -th, -tl)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from flint import arb
 
-from core.double_double import dd_sub
+from core.double_double import dd_add, dd_sub
 from core.multibody.motion import States
 from core.multibody.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.packed import Floats, packed, pair, state, two_to, units_of
@@ -95,9 +95,9 @@ class Shifted:
         found = self.motion.states(times, finer=finer)
         for i, c in enumerate(self.centre):
             high, low = pair(c, 0)
-            for s in range(len(times)):
-                x = arb(found.q[s, i, 0]) + arb(found.q[s, i, 1]) + arb(high) + arb(low)
-                found.q[s, i] = pair(x, 0)
+            for q in (found.q,) if found.reference is None else (found.q, found.reference[0]):
+                for s in range(len(times)):
+                    q[s, i] = dd_add(q[s, i, 0], q[s, i, 1], high, low)
         return found
 
     def nodes(self, end: float) -> Floats:

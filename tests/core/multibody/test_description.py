@@ -428,3 +428,102 @@ def test_velocities_left_out_follow_with_least_energy() -> None:
     bodies["a"]["velocity"] = [3, 0]
     answer = solve_scene(scene(bodies, [{"kind": "rod", "a": "a", "b": "b"}], (0, 0)), [0.0])
     assert column(answer, "b.velocity").values[0] == pytest.approx((3, 0), abs=1e-300)
+
+
+DOWN = (0, 0, -9.81)
+
+
+def test_block_on_a_plane_in_space() -> None:
+    block = {"b": {"mass": 2, "at": [0, 0, 0]}}
+    track = {"kind": "track", "name": "t", "place": "b", "on": {"at": [0, 0, 0], "normal": [1, 0, 1]}}
+    answer = solve_scene(scene(block, [track], DOWN))
+    assert answer.model.name == "constant acceleration"
+    assert linear(answer, "b") == pytest.approx((G / 2, 0, -G / 2), rel=4 * EPS)
+    assert force(answer, "t.normal") == pytest.approx(2 * G * math.sqrt(0.5), rel=4 * EPS)
+
+
+def test_bead_on_a_line_in_space() -> None:
+    bead = {"b": {"mass": 2, "at": [0, 0, 0]}}
+    track = {"kind": "track", "name": "t", "place": "b", "on": {"at": [0, 0, 0], "direction": [0, 3, -4]}}
+    answer = solve_scene(scene(bead, [track], DOWN))
+    assert linear(answer, "b") == pytest.approx((0, -0.8 * -0.6 * G, -0.8 * 0.8 * G), rel=4 * EPS)
+
+
+def test_rigid_body_on_a_slider_in_space_does_not_turn() -> None:
+    body = {"b": {"mass": 2, "moments": [1, 2, 2.5], "at": [0, 0, 0], "places": {"p": [0.1, 0.2, 0.3]}}}
+    slider = {"kind": "slider", "name": "s", "a": "b.p", "b": ["0.1", "0.2", "0.3"], "direction": [1, 0, -1]}
+    answer = solve_scene(scene(body, [slider], DOWN))
+    assert answer.model.degrees_of_freedom == 1
+    assert linear(answer, "b") == pytest.approx((G / 2, 0, -G / 2), rel=4 * EPS)
+    assert answer.accelerations is not None
+    assert answer.accelerations["b"].angular == (0, 0, 0)
+
+
+def test_sphere_for_a_track_is_a_spherical_pendulum() -> None:
+    bob = {"mass": 1, "at": [0.6, 0, -0.8], "velocity": [0.4, 1.5, 0.3]}
+    track = {"kind": "track", "name": "t", "place": "bob", "on": {"at": [0, 0, 0], "radius": 1}}
+    rod = {"kind": "rod", "name": "t", "a": "bob", "b": [0, 0, 0]}
+    first, second = (solve_scene(scene({"bob": bob}, [held], DOWN), [1.1]) for held in (track, rod))
+    assert np.array_equal(column(first, "bob.position").values, column(second, "bob.position").values)
+    assert force(first, "t.normal") == -force(second, "t.force")
+
+
+def test_bodies_welded_in_space_swing_as_one() -> None:
+    bodies = {
+        "rod": {"mass": 1, "moments": [0.2, 0.3, 0.25], "at": [0, 0.5, 0], "places": {"top": [0, -0.5, 0]}},
+        "bob": {"mass": 2, "moments": [0.1, 0.1, 0.1], "at": [0, 1, 0]},
+    }
+    connections = [
+        {"kind": "pin", "a": "rod.top", "b": [0, 0, 0], "axis": [1, 0, 0]},
+        {"kind": "weld", "a": "bob", "b": "rod"},
+    ]
+    answer = solve_scene(scene(bodies, connections, DOWN))
+    # About the hinge: 0.2 + 0.25 + 0.1 + 2, and the moment of the weights 0.5 + 2.
+    assert answer.accelerations is not None
+    assert answer.accelerations["rod"].angular == pytest.approx((-2.5 * G / 2.55, 0, 0), rel=4 * EPS, abs=1e-15)
+    assert answer.accelerations["bob"].angular == pytest.approx((-2.5 * G / 2.55, 0, 0), rel=4 * EPS, abs=1e-15)
+
+
+def test_spring_in_space_pulls_along_itself() -> None:
+    bob = {"mass": 2, "at": [1, 2, 2]}
+    spring = {"kind": "spring", "name": "s", "a": "bob", "b": [0, 0, 0], "stiffness": 6, "rest_length": 2}
+    answer = solve_scene(scene({"bob": bob}, [spring], (0, 0, 0)))
+    assert force(answer, "s.force") == pytest.approx(6, rel=4 * EPS)
+    assert linear(answer, "bob") == pytest.approx((-1, -2, -2), rel=4 * EPS)
+
+
+def test_torque_in_space_turns_by_euler() -> None:
+    body = {"b": {"mass": 1, "moments": [1, 2, 2.5], "at": [0, 0, 0], "angular_velocity": [1, 2, 3]}}
+    answer = solve_scene(scene(body, [{"kind": "torque", "body": "b", "torque": [0.1, 0.2, 0.3]}], (0, 0, 0)))
+    assert answer.accelerations is not None
+    expected = ((0.1 - 0.5 * 6) / 1, (0.2 + 1.5 * 3) / 2, (0.3 - 1 * 2) / 2.5)
+    assert answer.accelerations["b"].angular == pytest.approx(expected, rel=1e-14)
+
+
+def test_frame_that_spins_in_space() -> None:
+    # About the hinge: I_x a'' = -m g l sin(a) + W^2 (I_y - I_z) sin(a) cos(a)
+    arm = {
+        "mass": 2,
+        "moments": [0.3, 0.28, 0.05],
+        "at": [0, "0.5*sin(1)", "-0.5*cos(1)"],
+        "axes": [[1, 0, 0], [0, "cos(1)", "sin(1)"], [0, "-sin(1)", "cos(1)"]],
+        "places": {"top": [0, 0, 0.5]},
+    }
+    connections = [
+        {"kind": "pin", "a": "arm.top", "b": [0, 0, 0], "axis": [1, 0, 0]},
+        {"kind": "spinning-frame", "rate": 4},
+    ]
+    answer = solve_scene(scene({"arm": arm}, connections, DOWN), [0.6])
+    ix, iy, iz = 0.3 + 0.5, 0.28 + 0.5, 0.05
+    expected = (-2 * G * 0.5 * math.sin(1) + 16 * (iy - iz) * math.sin(1) * math.cos(1)) / ix
+    assert answer.accelerations is not None
+    assert answer.accelerations["arm"].angular == pytest.approx((expected, 0, 0), rel=1e-14, abs=1e-14)
+    with mpmath.workdps(25):
+
+        def rate(a: Any, w: Any) -> list[Any]:
+            pull = mpmath.mpf("9.81") * mpmath.sin(a)
+            return [w, (-pull + 16 * mpmath.mpf("0.73") * mpmath.sin(a) * mpmath.cos(a)) / mpmath.mpf("0.8")]
+
+        a, _ = flow(rate, ["1", "0"])(mpmath.mpf(0.6))
+        place = column(answer, "arm.position")
+        assert abs(place.values[0, 1] - mpmath.sin(a) / 2) <= place.error < 1e-13

@@ -9,7 +9,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from core.balls import precision
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
+from core.multibody.polynomials import BITS
 from core.multibody.solve import solve_scene
 from core.scenes.unwinding_shafts import UnwindingShafts
 from tests.core.multibody.oracles import integrated
@@ -362,24 +364,34 @@ def shafts(masses: tuple[Any, Any], radii: tuple[Any, Any], slopes: tuple[Any, A
 
 @pytest.mark.parametrize(
     ("masses", "radii", "slopes"),
-    [((1, 2), ("0.1", "0.2"), ("0.5", "0.8")), ((3, "0.5"), ("0.05", "0.15"), ("1.2", "0.3"))],
+    [((1, 2), (0.1, 0.2), (0.5, 0.8)), ((3, 0.5), (0.05, 0.15), (1.2, 0.3))],
 )
 def test_unwinding_shafts_agree_with_the_named_scene(masses: Any, radii: Any, slopes: Any) -> None:
     answer = solve_scene(read(shafts(masses, radii, slopes)), [0.5])
     named = UnwindingShafts(
-        masses=tuple(map(float, masses)), radii=tuple(map(float, radii)), slopes=tuple(map(float, slopes)),
-        gravity=9.81, positions=(2.0, 3.0), velocities=(0.0, 0.0), spins=(0.0, 0.0), wound=(100.0, 100.0),
+        masses=tuple(map(float, masses)), radii=tuple(map(float, radii)), slopes=tuple(map(float, slopes)), gravity=9.81
     )  # fmt: skip
-    a, b = (9.81 * math.sin(float(s)) for s in slopes)
-    mu = [float(m) / 3 for m in masses]
-    tension = (a + b) * mu[0] * mu[1] / (mu[0] + mu[1])
+    with precision(BITS):
+        figures = named.figures()
+        tension = float(figures["tension"]())
+        down = [float(x) for x in figures["accelerations"]()]
+        spins = [float(x) for x in figures["angular_accelerations"]()]
+        loads = [float(x) for x in figures["normal_forces"]()]
     assert answer.model.name == "constant acceleration"
     assert force(answer, "s.tension") == pytest.approx(tension, rel=8 * EPS)
-    assert named.gravity == 9.81
-    down = [a - tension / float(masses[0]), b - tension / float(masses[1])]
-    for name, gain, slope, way in (("one", down[0], slopes[0], -1), ("two", down[1], slopes[1], 1)):
-        expected = (way * gain * math.cos(float(slope)), -gain * math.sin(float(slope)))
+    assert answer.accelerations is not None
+    for i, (name, way) in enumerate((("one", -1), ("two", 1))):
+        slope = float(slopes[i])
+        expected = (way * down[i] * math.cos(slope), -down[i] * math.sin(slope))
         assert linear(answer, name) == pytest.approx(expected, rel=8 * EPS)
+        assert abs(answer.accelerations[name].angular) == pytest.approx(spins[i], rel=8 * EPS)  # type: ignore[arg-type]
+        assert force(answer, f"face{i + 1}.normal") == pytest.approx(loads[i], rel=8 * EPS)
+
+
+def test_unwinding_shafts_at_reference_values() -> None:
+    answer = solve_scene(read(shafts((1, "0.8"), ("0.1", "0.1"), ("pi/6", "pi/4"))))
+    a, b = 9.81 * 0.5, 9.81 * math.sqrt(0.5)
+    assert force(answer, "s.tension") == pytest.approx((a + b) * 0.8 / (3 * 1.8), rel=8 * EPS)
 
 
 def test_times_may_be_negative_and_in_any_order() -> None:
