@@ -18,6 +18,9 @@ from core.multibody.table import Table
 MOST_STEPS = 20000
 """Steps that one part of a scene may take in one direction of time."""
 
+_SAME_PLACE = 1e-3
+"""Relative difference of the times at which doubles and pairs may meet one singular place."""
+
 _CHUNK = 64
 ORDER, TOLERANCE = 24, 2.0**-56
 JUDGE_ORDER, JUDGE_TOLERANCE = 26, 2.0**-72
@@ -57,6 +60,7 @@ class Numerical:
     why: str = "several degrees of freedom are coupled by quadratic terms"
     how: str = "measured against pairs"
     period: Ball | None = None
+    lost_to_doubles: bool = False
     _runs: dict[tuple[str, int], Run] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -78,7 +82,7 @@ class Numerical:
         """Return the states, and how far they are from a run in pairs."""
         n = len(self.table.names)
         scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
-        names = ("fine", "check") if finer else ("doubles", "judge")
+        names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "judge")
         both = []
         for kind in names:
             q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
@@ -94,7 +98,9 @@ class Numerical:
         q_error, v_error = (
             np.abs((a[..., 0] - b[..., 0]) + (a[..., 1] - b[..., 1])) for a, b in ((q, other), (v, rate))
         )
-        if finer:
+        if self.lost_to_doubles:
+            q_error, v_error = 16.0 * q_error, 16.0 * v_error
+        elif finer:
             # Both runs are in pairs: the doubles tell how rounding grows.
             coarse = self.states(times)
             q_error = 4.0 * q_error + 2.0**-50 * coarse.q_error
@@ -103,16 +109,38 @@ class Numerical:
 
     def nodes(self, end: float) -> Floats:
         """Return eight times a step."""
-        run = self.run("doubles", end * two_to(-self.units.time))
+        run = self.run("fine" if self.lost_to_doubles else "doubles", end * two_to(-self.units.time))
         starts = run.starts[:, 0] * two_to(self.units.time)
         starts = starts[np.abs(starts) <= abs(end) * (1 + 1e-15)]
         fine = np.interp(np.arange(8 * (len(starts) - 1) + 1) / 8.0, np.arange(len(starts)), starts)
         return fine if run.singular else np.append(fine[np.abs(fine) < abs(end)], end)
 
     def reach(self, end: float) -> float | None:
-        """Return the time of a singular place before `end`, None without one."""
-        run = self.run("doubles", end * two_to(-self.units.time))
-        return run.end * two_to(self.units.time) if run.singular else None
+        """Return the time of a singular place before `end`, None without one.
+
+        Where doubles lose the connections and pairs do not, the place is not singular, and pairs answer instead.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            Where pairs lose them too, but elsewhere.
+        """
+        scaled = end * two_to(-self.units.time)
+        run = self.run("doubles", scaled)
+        if not run.singular:
+            return None
+        judge = self.run("judge", scaled)
+        if not judge.singular:
+            self.lost_to_doubles = True
+            return None
+        if judge.end == 0.0 or abs(judge.end - run.end) > _SAME_PLACE * abs(judge.end):
+            raise AccuracyUnreachable(
+                None,
+                np.inf,
+                "masses or lengths are so unequal that the connections are lost to rounding, even in pairs of doubles",
+                path=("bodies",),
+            )
+        return judge.end * two_to(self.units.time)
 
 
 def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float) -> Run:

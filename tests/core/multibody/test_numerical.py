@@ -123,16 +123,16 @@ def test_masses_of_any_size(factor: str) -> None:
     )
 
 
-@pytest.mark.parametrize("masses", [("1", "1e-12"), ("1e-12", "1")])
-def test_mass_ratios_of_a_million_million_are_right_or_refused(masses: tuple[str, str]) -> None:
-    scene = read(points((1, 1), ("0.9", "1.3"), masses))
-    try:
-        coarse = solve_scene(scene, [1.0], accuracy=1e-6)
-        fine = solve_scene(scene, [1.0], accuracy=1e-13)
-    except (AccuracyUnreachable, BudgetExceeded):
-        return
-    a, b = column(coarse, "p1.position"), column(fine, "p1.position")
-    assert np.linalg.norm(a.values - b.values) <= a.error + b.error
+@pytest.mark.parametrize("masses", [("1", "1e-12"), ("1e-12", "1"), ("1", "1e12"), ("1e-6", "1")])
+def test_mass_ratios_of_a_million_million(masses: tuple[str, str]) -> None:
+    answer = solve_scene(read(points((1, 1), ("0.9", "1.3"), masses)), [0.05], accuracy=1e-6)
+    place = column(answer, "p1.position")
+    with precision(BITS):
+        (motion,) = numerical(points((1, 1), ("0.9", "1.3"), masses))
+        q, _ = judged(motion, 0.05)
+    # The coordinates that remain are those of the points.
+    right = dict(zip(motion.table.names, q[:, 0], strict=True))
+    assert np.hypot(place.values[0, 0] - right["p1.x"], place.values[0, 1] - right["p1.y"]) <= place.error < 1e-6
 
 
 def test_stiff_springs_are_followed() -> None:

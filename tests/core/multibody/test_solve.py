@@ -389,9 +389,10 @@ def test_unwinding_shafts_agree_with_the_named_scene(masses: Any, radii: Any, sl
 
 
 def test_unwinding_shafts_at_reference_values() -> None:
-    answer = solve_scene(read(shafts((1, "0.8"), ("0.1", "0.1"), ("pi/6", "pi/4"))))
-    a, b = 9.81 * 0.5, 9.81 * math.sqrt(0.5)
-    assert force(answer, "s.tension") == pytest.approx((a + b) * 0.8 / (3 * 1.8), rel=8 * EPS)
+    answer = solve_scene(read(shafts((2, 1), (0.1, 0.2), (0.5, 0.9))))
+    assert force(answer, "s.tension") == pytest.approx(2.752800337, abs=5e-10)
+    gains = [math.hypot(*linear(answer, name)) for name in ("one", "two")]
+    assert gains == pytest.approx([3.326764365, 4.931636646], abs=5e-10)
 
 
 def test_times_may_be_negative_and_in_any_order() -> None:
