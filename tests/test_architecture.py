@@ -144,7 +144,6 @@ def test_the_architecture_page_lists_every_package_and_its_imports() -> None:
 
 
 TESTED_IN = {
-    "core/compiled.py": "core/test_double_double.py",
     "core/bodies/uniform.py": "core/bodies/test_solids.py",
     "core/certified/scene_samples.py": "core/certified/test_scenes.py",
     "core/systems/budget.py": "core/systems/methods/test_fixed_step.py",

@@ -14,7 +14,7 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.error_statements import rest_of
 from core.systems.methods.method import AbstractMethod
-from core.systems.rounding import Digits, covering, notices_of, rounded
+from core.systems.rounding import Digits, covering, notices_of, rounded, unknown_share
 from core.systems.solve import checked_times, solve
 from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
@@ -84,7 +84,7 @@ class Ensemble:
         members, notices = [], []
         for k, member in enumerate(self.members):
             stated = member.accuracy
-            samples, added = rounded(member.state, digits, stated.error + (stated.inherited or 0.0))
+            samples, added = rounded(member.state, digits, unknown_share(stated), stated.largest_norm)
             members.append(replace(member, state=samples, accuracy=covering(stated, added)))
             notices += [(k, notice) for notice in notices_of(stated, added)]
         found = replace(self, members=tuple(members))

@@ -96,6 +96,16 @@ def to_significant(values: Floats, digits: int) -> Floats:
     return np.where(np.isfinite(out), out, flat).reshape(values.shape)
 
 
+def unknown_share(stated: Accuracy) -> float:
+    """Return what is not known of samples, relative to the largest norm: all, where nothing bounds the inherited error.
+
+    A motion without inputs that are propagated (``inherited`` None, no norm) is known but for its own error.
+    """
+    if stated.inherited is None:
+        return stated.error if stated.largest_norm is None else 1.0
+    return stated.error + stated.inherited
+
+
 def covering(stated: Accuracy, added: float) -> Accuracy:
     """Return the statement of error of samples to which rounding added an error."""
     final = None if stated.final_error is None else stated.final_error + added

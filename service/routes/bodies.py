@@ -172,6 +172,13 @@ def _extents(kind: Any) -> tuple[str, ...]:
     return tuple(entry.name for entry in fields(kind) if entry.name in ("positions", "faces", "parts"))
 
 
+TETRAHEDRON = {
+    "kind": "mesh",
+    "density": 1.0,
+    "vertices": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+}
+
 BODIES = (
     PostRoute(
         "/v1/bodies/mass-properties",
@@ -183,5 +190,6 @@ BODIES = (
         mass_properties,
         CalibratedCost("mass_properties", counts),
         is_small,
+        warming=({"body": TETRAHEDRON},),
     ),
 )

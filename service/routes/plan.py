@@ -20,6 +20,7 @@ from service.execution import cost_model as pricing
 from service.execution.cost_model import CalibratedCost, CostModel, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
+from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
 from service.routes.bodies import speed_to_follow
 from service.routing import Answer, PostRoute
@@ -51,13 +52,15 @@ class PlannedCost(View):
 
 
 class PlannedError(View):
-    """How wrong the answer would be, relative to the largest norm of the motion."""
+    """How wrong the answer would be, relative to the largest norm of the whole motion."""
 
     error: Ratio[float] | Ratio[DecimalString] = Field(
         description="A decimal string for certified questions, then relative to each number."
     )
     how: str = Field(description="closed form: a bound; record of the method: an order of magnitude.")
-    inherited: Ratio[float] | None = Field(description="What the uncertainty of the inputs would move.")
+    inherited: Ratio[float] | None = Field(
+        description="Error propagated from the uncertainty of the inputs; null where nothing is known of the phase."
+    )
 
 
 class PlannedFault(FaultView):
@@ -90,7 +93,9 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
     def plan(question: PlanRequest, budget: Budget) -> Answer:
         route = table.get(question.path)
         if route is None:
-            fault = Fault("/path", "must be the path of a question", "GET /openapi.json lists every path")
+            near = nearest_path(question.path, table)
+            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
+            fault = Fault("/path", "must be the path of a question", remedy)
             return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
         try:
             asked = reader(route.path).read(json.dumps(question.request).encode())

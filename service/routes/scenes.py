@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
 from functools import cache
 from typing import Any, Generic, Literal, cast, get_type_hints
@@ -63,6 +63,24 @@ class SceneCatalogue(Signed):
     """The catalogue of scenes."""
 
     scenes: list[SceneEntry]
+
+
+WARMING: Mapping[str, tuple[Mapping[str, Any], ...]] = {
+    # A rod that comes to rest upright, and never arrives.
+    "rod-in-hole": (
+        {
+            "hole_radius": 5.0,
+            "length": 6.0,
+            "mass": 1.0,
+            "gravity": 25.0,
+            "inertia_factor": 0.25,
+            "hole": "cylinder",
+            "angle": 0.0,
+            "angular_velocity": 4.0,
+            "times": [1.0],
+        },
+    ),
+}
 
 
 def members() -> tuple[type[ConstrainedSystem], ...]:
@@ -194,6 +212,7 @@ def questions() -> tuple[PostRoute, ...]:
             CalibratedCost(operation_of(scene), scene_counts),
             lambda question: question.times is None or few_times(question.times),
             scene_probe,
+            warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()
     )

@@ -38,7 +38,7 @@ class WorkPrecisionRequest(Request):
 
 
 class MethodMeasurement(View):
-    """One method with one setting; errors are relative to the largest norm of the motion."""
+    """One method with one setting; errors are relative to the largest norm of the whole motion."""
 
     method: Method = Field(description="With its setting.")
     error: Ratio[float] | None = Field(description="Largest of any sample; null if the method failed.")

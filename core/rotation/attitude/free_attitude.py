@@ -113,7 +113,7 @@ class FreeAttitude:
         computed = ATTITUDE_ERROR
         if motion.regime != STEADY:
             turned = math.pi * self._turns(horizon)
-            computed += 8.0 * SET_UP_ROUNDING * turned + 4.0 * motion.computed.at(SET_UP_ROUNDING, horizon)
+            computed += 8.0 * SET_UP_ROUNDING * turned + 4.0 * motion.condition_bounds.at(SET_UP_ROUNDING, horizon)
         if self.rotation.derivation is None:
             return computed
         derived = self.rotation.derivation.attitude(self.rotation.derived_rounding, horizon)
@@ -129,9 +129,9 @@ class FreeAttitude:
             return 0.0
         if self.rotation.motion.regime == REST:
             return min(WHOLE_TURN, 2.0 * uncertainty)
-        if self.rotation.sensitivity is None:
+        if self.rotation.input_uncertainty is None:
             return WHOLE_TURN
-        return self.rotation.sensitivity.attitude(uncertainty, horizon)
+        return self.rotation.input_uncertainty.attitude(uncertainty, horizon)
 
     def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
         """Return the time after which a relative `uncertainty` of every input leaves nothing known of the attitude (s).
@@ -150,7 +150,7 @@ class FreeAttitude:
         if motion.regime == REST:
             return 0.0
         if motion.regime == STEADY:
-            return self.rotation.largest_rate / math.pi * horizon
+            return self.rotation.largest_norm / math.pi * horizon
         return abs(self.constants.turn) * motion.time_scale * horizon
 
     def _countable(self, horizon: float) -> None:

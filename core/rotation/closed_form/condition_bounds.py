@@ -38,7 +38,7 @@ def _e_minus_m1_k(m: float, m1: float, K: float) -> float:
 
 
 @kernel()
-def computed_sensitivity(
+def rounding_bounds(
     am: float, bm: float, cm: float, m: float, m1: float, p: float, K: float, sn: float, cn: float, dn: float,
     u0: float, cancellation: float, largest: float,
 ) -> ConditionBounds:  # fmt: skip

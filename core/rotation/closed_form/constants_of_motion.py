@@ -51,7 +51,7 @@ from core.rotation.closed_form.circulation import (
 from core.rotation.closed_form.condition_bounds import (
     NONE,
     ConditionBounds,
-    computed_sensitivity,
+    rounding_bounds,
 )
 
 
@@ -90,7 +90,7 @@ class Motion(NamedTuple):
     start: float
     start_tail: float
     """Quarter periods at t = 0: start_quarter + start; on the separatrix, u at t = 0."""
-    computed: ConditionBounds
+    condition_bounds: ConditionBounds
     """With u = 1: for the rounding of 2^-104 with which these constants were formed."""
 
     def mirrored(self, c: float, b: float, d: float) -> Motion:
@@ -195,7 +195,7 @@ def constants_of_motion(
         amplitude_c, amplitude_b = side * amplitude_c, side * amplitude_b
         uh, ul = rf_of_roots(gh, gl, gh, gl, 1.0, 0.0)
         uh, ul = dd_mul(uh, ul, sh, sl)
-        computed = computed_sensitivity(size_c, size_b, size_d, 1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, uh, 1.0, top)
+        computed = rounding_bounds(size_c, size_b, size_d, 1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, uh, 1.0, top)
         return Motion(
             SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0],
             _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -220,7 +220,7 @@ def constants_of_motion(
         quarter = side
         sign = -side if ch >= 0.0 else side
     f = sc_div(p, scaled(lat.K, lat.K_tail, 0))
-    computed = computed_sensitivity(
+    computed = rounding_bounds(
         size_c, size_b, size_d, m, m1, p_pair[0], lat.K, sh, ch, dh, vh, 1.0 if decided else cancellation, top
     )
     return Motion(

@@ -88,7 +88,8 @@ class MeasuredPeriod:
     crossing : Crossing or None
         The method's own period.
     error : float
-        Largest error of the method's samples up to the return (or the end), relative to the largest norm of the motion.
+        Largest error of the method's samples up to the return (or the end), relative to the largest norm of the whole
+        motion.
     drifts : dict
         Largest relative change of energy and momentum over the same samples.
     explanation : str
@@ -145,7 +146,11 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         distances = _distances(run.states, system.initial_state)
         back = first_return(distances, measure.tolerance)
         seen = slice(0, back + 1 if back is not None else None)
-        error = measured(run.states[seen], exact[seen], times[seen]).beyond(rotation.error(times[seen])).largest
+        own = rotation.error(times[seen])
+        error = measured(run.states[seen], exact[seen], times[seen], rotation.largest_norm).beyond(own).largest
+    except AccuracyUnreachable as fault:
+        fault.path = ("measure", "duration")
+        raise
     except InvalidParameter as fault:
         raise fault.inside("measure", "method") from fault
     except MechanicsError as fault:

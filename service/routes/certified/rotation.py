@@ -96,12 +96,14 @@ def answer_trajectory(question: CertifiedTrajectoryRequest, budget: Budget) -> A
         "method": "closed-form",
         "period": motion.period(digits),
         "flip_interval": motion.flip_interval(digits),
+        "middle_axis_tilt": motion.middle_axis_tilt(digits),
+        "tumbles": motion.tumbles,
         "energy": motion.energy(digits),
         "angular_momentum": motion.angular_momentum(digits),
         "accuracy": accuracy(digits),
         "work": Work(samples),
         "ended": "horizon",
-        "warnings": notices(body),
+        "warnings": [*notices(body), *motion.warnings],
     }
     if "time" in wanted:
         fields["time"] = times_written(times, digits)
@@ -119,7 +121,7 @@ def answer_precession(question: CertifiedPrecessionRequest, budget: Budget) -> A
     body = body_of(question.body)
     motion = CertifiedRotation.of(body.of_motion, question.angular_velocity)
     found = fields_of(certified_precession(motion, question.digits))
-    return found | {"accuracy": accuracy(question.digits), "warnings": notices(body)}
+    return found | {"accuracy": accuracy(question.digits), "warnings": [*notices(body), *motion.warnings]}
 
 
 def answer_stability(question: CertifiedStabilityRequest, budget: Budget) -> Answer:

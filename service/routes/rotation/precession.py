@@ -17,7 +17,7 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
 from service.routing import Answer, PostRoute
 from service.schemas import (
     Envelope,
@@ -54,7 +54,9 @@ class PrecessionFigures(Envelope, Generic[N]):
     )
     space_rate: RadiansPerSecond[N] | None = Field(description="L/I.")
     period: Seconds[N] | None = Field(description="Of the angular velocity in the body.")
-    flip_interval: Seconds[N] | None = Field(description="Between sign changes along the middle axis.")
+    flip_interval: Seconds[N] | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[Radians[N], Radians[N]] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     axis_to_angular_momentum: Radians[N] | None = Field(description="Angle from the axis to the angular momentum.")
     axis_to_angular_velocity: Radians[N] | None = Field(description="Half-angle of the body cone.")
     angular_momentum_to_angular_velocity: Radians[N] | None = Field(description="Half-angle of the space cone.")
@@ -74,7 +76,7 @@ RATE: Any = Field(default=1.0, description="About each principal axis in turn.")
 DISTURBANCE: Any = Field(
     default=None,
     description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
-    "the interval of its flips is then answered.",
+    "the interval between sign changes of the component along that axis is then answered.",
 )
 
 

@@ -25,6 +25,7 @@ from service.schemas import (
     N,
     QuaternionRow,
     Radians,
+    RadiansPerSecond,
     Ratio,
     Request,
     Rounding,
@@ -45,7 +46,19 @@ ATTITUDE: Any = Field(
 )
 TIMES: Any = Field(description="Measured from the given state, of either sign, in any order.")
 ACCURACY: Any = Field(
-    default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the motion."
+    default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the whole motion."
+)
+FLIP_INTERVAL: Any = Field(
+    description="Time between sign changes of the component along the middle axis. It exists about a stable axis too, "
+    "where the body does not turn over: see tumbles."
+)
+MIDDLE_AXIS_TILT: Any = Field(
+    description="Least and largest angle between the middle axis and the angular momentum in the whole motion; null at "
+    "rest and where two moments are equal. On the separatrix the limits 0 and pi."
+)
+TUMBLES: Any = Field(
+    description="Whether the middle axis turns over, from within 45 degrees of the angular momentum to within 45 "
+    "degrees of its opposite: every flip_interval, on the separatrix once."
 )
 METHOD: Any = Field(
     default=None, description="Leave it out to have the most accurate one chosen; it overrides the accuracy."
@@ -76,18 +89,29 @@ class TrajectoryRequest(Request):
 
 
 class Accuracy(View):
-    """How right the answer is; errors are relative to the largest norm of the motion."""
+    """How right the answer is."""
 
     requested: Ratio[float] = Field(description="Largest tolerated error.")
-    error: Ratio[float] = Field(description="Largest error of any sample, inputs taken as exact; see how.")
+    error: Ratio[float] = Field(
+        description="Largest norm of any sample's error, inputs taken as exact, divided by largest_norm. Of a scene, "
+        "the largest such quotient of any column. What it rests on is said in how."
+    )
     final_error: Ratio[float] | None = Field(description="The same at the time farthest from the start.")
     how: How = Field(
-        description="Of a closed form a bound, measured against it a difference with that bound added: neither is "
-        "below the true error. A finer run estimates it."
+        description="closed form: a bound. measured against closed form: the difference from it, with its bound added. "
+        "Neither is below the true error. estimate (finer run): four times the difference from a finer run of the same "
+        "method, which is no bound."
     )
     inherited: Ratio[float] | None = Field(
-        description="Error propagated from input uncertainty: what half a unit in the last place of every input, or "
-        "input_uncertainty, would move."
+        description="Error propagated from input uncertainty, half a unit in the last place of every input or "
+        "input_uncertainty: a bound of the change of any sample, divided by largest_norm. null where nothing is known "
+        "of the phase, and for scenes."
+    )
+    largest_norm: RadiansPerSecond[float] | None = Field(
+        default=None,
+        description="Largest magnitude of the angular velocity in the whole motion, also between and beyond the times "
+        "of the question; errors of closed forms and of methods are relative to it. null beyond the range of doubles, "
+        "and for scenes, where every column is relative to its own largest magnitude.",
     )
     horizon: Seconds[float] | None = Field(
         default=None, description="Time after which input_uncertainty leaves nothing known of the phase."
@@ -112,7 +136,9 @@ class RotationSamples(Envelope, Generic[N]):
     model: Model
     method: str = Field(description="Kind of the method that computed the samples.")
     period: Seconds[N] | None = Field(description="Of the angular velocity in the body; null where there is none.")
-    flip_interval: Seconds[N] | None = Field(description="Between sign changes along the middle axis.")
+    flip_interval: Seconds[N] | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[Radians[N], Radians[N]] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     energy: Joules[N] | None = Field(description="Kinetic energy of the rotation.")
     angular_momentum: AngularMomentumMagnitude[N] | None = Field(description="Magnitude of the angular momentum.")
     work: Work
@@ -162,6 +188,8 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
         "method": found.motion.method,
         "period": found.period,
         "flip_interval": found.flip_interval,
+        "middle_axis_tilt": found.middle_axis_tilt,
+        "tumbles": found.tumbles,
         "energy": found.energy,
         "angular_momentum": found.angular_momentum,
         "accuracy": accuracy,
@@ -205,6 +233,13 @@ def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
     return question.model_copy(update=changes)
 
 
+T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
+
+RESTING, STEADY = (
+    {"body": T_HANDLE, "angular_velocity": rates, "attitude": [1.0, 0.0, 0.0, 0.0], "times": [1.0]}
+    for rates in ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+)
+
 ROTATION = (
     PostRoute(
         "/v1/rotation/trajectory",
@@ -217,5 +252,6 @@ ROTATION = (
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
         trajectory_probe,
+        warming=(RESTING, STEADY),
     ),
 )

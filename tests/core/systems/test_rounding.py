@@ -132,12 +132,13 @@ async def test_other_digits_are_refused(digits: Any) -> None:
 
 
 @pytest.mark.anyio
-async def test_the_horizon_is_where_the_inherited_error_is_the_whole_motion() -> None:
+async def test_the_horizon_is_where_the_inherited_error_is_no_longer_known() -> None:
     question = FREE | {"input_uncertainty": 1e-3}
     horizon = (await asked("/v1/rotation/trajectory", question)).json()["accuracy"]["horizon"]
     for time, lost in ((0.99 * horizon, False), (1.01 * horizon, True)):
         answer = (await asked("/v1/rotation/trajectory", question | {"times": [time]})).json()
-        assert (answer["accuracy"]["inherited"] > 1.0) is lost
+        assert (answer["accuracy"]["inherited"] is None) is lost
+        assert ("phase-lost" in [warning["code"] for warning in answer["warnings"]]) is lost
     exact = FREE | {"input_uncertainty": 0.0}
     answer = (await asked("/v1/rotation/trajectory", exact)).json()["accuracy"]
     assert answer["horizon"] is None

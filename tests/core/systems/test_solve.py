@@ -9,7 +9,7 @@ import pytest
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError, NotApplicable
 from core.systems.budget import Budget
-from core.systems.error_statements import measured
+from core.systems.error_statements import known_norm, measured
 from core.systems.methods import (
     ClosedFormEvaluation,
     DormandPrince853,
@@ -76,8 +76,8 @@ def test_without_a_closed_form_a_named_method_is_compared_with_a_finer_run() -> 
     reference = elliptic_functions().exact.sample(TIMES)
     for method in (ExplicitEuler(1e-3), SymmetricSplitting(1e-2), DormandPrince853(1e-8), Lsoda(1e-8)):
         trajectory = solve(system, TIMES, method=method)
-        true = measured(trajectory.state, reference, TIMES)
-        assert trajectory.accuracy.how == "finer run"
+        true = measured(trajectory.state, reference, TIMES, known_norm(reference, system.initial_state))
+        assert trajectory.accuracy.how == "estimate (finer run)"
         assert true.largest <= trajectory.accuracy.error <= 10 * true.largest
         assert true.final <= trajectory.accuracy.final_error
         assert trajectory.accuracy.inherited is None
@@ -94,7 +94,7 @@ def test_a_run_that_has_not_converged_is_judged_by_one_that_has(method, step: fl
         trajectory = solve(system, times, method=method(step))
     except InvalidParameter:
         return  # The iteration does not converge at the perihelion.
-    true = measured(trajectory.state, problem.exact.sample(times), times)
+    true = measured(trajectory.state, problem.exact.sample(times), times, problem.exact.largest_norm)
     assert true.largest <= trajectory.accuracy.error
     assert true.final <= trajectory.accuracy.final_error
     assert {notice.code for notice in trajectory.warnings} <= {"accuracy-not-reached"}
@@ -111,7 +111,7 @@ def test_where_nothing_converges_the_statement_says_that_it_is_uncertain() -> No
 def test_without_a_closed_form_the_accuracy_is_reached(problem, accuracy: float) -> None:
     times = np.linspace(-2, 2, 41) if len(problem.initial_state) == 1 else TIMES
     trajectory = solve(replace(problem, exact=None), times, accuracy=accuracy)
-    true = measured(trajectory.state, problem.exact.sample(times), times).largest
+    true = measured(trajectory.state, problem.exact.sample(times), times, problem.exact.largest_norm).largest
     assert true <= trajectory.accuracy.error + problem.exact.bound
     assert trajectory.accuracy.error <= accuracy
     # Effort follows the accuracy: more than a thousandfold better than asked for would be waste.
@@ -143,7 +143,7 @@ def test_a_closed_form_out_of_reach_leaves_the_finer_run() -> None:
     system = replace(oscillator(), exact=OutOfReach(oscillator().exact.solution))
     with pytest.raises(AccuracyUnreachable):
         solve(system, TIMES)
-    assert solve(system, TIMES, method=DormandPrince853(1e-10)).accuracy.how == "finer run"
+    assert solve(system, TIMES, method=DormandPrince853(1e-10)).accuracy.how == "estimate (finer run)"
 
 
 def test_samples_beyond_the_double_range_are_refused_not_handed_on() -> None:

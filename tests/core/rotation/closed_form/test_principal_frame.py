@@ -142,4 +142,4 @@ def test_the_stated_error_covers_a_body_that_is_symmetric_in_doubles_only(bits) 
         for got, (a, b, c) in zip(rotating.sample(times), wanted, strict=True):
             body = ((a + b) / mpmath.sqrt(2), (b - a) / mpmath.sqrt(2), c)
             off = mpmath.norm([float(x) - y for x, y in zip(got, body, strict=True)])
-            assert off <= rotating.error(times) * rotating.largest_rate
+            assert off <= rotating.error(times) * rotating.largest_norm
