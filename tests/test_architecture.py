@@ -166,8 +166,9 @@ TESTED_IN = {
 TESTED_IN |= {
     f"core/multibody/{name}.py": f"core/multibody/test_{through}.py"
     for through, names in {
-        "description": "coordinates laws measures rolling strings",
-        "numerical": "packed periods series series_pairs vertical_symmetry",
+        "description": "coordinates inertia laws measures rolling strings",
+        "language": "reading",
+        "numerical": "packed periods returns series series_pairs vertical_symmetry",
         "solve": "answer columns dynamics events motion uniform whole",
     }.items()
     for name in names.split()

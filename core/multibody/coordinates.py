@@ -11,10 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb
 
-from core.bodies import Body
 from core.errors import InvalidParameter, Path
+from core.multibody.inertia import inertia_of, symmetry_axes, three_vectors
 from core.multibody.language import GROUND, Place, Scene, SceneBody
 from core.multibody.numerals import Numerals
 from core.multibody.polynomials import (
@@ -29,7 +29,6 @@ from core.multibody.polynomials import (
     is_zero,
 )
 from core.multibody.table import Row, Table
-from core.quantities import members_of
 
 Rate = dict[int, Poly]
 """A linear form in the rates, with affine coefficients."""
@@ -168,7 +167,7 @@ class Coordinates:
 
     def _add(self, name: str, body: SceneBody, seen: set[str]) -> None:
         path, numerals, table = ("bodies", name), self.numerals, self.table
-        mass, tensor = self._inertia(name, body)
+        mass, tensor = inertia_of(name, body, numerals, self.dimension)
         where = numerals.vector(body.at, (*path, "at"), self.dimension)
         position = [table.coordinate(f"{name}.{axis}", "m", value) for axis, value in zip("xyz", where, strict=False)]
         frame = Frame(name, position)
@@ -191,56 +190,6 @@ class Coordinates:
             self._orient_in_plane(frame, body, tensor, seen)
         else:
             self._orient_in_space(frame, body, tensor, seen)
-
-    def _inertia(self, name: str, body: SceneBody) -> tuple[Ball, Any]:
-        """Return mass, and in the plane the inertia, in space the tensor as three rows; None for a particle."""
-        path, numerals = ("bodies", name), self.numerals
-        wrong = ("moments", "tensor", "axes", "body") if self.dimension == 2 else ("inertia", "angle")
-        for entry in wrong:
-            if getattr(body, entry) is not None:
-                where = "space" if self.dimension == 2 else "the plane"
-                raise InvalidParameter((*path, entry), f"be left out: it belongs to bodies in {where}")
-        if body.body is not None:
-            for entry in ("mass", "moments", "tensor"):
-                if getattr(body, entry) is not None:
-                    raise InvalidParameter((*path, entry), "be left out where the body is given")
-            return self._catalogued(body.body, (*path, "body"))
-        if body.mass is None:
-            raise InvalidParameter((*path, "mass"), "be given")
-        mass = numerals.number(body.mass, (*path, "mass"))
-        if mass < 0:
-            raise InvalidParameter((*path, "mass"), "be at least 0 kg")
-        if body.inertia is not None:
-            inertia = numerals.number(body.inertia, (*path, "inertia"))
-            if inertia < 0:
-                raise InvalidParameter((*path, "inertia"), "be at least 0 kg m^2")
-            return mass, inertia
-        if body.moments is not None and body.tensor is not None:
-            raise InvalidParameter((*path, "tensor"), "be left out where moments are given")
-        if body.moments is not None:
-            moments = numerals.vector(body.moments, (*path, "moments"), 3)
-            tensor = [[moments[i] if i == j else ZERO for j in range(3)] for i in range(3)]
-        elif body.tensor is not None:
-            rows = _three(body.tensor, (*path, "tensor"))
-            tensor = [list(numerals.vector(row, (*path, "tensor", i), 3)) for i, row in enumerate(rows)]
-            for i in range(3):
-                for j in range(i):
-                    if not is_zero(tensor[i][j] - tensor[j][i]):
-                        raise InvalidParameter((*path, "tensor"), "be symmetric")
-        else:
-            return mass, None
-        _check_matter(tensor, (*path, "moments" if body.moments is not None else "tensor"))
-        return mass, tensor
-
-    def _catalogued(self, body: Any, path: Path) -> tuple[Ball, Any]:
-        if not isinstance(body, members_of(Body)):
-            raise InvalidParameter(path, "be a body of the catalogue")
-        given: Any = body
-        properties = given.mass_properties()
-        exact = properties.exact_inertia
-        tensor = [[arb(fmpq(x.numerator, x.denominator)) for x in row] for row in exact]
-        mass = properties.exact_mass
-        return arb(fmpq(mass.numerator, mass.denominator)), tensor
 
     def _orient_in_plane(self, frame: Frame, body: SceneBody, inertia: Any, seen: set[str]) -> None:
         path, numerals, table, name = ("bodies", frame.name), self.numerals, self.table, frame.name
@@ -284,14 +233,16 @@ class Coordinates:
                     raise InvalidParameter((*path, entry), "be left out of a particle", remedy="give its moments")
             return
         given = [[int(i == j) for j in range(3)] for i in range(3)] if body.axes is None else body.axes
-        axes = [numerals.vector(row, (*path, "axes", i), 3) for i, row in enumerate(_three(given, (*path, "axes")))]
+        axes = [
+            numerals.vector(row, (*path, "axes", i), 3) for i, row in enumerate(three_vectors(given, (*path, "axes")))
+        ]
         _check_axes(axes, (*path, "axes"))
         omega = None
         if body.angular_velocity is not None:
             vector: Any = body.angular_velocity
             omega = numerals.vector(vector, (*path, "angular_velocity"), 3)
         spots = [frame.places[spot] for spot in seen if spot in frame.places]
-        for k in _symmetry_axes(tensor) if "orientation" not in seen else ():
+        for k in symmetry_axes(tensor) if "orientation" not in seen else ():
             if all(is_zero(xi[i]) for xi in spots for i in range(3) if i != k):
                 self._top(frame, k, axes, tensor, omega)
                 return
@@ -357,24 +308,8 @@ def dimension_of(scene: Scene) -> int:
     return len(leading)
 
 
-def _three(rows: Any, path: Path) -> Sequence[Any]:
-    if isinstance(rows, (str, Mapping)) or not isinstance(rows, Sequence) or len(rows) != 3:
-        raise InvalidParameter(path, "be three vectors")
-    return rows
-
-
 def _cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
     return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]
-
-
-def _check_matter(tensor: Any, path: Path) -> None:
-    """Raise unless the integrals of the squares of body coordinates can be those of matter (diagonal entries only)."""
-    for i in range(3):
-        a, b, c = (tensor[(i + j) % 3][(i + j) % 3] for j in range(3))
-        if a < 0:
-            raise InvalidParameter(path, "be at least 0 kg m^2")
-        if a > b + c:
-            raise InvalidParameter(path, "be moments of matter: none exceeds the sum of the other two")
 
 
 def _check_axes(axes: Any, path: Path) -> None:
@@ -387,10 +322,3 @@ def _check_axes(axes: Any, path: Path) -> None:
     handed = sum((x * y for x, y in zip(axes[0], _cross(axes[1], axes[2]), strict=True)), ZERO)
     if handed < 0:
         raise InvalidParameter(path, "be right-handed")
-
-
-def _symmetry_axes(tensor: Any) -> list[int]:
-    """Return the body axes about which the tensor is symmetric."""
-    if any(not is_zero(tensor[i][j]) for i in range(3) for j in range(i)):
-        return []
-    return [k for k in range(3) if is_zero(tensor[(k + 1) % 3][(k + 1) % 3] - tensor[(k + 2) % 3][(k + 2) % 3])]

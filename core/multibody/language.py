@@ -8,7 +8,7 @@ by `core.multibody.numerals`; what they mean is checked where the table is built
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
 from types import MappingProxyType
@@ -348,54 +348,3 @@ def check_name(name: object, path: Path) -> None:
     """Raise `InvalidParameter` unless something may be called so."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or name == GROUND:
         raise InvalidParameter(path, 'be called by letters, digits, "-" and "_", starting with a letter, not "ground"')
-
-
-def scene_from(description: Any) -> Scene:
-    """Return the scene that an object of JSON describes.
-
-    Raises
-    ------
-    InvalidParameter
-        For fields that are missing or unknown, kinds that do not exist, and names that clash.
-    """
-    given = _object(description, (), Scene)
-    bodies = given.get("bodies")
-    if isinstance(bodies, Mapping):
-        if len(bodies) > MOST_BODIES:
-            raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(bodies)}")
-        given["bodies"] = {
-            name: SceneBody(**_object(body, ("bodies", str(name)[:80]), SceneBody)) for name, body in bodies.items()
-        }
-    connections = given.get("connections", ())
-    if isinstance(connections, Sequence) and not isinstance(connections, str):
-        if len(connections) > MOST_CONNECTIONS:
-            raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(connections)}")
-        given["connections"] = tuple(_connection(entry, ("connections", i)) for i, entry in enumerate(connections))
-    return Scene(**given)
-
-
-def _connection(entry: Any, path: Path) -> Any:
-    if not isinstance(entry, Mapping):
-        raise InvalidParameter(path, "be an object")
-    kind = entry.get("kind")
-    if kind in NOT_YET:
-        raise InvalidParameter(
-            (*path, "kind"), "be a connection that holds, pulls or drives; contacts and blows are not answered yet"
-        )
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(KINDS)}")
-    rest = {key: value for key, value in entry.items() if key != "kind"}
-    return KINDS[kind](**_object(rest, path, KINDS[kind]))
-
-
-def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
-    if not isinstance(value, Mapping):
-        raise InvalidParameter(path or ("scene",), "be an object")
-    known = {entry.name: entry for entry in fields(cls)}
-    for key in value:
-        if key not in known:
-            raise InvalidParameter((*path, str(key)[:80]), f"be one of {', '.join(known)}")
-    for name, entry in known.items():
-        if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
-            raise InvalidParameter((*path, name), "be given")
-    return dict(value)

@@ -17,8 +17,9 @@ from core.double_double import dd_add, dd_sub
 from core.multibody.motion import States
 from core.multibody.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.packed import Floats, packed, pair, state, two_to, units_of
-from core.multibody.periods import UNCERTAIN, Passage, Periodic, Section, distance, followed
+from core.multibody.periods import UNCERTAIN, Periodic
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, entry, is_zero
+from core.multibody.returns import Passage, Section, distance, followed
 from core.multibody.table import Table
 
 

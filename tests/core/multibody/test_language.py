@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from core.errors import InvalidParameter
-from core.multibody.language import KINDS, Rod, Scene, SceneBody, scene_from
+from core.multibody.language import KINDS, Rod, Scene, SceneBody
+from core.multibody.reading import scene_from
 from core.multibody.solve import solve_scene
 
 BODY = {"mass": 1, "at": [0, -1]}
