@@ -104,7 +104,7 @@ def ours(table: str, cached: int) -> Any:
     from service.app import Service
     from service.settings import Settings
 
-    return Service(Settings(cached_answers=cached, compute_workers=1, inline_seconds=1.0), table)
+    return Service(Settings(cached_answers=cached, compute_workers=1), table)
 
 
 class AskedBody(BaseModel):
