@@ -159,5 +159,5 @@ async def test_the_attitude_has_a_horizon_of_its_own() -> None:
 
 def test_the_largest_doubles_stay_as_they_are() -> None:
     largest = 1.7976931348623157e308
-    found, _ = rounded(np.array([largest, 1.5e307]), "meaningful", 0.5)
+    found, _ = rounded(np.array([largest, 1.6e307]), "meaningful", 0.5)
     assert found.tolist() == [largest, 2e307]

@@ -123,7 +123,7 @@ def test_oblique_axes_change_the_description_not_the_motion():
 
 def test_the_slowest_rotation_has_a_horizon() -> None:
     """A rate below which there is no double, of which no turn is ever counted."""
-    inertia = PrincipalInertia.from_moments((1.0, 2.0, 2.5))
+    inertia = PrincipalInertia.of(np.diag([1.0, 2.0, 2.5]))
     rotation = FreeRotation(inertia, np.array([0.0, 5e-324, 0.0]))
     horizon = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0])).horizon_of(1e-6)
     assert horizon is None or horizon > 0.0
