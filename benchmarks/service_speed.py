@@ -113,75 +113,7 @@ def _bare() -> Any:
     return app
 
 
-<<<<<<< HEAD
 SCRIPT = """local question = '{"body": {"kind": "principal-moments", "moments": [%%.15f, %%.15f, %%.15f]}, '
-=======
-def ours(table: str, cached: int) -> Any:
-    """Return the service with every limit, metric and header on."""
-    from service.app import Service
-    from service.settings import Settings
-
-    return Service(Settings(cached_answers=cached, compute_workers=1), table)
-
-
-class AskedBody(BaseModel):
-    """A body, as FastAPI's tutorial would declare it."""
-
-    kind: Literal["principal-moments"]
-    moments: tuple[Moment, Moment, Moment]
-
-
-class Asked(BaseModel):
-    """The question, likewise."""
-
-    body: AskedBody
-    angular_velocity: tuple[float, float, float]
-
-
-def asked(question: Asked) -> dict[str, Any]:
-    """Return the fields of the question that core is asked."""
-    body = PrincipalMoments(moments=question.body.moments)
-    return {"body": body, "angular_velocity": question.angular_velocity, "measure": None}
-
-
-def idiomatic(table: str) -> Any:
-    """Return the question as FastAPI's tutorial would serve it: a model in, a model out, nothing else."""
-    from fastapi import FastAPI
-
-    from core.systems.budget import Budget
-
-    handle = QUESTION.handle if table == REAL else transport()[0].handle
-    signature = {"source": "polhode", "version": "0"}
-    app = FastAPI()
-
-    async def endpoint(question: Asked) -> Any:
-        answer = dict(handle(QUESTION.question.model_construct(**asked(question)), Budget()))
-        return {"signature": signature, **answer, "warnings": []}
-
-    app.post(QUESTION.path, response_model=QUESTION.answer)(endpoint)
-    return app
-
-
-SERVERS: dict[str, tuple[Callable[[], Any], str]] = {
-    "bare": (bare, "httptools"),
-    "transport": (lambda: ours(TRANSPORT, 0), OURS),
-    "transport, cache": (lambda: ours(TRANSPORT, 1024), OURS),
-    "transport, plain": (lambda: ours(TRANSPORT, 0), "httptools"),
-    "transport, cache, plain": (lambda: ours(TRANSPORT, 1024), "httptools"),
-    "transport, FastAPI": (lambda: idiomatic(TRANSPORT), "httptools"),
-    "real": (lambda: ours(REAL, 0), OURS),
-    "real, new": (lambda: ours(REAL, 1024), OURS),
-    "real, cache": (lambda: ours(REAL, 1024), OURS),
-    "real, FastAPI": (lambda: idiomatic(REAL), "httptools"),
-}
-"""Applications, and the protocol they are served by."""
-
-ALIKE = """wrk.method = "POST"
-wrk.body = '%s'
-wrk.headers["Content-Type"] = "application/json"
-"""
-NEW = """local question = '{"body": {"kind": "principal-moments", "moments": [%%.15f, %%.15f, %%.15f]}, '
->>>>>>> s3
   .. '"angular_velocity": [%%.15f, %%.15f, %%.15f]}'
 local head = "POST %s HTTP/1.1\\r\\nHost: 127.0.0.1\\r\\nContent-Type: application/json\\r\\n%sContent-Length: "
 local r = %s
