@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
 from core.systems.budget import Budget
-from core.systems.error_statements import drifts, estimated, known_norm, measured
+from core.systems.error_statements import bound_of, drifts, estimated, known_norm, measured
 from core.systems.methods import (
     ClosedFormEvaluation,
     DiscreteMoserVeselov,
@@ -238,7 +238,7 @@ class _Reference(NamedTuple):
 def _reference(system: System, times: Floats, budget: Budget) -> _Reference:
     exact = system.closed_form()
     if exact is not None:
-        return _Reference("closed form", exact.sample(times), exact.error(times), exact.largest_norm)
+        return _Reference("closed form", exact.sample(times), bound_of(exact, times), exact.largest_norm)
     method = DormandPrince853(10 * SMALLEST_TOLERANCE)
     run = method.integrate(system, times, budget)
     error = estimated(method, system, times, run, budget, run.work.evaluations).errors.largest
