@@ -23,7 +23,7 @@ import numpy as np
 import orjson
 from scipy.optimize import nnls
 
-from benchmarks.machine import RESULTS, described
+from benchmarks.machine import RESULTS, T_HANDLE, described
 from core.bodies import measured as measured_bodies
 from core.bodies.measured import PrincipalMoments
 from core.errors import MechanicsError
@@ -45,7 +45,6 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.rotation.trajectory import T_HANDLE
 from service.routing import PostRoute
 
 ROOT = Path(__file__).parents[1]
@@ -157,7 +156,9 @@ def variants() -> dict[str, list[dict[str, Any]]]:
         "work_precision": compared,
     }
     for route in questions():
-        own = [dict(e.question) for e in route.examples.values() if "digits" not in e.question]
+        if own_price(route) is None:
+            continue
+        own = [dict(e.question) for e in route.examples.values()]
         if route.operation_id.startswith("scene_"):
             grown = [
                 entry | {"times": span(n, entry["times"]["stop"])} for entry in own if "times" in entry for n in SIZES
@@ -168,9 +169,8 @@ def variants() -> dict[str, list[dict[str, Any]]]:
 
 
 def own_price(route: PostRoute) -> pricing.CalibratedCost | None:
-    """Return the price by counts of a route, also of one that has another price for numbers of many digits."""
-    price = getattr(route.price, "own", route.price)
-    return price if isinstance(price, pricing.CalibratedCost) else None
+    """Return the price by counts of a route; certified routes have another."""
+    return route.price if isinstance(route.price, pricing.CalibratedCost) else None
 
 
 def measured_cost(answering: RequestHandler, route: PostRoute, question: dict[str, Any]) -> tuple[float, int, float]:

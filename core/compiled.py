@@ -56,6 +56,13 @@ def _keep_by_content() -> None:
 _keep_by_content()
 
 
+def has_compiled_code() -> bool:
+    """Return whether an earlier process has kept compiled code, so that this one need not compile."""
+    config: Any = numba.config
+    directory = str(config.CACHE_DIR)
+    return bool(directory) and any(Path(directory).rglob("*.nbc"))
+
+
 class CacheUnusable(RuntimeWarning):
     """Compiled code could not be cached, or the cache is damaged; the code is compiled again."""
 

@@ -17,6 +17,8 @@ from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 from core.errors import InvalidParameter, Path
 
+RADIANS = "angles are in radians: 30 degrees is 0.5236"
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -54,14 +56,15 @@ class Quantity:
         unit = "" if self.unit == "1" else f" {self.unit}"
         if not isfinite(number):
             raise InvalidParameter(path, "be finite")
+        remedy = RADIANS if self.unit == "rad" else None
         if number <= self.above:
-            raise InvalidParameter(path, f"be greater than {self.above:g}{unit}")
+            raise InvalidParameter(path, f"be greater than {self.above:g}{unit}", remedy=remedy)
         if number < self.at_least:
-            raise InvalidParameter(path, f"be at least {self.at_least:g}{unit}")
+            raise InvalidParameter(path, f"be at least {self.at_least:g}{unit}", remedy=remedy)
         if number > self.at_most:
-            raise InvalidParameter(path, f"be at most {self.at_most:g}{unit}")
+            raise InvalidParameter(path, f"be at most {self.at_most:g}{unit}", remedy=remedy)
         if number >= self.below:
-            raise InvalidParameter(path, f"be less than {self.below:g}{unit}")
+            raise InvalidParameter(path, f"be less than {self.below:g}{unit}", remedy=remedy)
 
     @property
     def limits(self) -> dict[str, float]:
@@ -76,10 +79,11 @@ class Quantity:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
         names = {"gt": self.above, "ge": self.at_least, "le": self.at_most, "lt": self.below}
-        ends = {name: end for name, end in names.items() if isfinite(end)}
+        # The unit is for the words in which a fault is told.
+        rest = {name: end for name, end in names.items() if isfinite(end)} | {"metadata": {"unit": self.unit}}
         if source is int:
-            return {"type": "int", "strict": True, **ends}
-        return {"type": "float", "strict": True, "allow_inf_nan": False, **ends}
+            return {"type": "int", "strict": True, **rest}
+        return {"type": "float", "strict": True, "allow_inf_nan": False, **rest}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         kind = "integer" if schema["type"] == "int" else "number"
@@ -139,7 +143,7 @@ Length = Annotated[float, Quantity("m", above=0)]
 LengthOrZero = Annotated[float, Quantity("m", at_least=0)]
 Coordinate = Annotated[float, Quantity("m")]
 InertiaFactor = Annotated[float, Quantity("1", at_least=0)]
-MomentOfInertia = Annotated[float, Quantity("kg m^2", above=0)]
+MomentOfInertia = Annotated[float, Quantity("kg m^2", at_least=0)]
 InertiaComponent = Annotated[float, Quantity("kg m^2")]
 AngularRate = Annotated[float, Quantity("rad s^-1")]
 Angle = Annotated[float, Quantity("rad")]

@@ -166,7 +166,7 @@ def work_precision(
     Raises
     ------
     InvalidParameter
-        For times as in `solve`, or no methods at all.
+        For times as in `solve`, no methods at all, or one with the same settings twice.
     AccuracyUnreachable
         If no reference can be had.
     """
@@ -174,7 +174,15 @@ def work_precision(
     instants = checked_times(times, budget)
     chosen = default_methods(system, instants) if methods is None else tuple(methods)
     if not chosen:
-        raise InvalidParameter("methods", "name at least one method")
+        raise InvalidParameter(
+            "methods", "name at least one method", remedy="leave it out for a ladder of every method"
+        )
+    for k, method in enumerate(chosen):
+        if method in chosen[:k]:
+            rule = f"differ from methods/{chosen.index(method)}, which is the same method with the same settings"
+            raise InvalidParameter(
+                ("methods", k), rule, remedy="give each setting once; repeats says how often it is timed"
+            )
     reference = _reference(system, instants, budget)
     found = [_measure(system, instants, method, reference, repeats, budget, clock) for method in chosen]
     ordered = sorted(found, key=lambda one: (one.method.kind, one.evaluations, -(one.error or math.inf)))

@@ -1,4 +1,7 @@
-"""Starts the service: python -m service [--host --port --workers]."""
+"""Starts the service: python -m service [--host --port --workers].
+
+The application is imported last: what is wrong with the command line, the settings or the port is said at once.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +13,14 @@ import signal
 import socket
 import sys
 from collections.abc import Sequence
+from multiprocessing import forkserver
 
-import uvicorn
 from pydantic import ValidationError
 
 from service import VERSION
-from service.app import create_app
+from service.execution import PRELOAD
 from service.http.keys import new_key
-from service.observability.logs import configure
+from service.observability.logs import LOG, configure
 from service.observability.shared_counts import sharing
 from service.settings import Settings
 
@@ -61,6 +64,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         faults = [f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}" for fault in error.errors()]
         sys.exit("\n".join(faults))
     if options.openapi:
+        from service.app import create_app
+
         sys.stdout.buffer.write(create_app(settings).openapi_text() + b"\n")
         return
     configure(settings.log_level)
@@ -70,6 +75,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # uvicorn ends by the signal that stopped it, once it has finished; this makes that an ordinary end.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     several = settings.workers > 1
+    if not several:
+        # It imports as much as this process does, at the same time.
+        forkserver.set_forkserver_preload([PRELOAD])
+        forkserver.ensure_running()
+    from core.compiled import has_compiled_code
+
+    LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: about 40 s, once")
+    import uvicorn
+
+    from service.app import create_app
+
     with sharing() if several else contextlib.nullcontext():
         uvicorn.run(
             "service.app:app" if several else create_app(settings, f"http://{host}:{port}"),

@@ -33,9 +33,6 @@ from service.routes.pages import pages
 from service.routing import TABLE, PostRoute, Route
 from service.settings import Settings
 
-COMPILES_AFTER = 5.0
-"""Seconds of preparation after which it must be compiling: loading what is compiled already takes less."""
-
 
 class Service(FastAPI):
     """The application.
@@ -140,17 +137,11 @@ class Service(FastAPI):
             await self.compute.stop()
 
     async def _warm(self) -> None:
-        LOG.info("preparing: loading kernels, starting compute processes")
-        compiling = asyncio.get_running_loop().call_later(
-            COMPILES_AFTER, LOG.info, "compiling kernels: about 40 s, once for each installation"
-        )
         try:
             await asyncio.gather(run_in_daemon_thread(self._prepare), self.compute.start())
         except Exception:
             LOG.exception("the service could not get ready")
             raise
-        finally:
-            compiling.cancel()
         # What has been built until now stays for good: the collector of garbage need not walk through it ever again.
         gc.collect()
         gc.freeze()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -65,6 +65,8 @@ class PostRoute:
         None if the question is that itself.
     examples : mapping
         By a short name.
+    warming : sequence of mappings
+        Questions beside the examples by which every kernel that the route can reach is compiled or loaded at the start.
     representations : mapping
         By media type, how an answer is written other than as JSON.
     elsewhere : mapping
@@ -83,6 +85,7 @@ class PostRoute:
     planning_probe: Callable[[Any], Any] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
+    warming: Sequence[Mapping[str, Any]] = ()
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     method: str = "POST"

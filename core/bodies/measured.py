@@ -31,6 +31,8 @@ MASS_RANGE = 900
 SUMMED_EXACTLY = 400
 """Points of which the moments are formed in whole numbers."""
 
+THIN_ROD = "a thin rod has [0, m l^2/12, m l^2/12]; a body without extent does not turn"
+
 KEPT = 32
 """Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
 
@@ -47,7 +49,8 @@ class PrincipalMoments:
     Attributes
     ----------
     moments : tuple of 3 floats
-        Each greater than 0 (kg m^2). Moments that no matter can have are answered with a warning.
+        At least 0, at most one of them 0, which is that of a thin rod about itself (kg m^2). Physically impossible
+        moments are answered with a warning.
     """
 
     moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
@@ -55,17 +58,20 @@ class PrincipalMoments:
 
     def __post_init__(self) -> None:
         check(self)
+        if sum(moment == 0.0 for moment in self.moments) > 1:
+            raise InvalidParameter("moments", "have at most one moment of 0 kg m^2", remedy=THIN_ROD)
 
     def mass_properties(self) -> MassProperties:
         """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
         a, b, c = self.moments
-        return _of_moments(float(a), float(b), float(c))
+        # A negative zero is none.
+        return _of_moments(float(a) + 0.0, float(b) + 0.0, float(c) + 0.0)
 
 
 @lru_cache(KEPT)
 def _of_moments(a: float, b: float, c: float) -> MassProperties:
     """Return the mass properties for principal moments, which are kept: a body is asked about again and again."""
-    # Doubles greater than zero, so that those which compare equal are the same.
+    # Doubles without a negative zero, so that those which compare equal are the same.
     return diagonal((a, b, c)).judged("moments")
 
 

@@ -86,23 +86,26 @@ _PERMUTED = {order: _along_body_axes(order, 1.0) for order in _EVEN} | {
 
 
 class KnownTensor(NamedTuple):
-    """A tensor of inertia in rational numbers, as exact as the numbers that describe the body, and rounded."""
+    """A tensor of inertia in rational numbers, as exact as those of the body, and in doubles of order one."""
 
     components: Matrix
-    value: Floats
+    near_one: list[list[float]]
 
     def turns_steadily(self, angular_velocity: Floats) -> bool:
         """Return whether a rotation about an angular velocity, shape (3,), is steady: I w along w, exactly."""
         # First in doubles, of order one.
-        rates = np.ldexp(angular_velocity, -math.frexp(float(np.abs(angular_velocity).max()))[1])
-        momentum = np.ldexp(self.value, -math.frexp(float(np.abs(self.value).max()))[1]) @ rates
-        if not np.abs(np.cross(momentum, rates)).max() <= 2.0**-40:
+        (a, d, e), (_, b, f), (_, _, c) = self.near_one
+        x, y, z = angular_velocity.tolist()
+        size = max(abs(x), abs(y), abs(z)) or 1.0
+        x, y, z = x / size, y / size, z / size
+        p, q, r = a * x + d * y + e * z, d * x + b * y + f * z, e * x + f * y + c * z
+        if max(abs(q * z - r * y), abs(r * x - p * z), abs(p * y - q * x)) > 2.0**-40:
             return False
         w = [Fraction(float(x)) for x in angular_velocity]
         rows = [[i * v for i, v in zip(row, w, strict=True)] for row in self.components]
-        x, y, z = (sum(row, Fraction(0)) for row in rows)
-        least = NOTHING * max(abs(p) for row in rows for p in row) * max(map(abs, w))
-        return all(abs(c) <= least for c in (y * w[2] - z * w[1], z * w[0] - x * w[2], x * w[1] - y * w[0]))
+        momentum = [sum(row, Fraction(0)) for row in rows]
+        least = NOTHING * max(abs(term) for row in rows for term in row) * max(map(abs, w))
+        return all(abs(momentum[j] * w[k] - momentum[k] * w[j]) <= least for j, k in ((0, 1), (1, 2), (2, 0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +162,8 @@ class PrincipalInertia:
         share = max(DERIVED.share, rounding.share)
         if exact is None and rounding == GIVEN:
             exact = exact_matrix(inertia, tail)
-        known = None if exact is None else KnownTensor(exact, inertia)
+        exponent = math.frexp(float(np.max(np.abs(inertia))))[1]
+        known = None if exact is None else KnownTensor(exact, np.ldexp(inertia, -exponent).tolist())
         return replace(found, rounding=Rounding(share, False), tensor=known)
 
     @classmethod

@@ -28,10 +28,13 @@ from core.rotation.closed_form.circulation import (
 from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
 from core.rotation.closed_form.principal_frame import PrincipalFrame, Resolved
 from core.rotation.closed_form.sampling import largest_magnitude, sample_components, turn_into_body
+from core.rotation.precession.middle_axis import MiddleAxisTilt, middle_axis_tilt
+from core.rotation.stability.classification import unstable_spin
 from core.rotation.uncertainty.input_uncertainty import InputUncertainty, lost_after
 from core.rotation.uncertainty.sensitivities import Sensitivities
 from core.systems.system import Floats, Model
 
+NAME = "torque-free rigid body"
 UNIT_ROUNDOFF = 2.0**-53
 
 EVALUATION_ERROR = 6.0 * UNIT_ROUNDOFF
@@ -50,6 +53,9 @@ SET_UP_ROUNDING = 2.0**-103
 
 UNDERFLOW = 2.0**-1070
 """What samples, and the tails of moments and components, lose in all where they are below the normal doubles."""
+
+UNMOVED = 2.0**-60
+"""A relative change of the angular velocity that is less than its rounding."""
 
 _BASIS = np.zeros((6, 3, 3))
 for _n, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
@@ -79,7 +85,9 @@ class FreeRotation:
     def __post_init__(self) -> None:
         if self.inertia.moments[0] > 0.0:
             return
-        across = self.inertia.moments[1] > 0.0 and self.resolved.angular_velocity[0] == 0.0
+        (_, b, c), (x, y, z) = self.resolved.moments, self.resolved.angular_velocity
+        # Across the line, and steadily: matter along a line has two equal moments, a triple of numbers need not.
+        across = b > 0.0 and x == 0.0 and (b == c or y == 0.0 or z == 0.0)
         if np.any(self.angular_velocity) and not across:
             raise InvalidParameter(
                 "body",
@@ -117,7 +125,8 @@ class FreeRotation:
     @property
     def model(self) -> Model:
         """The branch of the solution that holds, and why."""
-        return _model(self.motion, self.inertia.apart)
+        line = not self.inertia.moments[0] > 0.0
+        return _model(self.motion, self.inertia.apart, line, self.instability)
 
     @property
     def period(self) -> float | None:
@@ -144,6 +153,21 @@ class FreeRotation:
         if not self.inertia.nearly_equal or self.motion.regime in (REST, STEADY):
             return False
         return not like_symmetric(circulation(*self.resolved.numbers, self.motion.circled))
+
+    @property
+    def middle_axis_tilt(self) -> MiddleAxisTilt | None:
+        """Range of the angle between the middle axis and the angular momentum; None without such an axis, or at rest.
+
+        Whether the middle axis turns over, as it does not about a stable axis though `flip_interval` exists there too.
+        """
+        return middle_axis_tilt(self.resolved, self.inertia)
+
+    @property
+    def instability(self) -> str | None:
+        """Why a steady spin is unstable; None where it is stable, where nothing turns and where the spin changes."""
+        if self.motion.regime != STEADY or not self.inertia.moments[0] > 0.0:
+            return None
+        return unstable_spin(self.inertia.apart, self.resolved.angular_velocity.tolist())
 
     @property
     def largest_norm(self) -> float:
@@ -194,9 +218,11 @@ class FreeRotation:
             row, sign = self.frame.rows, self.frame.signs
             m = m.mirrored(sign[c], sign[1], sign[d])
             sample_components(m, times, out[row[c]], out[row[1]], out[row[d]])
-            return out.T
-        sample_components(m, times, out[c], out[1], out[d])
-        turn_into_body(np.ascontiguousarray(self.inertia.axes), out)
+        else:
+            sample_components(m, times, out[c], out[1], out[d])
+            turn_into_body(np.ascontiguousarray(self.inertia.axes), out)
+        if self._underflow > UNMOVED:
+            out[:, np.abs(times) <= self._unmoved_until] = self.angular_velocity[:, None]
         return out.T
 
     def error(self, times: Floats) -> float:
@@ -210,18 +236,41 @@ class FreeRotation:
             computed = 0.0
         else:
             computed = EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR)
-            computed += m.condition_bounds.at(SET_UP_ROUNDING, horizon) + self._underflow
+            computed += m.condition_bounds.at(SET_UP_ROUNDING, horizon)
+            computed += UNMOVED if horizon <= self._unmoved_until else self._underflow
         if self.derivation is not None:
             computed += self.derivation.angular_velocity(self.derived_rounding, horizon)
         return computed if computed < 1.0 else math.inf
 
     @property
+    def _unmoved_until(self) -> float:
+        """Time up to which the angular velocity moves by no more than `UNMOVED` of its norm (s).
+
+        By Euler's equations no faster than by its square times the largest of their coefficients.
+        """
+        a, b, c = self.resolved.moments.tolist()
+        steepest = max((c - b) / a, (c - a) / b, (b - a) / c) * self.largest_norm
+        return UNMOVED / steepest if steepest > 0.0 else math.inf
+
+    @cached_property
     def _underflow(self) -> float:
         """What a sample may be wrong by, relative, because a factor of it is below the normal doubles."""
         m = self.motion
-        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'.
-        smallest = min(map(abs, m.weights if m.regime == PERIODIC else (m.A_c, m.A_b, m.A_d)))
-        return UNDERFLOW / smallest if smallest > 0.0 else math.inf
+        if m.regime == SEPARATRIX:
+            return UNDERFLOW / self.largest_norm
+        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'. What
+        # one of them loses is at most the spacing of subnormal doubles.
+        k, spacing = m.weights, 2.0**-1074
+        products = (
+            (m.A_c, k.c_even),
+            (m.A_c, k.c_odd),
+            (m.A_b, k.b_even),
+            (m.A_b, k.b_odd),
+            (m.A_d, k.d_even),
+            (m.A_d, k.d_odd),
+        )
+        most = max(abs(amplitude) / max(spacing, abs(constant)) for amplitude, constant in products)
+        return UNDERFLOW * max(1.0, most) / self.largest_norm
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return a bound of the change of the samples by a relative `uncertainty` of every input.
@@ -335,19 +384,32 @@ class FreeRotation:
         return min(most, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
 
 
-def _model(motion: Motion, apart: tuple[bool, bool]) -> Model:
-    name = "torque-free rigid body"
+def steady_model(symmetric: bool, spherical: bool, unstable: str | None) -> Model:
+    """Return the model of a constant angular velocity.
+
+    Parameters
+    ----------
+    symmetric, spherical : bool
+        Whether at least two moments are equal, and whether all are.
+    unstable : str or None
+        Why the spin is unstable, if it is.
+    """
+    if unstable is not None:
+        return Model(NAME, "unstable steady rotation", unstable, 0)
+    if spherical:
+        why = "the three moments are equal, so every axis is principal"
+    else:
+        why = f"the spin lies along {'the axis of symmetry' if symmetric else 'a principal axis'}"
+    return Model(NAME, "steady rotation", f"{why}: nothing accelerates", 0)
+
+
+def _model(motion: Motion, apart: tuple[bool, bool], line: bool, unstable: str | None) -> Model:
+    name = NAME
     equal = [not differ for differ in apart]
     if motion.regime == REST:
         return Model(name, "rest", "the angular velocity is zero", 0)
     if motion.regime == STEADY:
-        if all(equal):
-            why = "the three moments are equal, so every axis is principal"
-        elif any(equal):
-            why = "the spin lies along a principal axis or in the plane of two equal moments"
-        else:
-            why = "the spin lies along a principal axis"
-        return Model(name, "steady rotation", f"{why}: nothing accelerates", 0)
+        return steady_model(any(equal) and not line, all(equal), unstable)
     axis = "largest" if motion.circled == 2 else "smallest"
     if motion.regime == SEPARATRIX:
         return Model(

@@ -69,6 +69,10 @@ class SampledRotation:
         Of the angular velocity, rounding included.
     period, flip_interval : float or None
         Of the angular velocity in the body, and between its sign changes along the middle axis (s).
+    middle_axis_tilt : tuple of 2 floats, or None
+        Least and largest angle between the middle axis and the angular momentum (rad); None without such an axis.
+    tumbles : bool
+        Whether the middle axis turns over.
     energy, angular_momentum : float or None
         In J and kg m^2/s; None where a double cannot hold them.
     closed_form : FreeRotation
@@ -81,6 +85,8 @@ class SampledRotation:
     accuracy: Accuracy
     period: float | None
     flip_interval: float | None
+    middle_axis_tilt: tuple[float, float] | None
+    tumbles: bool
     energy: float | None
     angular_momentum: float | None
     closed_form: FreeRotation
@@ -137,12 +143,16 @@ def sample_rotation(
         require_closed_form(method)
         free = FreeAttitude(exact, np.array(attitude or IDENTITY))
         turned = _attitude(free, times, accuracy, input_uncertainty, digits)
+    tilt = exact.middle_axis_tilt
+    least = None if tilt is None else in_range("middle_axis_tilt", tilt.least, notices)
     return SampledRotation(
         solved,
         states,
         covering(stated, added),
         in_range("period", solved.period, notices),
         in_range("flip_interval", exact.flip_interval, notices),
+        None if tilt is None or least is None else tilt.range,
+        tilt is not None and tilt.tumbles,
         system.energy,
         system.angular_momentum,
         exact,
@@ -181,7 +191,7 @@ def _attitude(
 
 
 def in_range(name: str, figure: float | None, notices: list[Notice]) -> float | None:
-    """Return a figure, or None and a further notice where it is too large for a double."""
+    """Return a figure, or None and a further notice where it leaves the range of doubles."""
     if figure is None or isfinite(figure):
         return figure
     notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))

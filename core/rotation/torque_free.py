@@ -19,6 +19,7 @@ from core.notices import Notice
 from core.rotation.discrete_mechanics import moser_veselov
 from core.rotation.equal_moments import NEARLY_EQUAL
 from core.rotation.free_rotation import FreeRotation
+from core.rotation.stability.classification import unstable_axis
 from core.systems.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 
 PARTS = 3
@@ -288,9 +289,18 @@ class TorqueFree:
         return (NEARLY_EQUAL,) if hangs else ()
 
     @property
+    def stability_notices(self) -> tuple[Notice, ...]:
+        """The warning about a steady spin that is unstable."""
+        try:
+            why = self._exact.instability
+        except AccuracyUnreachable:
+            return ()
+        return () if why is None else (unstable_axis(why),)
+
+    @property
     def warnings(self) -> tuple[Notice, ...]:
         """What an answer about this motion has to say beside its figures; paths lead from the question."""
-        notices = [*inherited_notices(self.body), *self.moment_notices]
+        notices = [*inherited_notices(self.body), *self.moment_notices, *self.stability_notices]
         for name, value in (("energy", self.energy), ("angular_momentum", self.angular_momentum)):
             if value is None:
                 notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Generic, Literal
 
 from core.balls import precision
 from core.errors import InvalidParameter
-from core.quantities import Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, Unit, check
+from core.quantities import RADIANS, Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, Unit, check
 from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, Pair, outputs_of
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
 from core.scenes.pendulum import Pendulum
@@ -150,7 +150,7 @@ class RodInHole(ConstrainedSystem):
                     raise InvalidParameter(
                         "angle",
                         f"lie within {float(rim):.17g} rad of the vertical, where an end reaches the rim",
-                        remedy="or let the hole be a whole cylinder",
+                        remedy=f"let the hole be a whole cylinder; {RADIANS}",
                     )
 
     def figures(self) -> Mapping[str, Callable[[], Any]]:

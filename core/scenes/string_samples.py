@@ -81,7 +81,7 @@ class ShaftMotion(Motion):
         dx, dv, ds, dr = (np.zeros((times.size, 2)) for _ in range(4))
         tension = np.zeros(times.size)
         determinate = True
-        with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+        with np.errstate(over="ignore", invalid="ignore", under="ignore", divide="ignore"):
             for k in np.unique(which):
                 here = np.flatnonzero(which == k)
                 phase = phases[k]

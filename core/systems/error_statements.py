@@ -30,6 +30,9 @@ error, so a factor 2 is owed, and so is it where a sixteenth of the tolerance do
 
 LARGEST = float(np.finfo(np.float64).max)
 
+FARTHEST = 2.0**1020
+"""No error is stated that is as large as this: what `Errors.beyond` adds to it might not be a double."""
+
 ROUNDOFF = 8 * 2.0**-53
 """Added to every estimate: two runs of one method may round alike."""
 
@@ -123,12 +126,12 @@ def measured(states: Floats, reference: Floats, times: Floats, largest_norm: flo
     wrong, magnitudes = np.zeros(states.shape[1]), np.zeros(states.shape[1])
     _differences(states, reference, unit, errors, wrong, magnitudes)
     norm = scale / unit
-    if not errors.max() / norm < math.inf:
+    if not errors.max() / norm < FARTHEST:
         raise _out_of_range()
     magnitudes[magnitudes == 0.0] = norm
     with np.errstate(over="ignore"):
         components = wrong / magnitudes
-    components = np.where(np.isfinite(components), components, wrong / norm)
+    components = np.where(components < FARTHEST, components, wrong / norm)
     final = int(np.abs(times).argmax())
     return Errors(float(errors.max()) / norm, float(errors[final]) / norm, tuple(map(float, components)))
 

@@ -50,10 +50,10 @@ class RequestHandler:
         return answer
 
     def warm(self) -> None:
-        """Answer every example once, so that no client waits for a function to be compiled or loaded."""
+        """Have every kernel that can be reached compiled or loaded, so that no client waits for that."""
         for route in self._routes:
-            for example in route.examples.values():
-                self.answer(route, self.read(route, orjson.dumps(example.question)))
+            for question in (*(example.question for example in route.examples.values()), *route.warming):
+                self.answer(route, self.read(route, orjson.dumps(question)))
         # What its methods import when one of them is first asked for would hold up the event loop.
         import_module("scipy.integrate")
 

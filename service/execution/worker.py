@@ -22,7 +22,7 @@ from core.systems.budget import Budget
 from service.execution.messages import LENGTH, apart, decoded, encoded
 from service.execution.request_handler import RequestHandler
 from service.execution.worker_pool import BEGUN
-from service.problems import Problem, Refusal, problem_of
+from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits
 from service.responses.json_stream import Document, composed
 from service.routing import PostRoute
@@ -132,6 +132,9 @@ def _guarded(terms: Terms, task: Task, work: Callable[[RequestHandler, PostRoute
         return refusal.problem
     except MechanicsError as error:
         return problem_of(error)
+    except MemoryError:
+        detail = "the machine lacks the memory for this answer"
+        return Problem(REGISTRY["no-room"], detail, headers=(("Retry-After", "1"),))
     except Exception:
         return Failed(traceback.format_exc())
 

@@ -22,6 +22,7 @@ from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem, Refusal, problem_of
+from service.requests.suggestions import nearest_path
 from service.responses import npz as archive
 from service.responses.json_stream import Document
 from service.routing import GetRoute, PostRoute, Route
@@ -100,7 +101,13 @@ class Dispatcher:
                 raise
             LOG.exception("failed", extra={"request_id": context.id, "operation": route.operation_id})
             detail = "the service failed; the failure is logged under this id"
-            await context.problem(Problem(REGISTRY["internal-error"], detail, extra={"id": context.id}))
+            await context.problem(
+                Problem(
+                    REGISTRY["internal-error"],
+                    detail,
+                    extra={"id": context.id, "instance": f"urn:polhode:request:{context.id}"},
+                )
+            )
 
     async def _question(self, route: PostRoute, context: RequestContext) -> None:
         headers = context.headers
@@ -155,9 +162,10 @@ class Dispatcher:
             detail = f"this path answers {allowed}"
             problem = Problem(REGISTRY["method-not-allowed"], detail, headers=(("Allow", allowed),))
         else:
-            problem = Problem(
-                REGISTRY["not-found"], "there is nothing at this path; GET /openapi.json lists every path"
-            )
+            near = nearest_path(path, dict.fromkeys(known for _, known in self.handlers))
+            meant = f"did you mean {near}? " if near else ""
+            detail = f"there is nothing at this path; {meant}GET /openapi.json lists every path"
+            problem = Problem(REGISTRY["not-found"], detail)
         await context.problem(problem)
 
 

@@ -115,7 +115,7 @@ class RequestContext:
     async def problem(self, problem: Problem) -> None:
         """Send a problem document."""
         self._records.problem(problem.type.code)
-        body = problem.body()
+        body = problem.body(self.id)
         headers = [_PROBLEM, (b"content-length", b"%d" % len(body)), NOSNIFF]
         headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
         await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)

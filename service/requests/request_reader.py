@@ -8,13 +8,14 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import Any, Generic, TypeVar
 
+import orjson
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
-from service.problems import Refusal
+from service.problems import Refusal, headline
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 from service.requests.error_messages import Layout
 from service.requests.npz_body import Arrays, taking_arrays, unpacked
@@ -80,17 +81,24 @@ class Reader(Generic[Q]):
             require_distinct_keys(document)
             return question
         except ValidationError as error:
-            raise self._refusal(error) from None
+            raise self._refusal(error, document) from None
 
-    def _refusal(self, error: ValidationError) -> Refusal:
+    def _refusal(self, error: ValidationError, document: bytes) -> Refusal:
         found = error.errors(include_url=False, include_input=False)
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
             return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
-        faults, codes = self._layout.faults(found)
+        faults, codes = self._layout.faults(found, cache(partial(_parsed, document)))
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"
-        more = f", and {len(faults) - 1} more" if len(faults) > 1 else ""
-        return Refusal(code, f"{faults[0].sentence}{more}", faults=faults)
+        return Refusal(code, headline(faults), faults=faults)
+
+
+def _parsed(document: bytes) -> Any:
+    """Return what a document holds, None where this parser takes numbers more strictly than the validator's."""
+    try:
+        return orjson.loads(document)
+    except ValueError:
+        return None
 
 
 @contextmanager
@@ -112,6 +120,8 @@ def _failing_fast(schema: Any) -> Any:
     """
     if isinstance(schema, Mapping):
         walked = {key: _failing_fast(value) for key, value in schema.items() if key != "metadata"}
+        if "unit" in schema.get("metadata", {}):
+            walked["metadata"] = {"unit": schema["metadata"]["unit"]}
         free = schema.get("type") == "tuple" and "variadic_item_index" in schema
         return walked | {"fail_fast": True} if free or schema.get("type") == "list" else walked
     if isinstance(schema, (list, tuple)):

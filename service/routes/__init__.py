@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from service.routes.bodies import BODIES
 from service.routes.certified.answers import naming_certified
 from service.routes.certified.rotation import CERTIFIED_ROTATION
 from service.routes.certified.scenes import certified_scenes
 from service.routes.certified.surfaces import CERTIFIED_ELLIPSOID
+from service.routes.examples import examples
 from service.routes.plan import planning
 from service.routes.rotation.ensemble import ENSEMBLE
 from service.routes.rotation.precession import PRECESSION
@@ -24,4 +27,4 @@ def questions() -> tuple[PostRoute, ...]:
     paths = [route.path for route in certified]
     ordinary = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())
     asked = (*(naming_certified(route, paths) for route in ordinary), *certified)
-    return (*asked, planning(asked))
+    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*asked, planning(asked)))

@@ -19,7 +19,7 @@ from core.errors import InvalidParameter
 from core.quantities import Unit
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, quickest, speed_of
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Matrix, Ratio, Request, Vector, View
 
 LOOKED_INTO = 8_000
@@ -172,6 +172,13 @@ def _extents(kind: Any) -> tuple[str, ...]:
     return tuple(entry.name for entry in fields(kind) if entry.name in ("positions", "faces", "parts"))
 
 
+TETRAHEDRON = {
+    "kind": "mesh",
+    "density": 1.0,
+    "vertices": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    "faces": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+}
+
 BODIES = (
     PostRoute(
         "/v1/bodies/mass-properties",
@@ -183,21 +190,6 @@ BODIES = (
         mass_properties,
         CalibratedCost("mass_properties", counts),
         is_small,
-        examples={
-            "principal-moments": Example(
-                "a body known by its principal moments",
-                {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}},
-            ),
-            "point-masses": Example(
-                "four point masses",
-                {
-                    "body": {
-                        "kind": "point-masses",
-                        "masses": [1.0, 2.0, 1.0, 0.5],
-                        "positions": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]],
-                    }
-                },
-            ),
-        },
+        warming=({"body": TETRAHEDRON},),
     ),
 )

@@ -20,10 +20,10 @@ from service.execution import cost_model as pricing
 from service.execution.cost_model import CalibratedCost, CostModel, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
+from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
 from service.routes.bodies import speed_to_follow
-from service.routes.rotation.trajectory import T_HANDLE
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
 
@@ -93,7 +93,9 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
     def plan(question: PlanRequest, budget: Budget) -> Answer:
         route = table.get(question.path)
         if route is None:
-            fault = Fault("/path", "must be the path of a question", "GET /openapi.json lists every path")
+            near = nearest_path(question.path, table)
+            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
+            fault = Fault("/path", "must be the path of a question", remedy)
             return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
         try:
             asked = reader(route.path).read(json.dumps(question.request).encode())
@@ -113,7 +115,6 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
         plan,
         CalibratedCost("plan", one),
         description="Always answered with 200: what the request would be refused for stands under `errors`.",
-        examples=EXAMPLES,
     )
 
 
@@ -186,8 +187,8 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
         return None
     known = [entry if isinstance(entry, dict) else vars(entry) for entry in stated]
     worst: dict[str, Any] = max(known, key=lambda entry: float(entry["error"]))
-    # An error below the range of doubles is stated as a decimal string.
-    return {"error": float(worst["error"]), "how": worst["how"], "inherited": worst.get("inherited")}
+    # A certified answer's is a decimal string, as it may be below the range of doubles.
+    return {"error": worst["error"], "how": worst["how"], "inherited": worst.get("inherited")}
 
 
 def _evaluations(asked: Any, budget: Budget) -> int | None:
@@ -235,24 +236,3 @@ def _refused(path: str, problem: Problem, within: str) -> Answer:
         "errors": errors,
         "warnings": [],
     }
-
-
-TUMBLING = {
-    "body": T_HANDLE,
-    "angular_velocity": [1.0, 10.0, 1.0],
-    "times": {"start": 0.0, "stop": 2e3, "count": 100_001},
-}
-
-EXAMPLES = {
-    "trajectory": Example(
-        "a hundred thousand samples", {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 1e-12}}
-    ),
-    "method": Example(
-        "the same by a method of low order",
-        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"method": {"kind": "explicit-euler", "step": 1e-3}}},
-    ),
-    "refused": Example(
-        "a request that would be refused",
-        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 2.0}},
-    ),
-}

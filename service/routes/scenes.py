@@ -17,8 +17,9 @@ from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, numbers
 from service.routes.bodies import few_times
+from service.routes.examples import examples
 from service.routes.rotation.trajectory import Accuracy
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
     Envelope,
@@ -64,68 +65,21 @@ class SceneCatalogue(Signed):
     scenes: list[SceneEntry]
 
 
-EXAMPLES: Mapping[str, Mapping[str, Example]] = {
-    "unwinding-shafts": {
-        "tension": Example(
-            "the tension and accelerations of two solid shafts",
-            {
-                "masses": [2.0, 1.0],
-                "radii": [0.1, 0.2],
-                "slopes": [0.5, 0.9],
-                "gravity": 9.81,
-                "outputs": ["tension", "accelerations", "angular_accelerations"],
-            },
-        ),
-        "motion": Example(
-            "the motion until the string of one shaft has unwound",
-            {
-                "masses": [2.0, 1.0],
-                "radii": [0.1, 0.2],
-                "slopes": [0.5, 0.9],
-                "gravity": 9.81,
-                "positions": [1.0, 1.5],
-                "wound": [0.5, 0.8],
-                "times": {"start": 0.0, "stop": 2.0, "count": 21},
-            },
-        ),
-    },
-    "rod-in-hole": {
-        "horizontal": Example(
-            "how fast the rod turns when it is horizontal",
-            {
-                "hole_radius": 1.0,
-                "length": 1.0,
-                "mass": 1.0,
-                "gravity": 9.81,
-                "outputs": ["angular_velocity_at_horizontal", "period", "contact"],
-            },
-        ),
-        "motion": Example(
-            "one swing with the forces of the wall",
-            {
-                "hole_radius": 1.0,
-                "length": 1.0,
-                "mass": 1.0,
-                "gravity": 9.81,
-                "times": {"start": 0.0, "stop": 2.0, "count": 21},
-            },
-        ),
-    },
-    "chain-on-wedge": {
-        "motion": Example(
-            "a heavy chain that slides over the apex",
-            {
-                "masses": [1.0, 1.2],
-                "slopes": [0.6, 0.8],
-                "gravity": 9.81,
-                "length": 2.0,
-                "linear_density": 0.5,
-                "position": 1.0,
-                "velocity": 0.0,
-                "times": {"start": 0.0, "stop": 0.5, "count": 11},
-            },
-        ),
-    },
+WARMING: Mapping[str, tuple[Mapping[str, Any], ...]] = {
+    # A rod that comes to rest upright, and never arrives.
+    "rod-in-hole": (
+        {
+            "hole_radius": 5.0,
+            "length": 6.0,
+            "mass": 1.0,
+            "gravity": 25.0,
+            "inertia_factor": 0.25,
+            "hole": "cylinder",
+            "angle": 0.0,
+            "angular_velocity": 4.0,
+            "times": [1.0],
+        },
+    ),
 }
 
 
@@ -137,6 +91,11 @@ def members() -> tuple[type[ConstrainedSystem], ...]:
 def name_of(scene: type[ConstrainedSystem]) -> str:
     """Return the name by which requests tell a scene apart."""
     return str(scene.__dict__["kind"])
+
+
+def operation_of(scene: type[ConstrainedSystem]) -> str:
+    """Return the name of the operation that answers questions about a scene."""
+    return "scene_" + name_of(scene).replace("-", "_")
 
 
 def summary_of(scene: type[ConstrainedSystem]) -> str:
@@ -244,16 +203,16 @@ def questions() -> tuple[PostRoute, ...]:
     return tuple(
         PostRoute(
             f"/v1/scenes/{name_of(scene)}",
-            "scene_" + name_of(scene).replace("-", "_"),
+            operation_of(scene),
             summary_of(scene),
             "scenes",
             request_of(scene),
             answer_model(scene, SceneAnswerInDoubles, "", float),
             answering(scene),
-            CalibratedCost("scene_" + name_of(scene).replace("-", "_"), scene_counts),
+            CalibratedCost(operation_of(scene), scene_counts),
             lambda question: question.times is None or few_times(question.times),
             scene_probe,
-            examples=EXAMPLES[name_of(scene)],
+            warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()
     )
@@ -267,7 +226,7 @@ def scenes() -> list[dict[str, Any]]:
             "path": f"/v1/scenes/{name_of(scene)}",
             "summary": summary_of(scene),
             "outputs": list(scene.outputs),
-            "example": dict(next(iter(EXAMPLES[name_of(scene)].values())).question),
+            "example": dict(next(iter(examples()[operation_of(scene)].values())).question),
         }
         for scene in members()
     ]

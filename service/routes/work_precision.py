@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from math import exp, log
 from typing import Annotated
 
 import numpy as np
@@ -12,14 +13,26 @@ from core.bodies import Body
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
-from core.systems.methods import ClosedFormEvaluation, Method
-from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
-from service.execution.cost_model import CalibratedCost, effort, extreme, speed_of
+from core.systems.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Method, Radau
+from core.work_precision import (
+    DEFAULT_RUNS,
+    SCIPY_TOLERANCES,
+    STEPS_PER_OWN_TIME,
+    TOLERANCES,
+    Measurement,
+    work_precision,
+)
+from service.execution.cost_model import CalibratedCost, calibration, effort, extent, extreme, speed_of
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE, TIMES
-from service.routing import Answer, Example, PostRoute
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
+from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
+
+LADDER_RADIANS = 50.0
+"""How far the body turns in the motions on which ladders are measured."""
+
+SCIPY_KINDS = (Lsoda.kind, Radau.kind)
 
 
 class WorkPrecisionRequest(Request):
@@ -110,12 +123,33 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     runs = _runs(question)
     found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
     if question.methods is None:
-        return found | {"ladders": repeats, "ladder samples": repeats * samples}
+        found |= {"ladders": repeats, "ladder samples": repeats * samples}
+        return found | _long_ladder(question, budget.evaluations // (repeats * runs), repeats)
     speed = speed_to_follow(question.methods, question.body, speed_of(question.angular_velocity))
     for method in question.methods:
         for name, count in effort(method, question.times, speed, samples, repeats).items():
             found[name] = found.get(name, 0.0) + count
     return found
+
+
+def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> dict[str, float]:
+    """Return what is counted of a ladder on a motion that is longer than the one on which ladders are measured."""
+    speed = speed_of(question.angular_velocity)
+    radians = speed * extent(question.times) - LADDER_RADIANS
+    if not radians > 0.0:
+        return {}
+    counts: dict[str, float] = {}
+    for kind, cost in calibration().methods.items():
+        if kind in SCIPY_KINDS or kind == DormandPrince853.kind:
+            tolerances = SCIPY_TOLERANCES if kind in SCIPY_KINDS else TOLERANCES
+            # One that runs out of its share has spent it.
+            spent = [min(share, radians * exp(cost["evaluations"] + cost["exponent"] * log(t))) for t in tolerances]
+        else:
+            # One that would is refused before it runs.
+            steps = [cost["evaluations"] * number * radians for number in STEPS_PER_OWN_TIME]
+            spent = [count for count in steps if count <= share]
+        counts[f"evaluations of {kind}"] = repeats * sum(spent)
+    return counts
 
 
 def work_precision_probe(question: WorkPrecisionRequest) -> WorkPrecisionRequest:
@@ -155,26 +189,6 @@ WORK_PRECISION = (
         CalibratedCost("work_precision", work_precision_counts),
         planning_probe=work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
-        examples={
-            "t-handle": Example(
-                "three methods on a T-handle that tumbles",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "times": {"start": 0.0, "stop": 5.0, "count": 21},
-                    "methods": [
-                        {"kind": "closed-form"},
-                        {"kind": "explicit-euler", "step": 0.01},
-                        {"kind": "explicit-euler", "step": 0.001},
-                        {"kind": "runge-kutta-4", "step": 0.02},
-                        {"kind": "runge-kutta-4", "step": 0.01},
-                        {"kind": "dormand-prince-853", "tolerance": 1e-6},
-                        {"kind": "dormand-prince-853", "tolerance": 1e-12},
-                    ],
-                    "accuracy": 1e-9,
-                },
-            ),
-        },
         representations={SVG: drawn},
     ),
 )

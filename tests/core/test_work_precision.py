@@ -146,6 +146,16 @@ def test_the_same_question_has_the_same_answer(whole) -> None:
     assert work_precision(elliptic_functions(), TIMES) == whole
 
 
+def test_a_method_is_refused_that_is_there_already_with_the_same_settings() -> None:
+    methods = [RungeKutta4(0.01), RungeKutta4(0.02), SymmetricSplitting(0.01), RungeKutta4(0.01)]
+    with pytest.raises(InvalidParameter) as caught:
+        work_precision(elliptic_functions(), TIMES, methods)
+    assert caught.value.path == ("methods", 3)
+    assert "differ from methods/0" in caught.value.rule
+    assert "repeats" in str(caught.value.remedy)
+    assert len(work_precision(elliptic_functions(), TIMES, methods[:3]).curves) == 2
+
+
 def test_questions_that_cannot_be_asked() -> None:
     with pytest.raises(InvalidParameter, match="methods must"):
         work_precision(elliptic_functions(), TIMES, [])

@@ -136,7 +136,7 @@ def test_a_solid_spun_exactly_about_an_axis_is_constant_for_ever(solid, axis, si
 def test_a_spin_in_the_plane_of_exactly_equal_moments_is_constant_for_ever(solid, spin, late):
     judge = certified(solid, spin)
     motion = FreeRotation(solid.mass_properties().principal, np.array(spin))
-    assert (motion.model.regime == "steady rotation") == (judge.regime == "steady")
+    assert (motion.model.regime.endswith("steady rotation")) == (judge.regime == "steady")
     if judge.regime == "steady":
         assert motion.error(np.array([10.0**late])) == 0.0
 
@@ -152,7 +152,11 @@ def test_no_component_of_a_solid_is_too_small_to_count(solid, axis, first, secon
     figures = precession(body, spin)
     if motion.period is not None:
         period = Fraction(judge.period(DIGITS))
-        assert abs(Fraction(motion.period) - period) <= 4 * Fraction(2) ** -53 * period
+        # Moments are rounded to 106 bits, and their differences by as much of the moments.
+        low, middle, high = sorted(exact_body(described(solid)).of_motion.tensor[k][k] for k in range(3))
+        lost = max(high / gap for gap in (middle - low, high - middle) if gap)
+        allowed = 4 * Fraction(2) ** -53 + Fraction(2) ** -104 * lost
+        assert abs(Fraction(motion.period) - period) <= allowed * period
         assert figures.period == pytest.approx(motion.period, rel=4e-16)
     unit = min(motion.period or 1.0, 1e6)
     judged(motion, judge, [unit * 10.0**late, 0.3 * unit])
@@ -211,6 +215,24 @@ def test_tensors_turned_by_rational_rotations(three, q, along, small, late):
 
 
 @plain
+@given(
+    st.integers(2, 9), st.integers(1, 17), quaternion, st.integers(-5, 5), st.integers(1, 5), hair, st.floats(1.0, 5.0)
+)
+def test_a_tilted_coin_spun_about_a_diameter_is_bounded_as_a_coin(pair, single, q, one, other, small, late):
+    """Its two equal moments differ by the rounding of the components, and the spin is next to their plane."""
+    assume(single <= 2 * pair and single != pair)
+    turn = rotation([Fraction(x) for x in q])
+    exact = [[Fraction(single if i == 2 else pair) * (i == j) for j in range(3)] for i in range(3)]
+    tensor = InertiaTensor(tuple(tuple(float(x) for x in row) for row in rotated(exact, turn)))
+    axes = columns(turn)
+    spin = one * axes[0] + other * axes[1] + small * axes[2] + 0.0
+    spin = spin / 2.0 ** math.frexp(np.abs(spin).max())[1]
+    motion = FreeRotation(tensor.mass_properties().principal, spin)
+    _, stated = judged(motion, certified(tensor, spin), [10.0**late])
+    assert stated < 1e-14
+
+
+@plain
 @given(st.one_of(solids(), moments_of_matter()), quaternion, st.integers(0, 2), st.floats(-1.0, 9.0))
 def test_a_body_turned_by_a_rational_rotation_and_spun_along_its_own_axis_is_constant(body, q, axis, late):
     turn = rotation([Fraction(x) for x in q])
@@ -224,7 +246,7 @@ def test_a_body_turned_by_a_rational_rotation_and_spun_along_its_own_axis_is_con
         turned = Composite((Part(body, attitude=tuple(map(float, q))),))
     assert certified(turned, spin).regime == "steady"
     motion = FreeRotation(turned.mass_properties().principal, spin)
-    assert motion.model.regime == "steady rotation"
+    assert motion.model.regime.endswith("steady rotation")
     assert motion.error(np.array([10.0**late])) == 0.0
     assert precession(turned.mass_properties(), spin).regime == "steady"
 

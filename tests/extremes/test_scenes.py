@@ -12,7 +12,7 @@ from tests.extremes.asking import ask, certified
 from tests.extremes.questions import CHAIN, QUESTIONS, ROD, SHAFTS, Asked
 from tests.extremes.test_rotation import OWN, UNIT_ROUNDOFF, common
 
-SCENES = tuple(path for path in QUESTIONS if "/scenes/" in path)
+SCENES = tuple(path for path in QUESTIONS if path.startswith("/v1/scenes/"))
 FINE: dict[str, tuple[str, ...]] = {
     "/v1/scenes/unwinding-shafts": ("g 1e-300",),
     "/v1/scenes/chain-on-wedge": ("masses 0 and 0, density 0", "g 1e+300"),

@@ -123,6 +123,8 @@ async def test_anything_can_be_planned(request_: Any) -> None:
 async def test_an_unknown_path_is_told() -> None:
     plan = await planned("/v1/nothing", {})
     assert [(entry["code"], entry["pointer"]) for entry in plan["errors"]] == [("not-found", "/path")]
+    (fault,) = (await planned("/v1/rotation/trajectories", {}))["errors"]
+    assert fault["remedy"] == "did you mean /v1/rotation/trajectory?"
 
 
 async def test_plans_run_nothing() -> None:

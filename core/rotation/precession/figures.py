@@ -78,7 +78,7 @@ def stated(x: Scaled) -> float:
 
 
 @kernel()
-def _angle(across: Scaled, along: Scaled, obtuse: bool) -> float:
+def angle_of_tangent(across: Scaled, along: Scaled, obtuse: bool) -> float:
     """Return the angle in [0, pi] whose tangent is across/along in magnitude; both are at least 0."""
     if along.high == 0.0:
         return 0.5 * PI[0] if across.high != 0.0 else 0.0
@@ -126,13 +126,13 @@ def _regular(equal: Scaled, single: Scaled, gap: Scaled, along: Scaled, across: 
         time = sc_div(scaled(2.0 * PI[0], 2.0 * PI[1], 0), sc_abs(rate))
         body_rate, period = stated(rate), stated(time)
         turned, mean = stated(sc_mul(space_rate, time)), stated(space_rate)
-    between = _angle(
+    between = angle_of_tangent(
         sc_mul(sc_mul(sc_abs(gap), across), forward), sc_add(sc_mul(m_across, across), sc_mul(m_along, forward)), False
     )
     obtuse = along.high < 0.0
     return (
         body_rate, stated(space_rate), period, ABSENT,
-        _angle(m_across, m_along, obtuse), _angle(across, forward, obtuse), between, turned, mean,
+        angle_of_tangent(m_across, m_along, obtuse), angle_of_tangent(across, forward, obtuse), between, turned, mean,
     )  # fmt: skip
 
 

@@ -48,6 +48,8 @@ from core.rotation.equal_moments import NEARLY_EQUAL, equal_within_rounding
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession import missing_reasons
 from core.rotation.precession.figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
+from core.rotation.precession.middle_axis import middle_axis_tilt
+from core.rotation.stability.classification import unstable_axis, unstable_spin
 from core.rotation.torque_free import inherited_notices
 from core.systems.system import Floats
 
@@ -76,7 +78,12 @@ class Precession(NamedTuple):
     period : float or None
         Of the angular velocity in the body (s).
     flip_interval : float or None
-        Between sign changes of the component along the middle axis (s).
+        Between sign changes of the component along the middle axis, whether or not that axis turns over (s).
+    middle_axis_tilt : tuple of 2 floats, or None
+        Least and largest angle between the middle axis and the angular momentum in the whole motion (rad).
+    tumbles : bool
+        Whether the middle axis turns over, from within 45 degrees of the angular momentum to within 45 degrees of its
+        opposite.
     axis_to_angular_momentum, axis_to_angular_velocity : float or None
         Angle of the axis with each, from 0 to pi; symmetric bodies only (rad). The second is the half-angle of
         the body cone if it is acute.
@@ -100,6 +107,8 @@ class Precession(NamedTuple):
     space_rate: float | None = None
     period: float | None = None
     flip_interval: float | None = None
+    middle_axis_tilt: tuple[float, float] | None = None
+    tumbles: bool = False
     axis_to_angular_momentum: float | None = None
     axis_to_angular_velocity: float | None = None
     angular_momentum_to_angular_velocity: float | None = None
@@ -174,6 +183,16 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
         warnings += (_EQUAL_IN_FIGURES,)
     told = _TOLD[symmetry if k < 0 else _SYMMETRY_ABOUT[k], regime, beyond]
     absent = told.absent.copy()
+    tilt = middle_axis_tilt(resolved, inertia)
+    if tilt is not None:
+        absent.pop("middle_axis_tilt", None)
+        if not isfinite(tilt.least):
+            code, reason = _LOST[OUT_OF_RANGE]
+            absent["middle_axis_tilt"] = reason
+            warnings += (Notice(code, f"middle_axis_tilt {reason} and is null"),)
+    if told.regime == "steady" and inertia.moments[0] > 0.0:
+        why = unstable_spin(inertia.apart, resolved.angular_velocity.tolist())
+        warnings += () if why is None else (unstable_axis(why),)
     if told is _CONSTANT and isnan(figures[0]):
         absent["body_rate"] = missing_reasons.STEADY_IN_BODY
     if not isnan(figures[3]) and told.order is not None:
@@ -192,8 +211,9 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
     pointing: Floats = np.array(axis)
     pointing.setflags(write=False)
     return Precession(
-        symmetry, told.regime, pointing, body_rate, space_rate, period, flip, to_momentum, to_velocity, between,
-        told.order, turned, mean, absent, warnings,
+        symmetry, told.regime, pointing, body_rate, space_rate, period, flip,
+        tilt.range if tilt is not None and isfinite(tilt.least) else None, tilt is not None and tilt.tumbles,
+        to_momentum, to_velocity, between, told.order, turned, mean, absent, warnings,
     )  # fmt: skip
 
 
@@ -234,9 +254,9 @@ def _absent(*reasons: tuple[str, tuple[str, ...]]) -> dict[str, str]:
     return {name: reason for reason, names in reasons for name in names}
 
 
-_AT_REST = _absent((missing_reasons.NOTHING_TURNS, ("axis", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
+_AT_REST = _absent((missing_reasons.NOTHING_TURNS, ("axis", "middle_axis_tilt", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
 _SPHERE = _absent(
-    (missing_reasons.SPHERE, ("axis", *OF_SYMMETRIC_BODIES)),
+    (missing_reasons.SPHERE, ("axis", "middle_axis_tilt", *OF_SYMMETRIC_BODIES)),
     (missing_reasons.STEADY_ANYHOW, _OF_A_CHANGE),
 )
 _THREE = missing_reasons.TRIAXIAL, OF_SYMMETRIC_BODIES
@@ -270,9 +290,10 @@ _CONSTANT = RegimeReport(
     _absent(
         (missing_reasons.STEADY_IN_BODY, _OF_A_CHANGE),
         (missing_reasons.SAME_DIRECTION, ("order_of_directions",)),
+        (missing_reasons.NO_MIDDLE_AXIS, ("middle_axis_tilt",)),
     ),
 )
-_NO_MIDDLE_AXIS = _absent((missing_reasons.NO_MIDDLE_AXIS, ("flip_interval",)))
+_NO_MIDDLE_AXIS = _absent((missing_reasons.NO_MIDDLE_AXIS, ("flip_interval", "middle_axis_tilt")))
 
 
 def order_of_directions(symmetry: Symmetry) -> str:

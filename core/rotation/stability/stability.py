@@ -224,9 +224,11 @@ def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tu
         fault.path = ("disturbance",)
         raise
     if interval is not None and not isfinite(interval):
-        reason = "it turns over, but after a time that leaves the range of double precision"
+        reason = "its component along the middle axis changes its sign only after a time beyond double precision"
         return Flip(given, None, f"{reason}; {rotation.model.why}")
-    return Flip(given, interval, flip_reason(interval is not None, rotation.model.why))
+    tilt = rotation.middle_axis_tilt
+    tumbles = tilt is not None and tilt.tumbles
+    return Flip(given, interval, flip_reason(interval is not None, tumbles, rotation.model.why))
 
 
 def no_middle_axis() -> NotApplicable:
@@ -238,6 +240,13 @@ def no_middle_axis() -> NotApplicable:
     )
 
 
-def flip_reason(flips: bool, why: str) -> str:
+def flip_reason(periodic: bool, tumbles: bool, why: str) -> str:
     """Return what becomes of a disturbed rotation about the middle axis, with the reason for its model."""
-    return f"{'it turns over every half period' if flips else 'it never turns over'}; {why}"
+    if not periodic:
+        return f"it never turns over; {why}"
+    if tumbles:
+        return f"it turns over every half period; {why}"
+    return (
+        "the disturbance is so large that the body circles another axis and the middle axis never turns over: the "
+        f"component along it changes its sign every half period, no more; {why}"
+    )

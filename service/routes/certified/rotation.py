@@ -29,11 +29,10 @@ from service.routes.rotation.trajectory import (
     ATTITUDE,
     OUTPUTS,
     ROTATION,
-    T_HANDLE,
     TIMES,
     RotationSamples,
 )
-from service.routing import Answer, Example
+from service.routing import Answer
 from service.schemas import DecimalString, Request, fields_of
 
 RATES = PerSample(2e-5, 6e-8, 1.7e-10)
@@ -97,12 +96,14 @@ def answer_trajectory(question: CertifiedTrajectoryRequest, budget: Budget) -> A
         "method": "closed-form",
         "period": motion.period(digits),
         "flip_interval": motion.flip_interval(digits),
+        "middle_axis_tilt": motion.middle_axis_tilt(digits),
+        "tumbles": motion.tumbles,
         "energy": motion.energy(digits),
         "angular_momentum": motion.angular_momentum(digits),
         "accuracy": accuracy(digits),
         "work": Work(samples),
         "ended": "horizon",
-        "warnings": notices(body),
+        "warnings": [*notices(body), *motion.warnings],
     }
     if "time" in wanted:
         fields["time"] = times_written(times, digits)
@@ -120,7 +121,7 @@ def answer_precession(question: CertifiedPrecessionRequest, budget: Budget) -> A
     body = body_of(question.body)
     motion = CertifiedRotation.of(body.of_motion, question.angular_velocity)
     found = fields_of(certified_precession(motion, question.digits))
-    return found | {"accuracy": accuracy(question.digits), "warnings": notices(body)}
+    return found | {"accuracy": accuracy(question.digits), "warnings": [*notices(body), *motion.warnings]}
 
 
 def answer_stability(question: CertifiedStabilityRequest, budget: Budget) -> Answer:
@@ -163,8 +164,6 @@ def stability_cost(question: CertifiedStabilityRequest, budget: Budget) -> Cost:
     return Cost(summing(question.body) + EQUILIBRIA.seconds(question.digits), 18, 3000.0)
 
 
-EXACT_T_HANDLE = {"kind": "principal-moments", "moments": ["837.2", "714", "437.7"]}
-
 CERTIFIED_ROTATION = (
     certified_route(
         ROTATION[0],
@@ -173,27 +172,6 @@ CERTIFIED_ROTATION = (
         handle=answer_trajectory,
         price=CertifiedCost(trajectory_cost),
         planning_probe=trajectory_probe,
-        examples={
-            "doubles": Example(
-                "T-handle tumbling, 50 digits",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "attitude": [1.0, 0.0, 0.0, 0.0],
-                    "times": {"start": 0.0, "stop": 20.0, "count": 5},
-                    "digits": 50,
-                },
-            ),
-            "decimal-strings": Example(
-                "moments that are exactly what they say: 837.2 is no double",
-                {
-                    "body": EXACT_T_HANDLE,
-                    "angular_velocity": ["0.1", "10", "0.1"],
-                    "times": ["0.1", "1e6"],
-                    "digits": 30,
-                },
-            ),
-        },
     ),
     certified_route(
         PRECESSION[0],
@@ -201,16 +179,6 @@ CERTIFIED_ROTATION = (
         answer=CertifiedPrecessionAnswer,
         handle=answer_precession,
         price=CertifiedCost(precession_cost),
-        examples={
-            "coin": Example(
-                "precession of a spinning coin, 100 digits",
-                {
-                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
-                    "angular_velocity": ["0.1", "0", "1"],
-                    "digits": 100,
-                },
-            )
-        },
     ),
     certified_route(
         PRECESSION[1],
@@ -218,6 +186,5 @@ CERTIFIED_ROTATION = (
         answer=CertifiedStabilityAnswer,
         handle=answer_stability,
         price=CertifiedCost(stability_cost),
-        examples={"t-handle": Example("T-handle, 40 digits", {"body": EXACT_T_HANDLE, "rate": "10", "digits": 40})},
     ),
 )

@@ -22,7 +22,7 @@ from service.requests.decimal_models import (
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import CertifiedCost, Cost, PerSample, affordable
 from service.routes.scenes import TIMES, SceneAnswer, answer_model, members, name_of, questions, request_model
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import DecimalString
 
 COLUMNS = 8
@@ -37,35 +37,6 @@ SAMPLES: Mapping[str, PerSample] = {"rod-in-hole": PerSample(4.5e-5, 1.5e-7, 1.5
 
 WRITTEN: Mapping[str, int] = {"rod-in-hole": 5, "chain-on-wedge": 4}
 """Numbers that are written of a sample, its time among them, where they are not as many as may be."""
-
-EXAMPLES: Mapping[str, Mapping[str, Any]] = {
-    "unwinding-shafts": {
-        "masses": ["2", "1"],
-        "radii": ["0.1", "0.2"],
-        "slopes": ["0.5", "0.9"],
-        "gravity": "9.81",
-        "outputs": ["tension", "accelerations"],
-        "digits": 50,
-    },
-    "rod-in-hole": {
-        "hole_radius": "1",
-        "length": "1",
-        "mass": "1",
-        "gravity": "9.81",
-        "times": {"start": "0", "stop": "2", "count": 5},
-        "digits": 50,
-    },
-    "chain-on-wedge": {
-        "masses": ["1", "1.2"],
-        "slopes": ["0.6", "0.8"],
-        "gravity": "9.81",
-        "length": "2",
-        "linear_density": "0.5",
-        "position": "1",
-        "times": ["0.1", "0.2"],
-        "digits": 50,
-    },
-}
 
 
 def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
@@ -136,5 +107,4 @@ def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
         handle=answering(scene),
         price=CertifiedCost(cost),
         planning_probe=scene_probe,
-        examples={"digits": Example("50 digits, every one of them proven", EXAMPLES[name])},
     )

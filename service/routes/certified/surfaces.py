@@ -24,7 +24,7 @@ from service.routes.rotation.surfaces import (
     curves_drawn,
     require_one,
 )
-from service.routing import Answer, Example
+from service.routing import Answer
 from service.schemas import DecimalString, Request, fields_of
 
 
@@ -161,27 +161,4 @@ CERTIFIED_ELLIPSOID = certified_route(
     price=CertifiedCost(ellipsoid_cost),
     planning_probe=ellipsoid_probe,
     representations={SVG: ellipsoid_figure},
-    examples={
-        "curves": Example(
-            "semi-axes, a polhode and the separatrix to 40 digits, every point on both quadrics",
-            {
-                "body": {"kind": "principal-moments", "moments": ["2", "1", "0.5"]},
-                "angular_velocity": ["0.4", "1", "0.7"],
-                "separatrix": True,
-                "points": 8,
-                "digits": 40,
-            },
-        ),
-        "mesh": Example(
-            "the icosahedron on the ellipsoid and two seeded polhodes",
-            {
-                "body": {"kind": "principal-moments", "moments": ["2", "1", "0.5"]},
-                "energy": "1",
-                "resolution": 1,
-                "polhodes": {"count": 2, "seed": 1},
-                "points": 8,
-                "digits": 20,
-            },
-        ),
-    },
 )

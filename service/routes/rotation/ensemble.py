@@ -22,9 +22,9 @@ from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
-from service.routes.rotation.surfaces import SOURCE_BODY, Count, Seed
+from service.routes.rotation.surfaces import Count, Seed
 from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy, in_closed_form
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
     AngularVelocityRow,
@@ -192,15 +192,5 @@ ENSEMBLE = (
         CalibratedCost("rotation_ensemble", ensemble_counts),
         is_small_ensemble,
         ensemble_probe,
-        examples={
-            "sample": Example(
-                "three of the source's random starts",
-                {
-                    "body": SOURCE_BODY,
-                    "sample": {"energy": 1.0, "count": 3, "seed": 0},
-                    "times": {"start": 0.0, "stop": 20.0, "count": 11},
-                },
-            ),
-        },
     ),
 )

@@ -17,8 +17,8 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE
-from service.routing import Answer, Example, PostRoute
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
+from service.routing import Answer, PostRoute
 from service.schemas import (
     Envelope,
     N,
@@ -54,7 +54,9 @@ class PrecessionFigures(Envelope, Generic[N]):
     )
     space_rate: RadiansPerSecond[N] | None = Field(description="L/I.")
     period: Seconds[N] | None = Field(description="Of the angular velocity in the body.")
-    flip_interval: Seconds[N] | None = Field(description="Between sign changes along the middle axis.")
+    flip_interval: Seconds[N] | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[Radians[N], Radians[N]] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     axis_to_angular_momentum: Radians[N] | None = Field(description="Angle from the axis to the angular momentum.")
     axis_to_angular_velocity: Radians[N] | None = Field(description="Half-angle of the body cone.")
     angular_momentum_to_angular_velocity: Radians[N] | None = Field(description="Half-angle of the space cone.")
@@ -74,7 +76,7 @@ RATE: Any = Field(default=1.0, description="About each principal axis in turn.")
 DISTURBANCE: Any = Field(
     default=None,
     description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
-    "the interval of its flips is then answered.",
+    "the interval between sign changes of the component along that axis is then answered.",
 )
 
 
@@ -169,29 +171,6 @@ PRECESSION = (
         CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
         precession_probe,
-        examples={
-            "coin": Example(
-                "a spinning coin",
-                {
-                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
-                    "angular_velocity": [1.0, 1.0, 1.0],
-                },
-            ),
-            "t-handle": Example("a T-handle", {"body": T_HANDLE, "angular_velocity": [1.0, 10.0, 1.0]}),
-            "source": Example(
-                "the source's experiment: forward Euler and the first return within 0.035",
-                {
-                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
-                    "angular_velocity": [1.0, 1.0, 1.0],
-                    "measure": {
-                        "method": {"kind": "explicit-euler", "step": 0.0075037518759379685},
-                        "duration": 15.0,
-                        "samples": 2000,
-                        "tolerance": 0.035,
-                    },
-                },
-            ),
-        },
     ),
     PostRoute(
         "/v1/rotation/stability",
@@ -203,13 +182,5 @@ PRECESSION = (
         answer_stability,
         CalibratedCost("stability", counts),
         is_small,
-        examples={
-            "t-handle": Example(
-                "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}
-            ),
-            "coin": Example(
-                "two equal moments", {"body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]}, "rate": 1.0}
-            ),
-        },
     ),
 )

@@ -21,7 +21,7 @@ from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.bodies import FEW_SAMPLES, counts, is_small, properties_of
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     AngularMomentumMagnitude,
     AngularVelocityRow,
@@ -241,8 +241,6 @@ def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
     return counts(question, budget) | {"numbers": 3 * question.count}
 
 
-SOURCE_BODY = {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}
-
 SURFACES = (
     PostRoute(
         "/v1/rotation/energy-ellipsoid",
@@ -257,29 +255,6 @@ SURFACES = (
         ellipsoid_probe,
         description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
         representations={SVG: ellipsoid_figure},
-        examples={
-            "triangles": Example(
-                "a coarse mesh with five polhodes and the separatrix",
-                {
-                    "body": SOURCE_BODY,
-                    "energy": 1.0,
-                    "resolution": 2,
-                    "polhodes": {"count": 5, "seed": 1},
-                    "separatrix": True,
-                    "points": 16,
-                },
-            ),
-            "grid": Example(
-                "the source's grid and the polhode through a state",
-                {
-                    "body": SOURCE_BODY,
-                    "angular_velocity": [0.4, 1.0, 0.7],
-                    "resolution": 6,
-                    "layout": "grid",
-                    "points": 16,
-                },
-            ),
-        },
     ),
     PostRoute(
         "/v1/rotation/initial-states",
@@ -291,10 +266,5 @@ SURFACES = (
         states,
         CalibratedCost("initial_states", states_counts),
         lambda question: question.count <= FEW_SAMPLES and is_small(question),
-        examples={
-            "thirty": Example(
-                "the source's thirty starts", {"body": SOURCE_BODY, "energy": 1.0, "count": 30, "seed": 0}
-            )
-        },
     ),
 )

@@ -15,7 +15,7 @@ from core.systems.system import Model
 from core.systems.trajectory import How, Work
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
     AngularMomentumMagnitude,
@@ -47,6 +47,18 @@ ATTITUDE: Any = Field(
 TIMES: Any = Field(description="Measured from the given state, of either sign, in any order.")
 ACCURACY: Any = Field(
     default=1e-9, description="Largest tolerated error of any sample, relative to the largest norm of the whole motion."
+)
+FLIP_INTERVAL: Any = Field(
+    description="Time between sign changes of the component along the middle axis. It exists about a stable axis too, "
+    "where the body does not turn over: see tumbles."
+)
+MIDDLE_AXIS_TILT: Any = Field(
+    description="Least and largest angle between the middle axis and the angular momentum in the whole motion; null at "
+    "rest and where two moments are equal. On the separatrix the limits 0 and pi."
+)
+TUMBLES: Any = Field(
+    description="Whether the middle axis turns over, from within 45 degrees of the angular momentum to within 45 "
+    "degrees of its opposite: every flip_interval, on the separatrix once."
 )
 METHOD: Any = Field(
     default=None, description="Leave it out to have the most accurate one chosen; it overrides the accuracy."
@@ -124,7 +136,9 @@ class RotationSamples(Envelope, Generic[N]):
     model: Model
     method: str = Field(description="Kind of the method that computed the samples.")
     period: Seconds[N] | None = Field(description="Of the angular velocity in the body; null where there is none.")
-    flip_interval: Seconds[N] | None = Field(description="Between sign changes along the middle axis.")
+    flip_interval: Seconds[N] | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[Radians[N], Radians[N]] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
     energy: Joules[N] | None = Field(description="Kinetic energy of the rotation.")
     angular_momentum: AngularMomentumMagnitude[N] | None = Field(description="Magnitude of the angular momentum.")
     work: Work
@@ -174,6 +188,8 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
         "method": found.motion.method,
         "period": found.period,
         "flip_interval": found.flip_interval,
+        "middle_axis_tilt": found.middle_axis_tilt,
+        "tumbles": found.tumbles,
         "energy": found.energy,
         "angular_momentum": found.angular_momentum,
         "accuracy": accuracy,
@@ -219,6 +235,11 @@ def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
 
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
 
+RESTING, STEADY = (
+    {"body": T_HANDLE, "angular_velocity": rates, "attitude": [1.0, 0.0, 0.0, 0.0], "times": [1.0]}
+    for rates in ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])
+)
+
 ROTATION = (
     PostRoute(
         "/v1/rotation/trajectory",
@@ -231,47 +252,6 @@ ROTATION = (
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
         trajectory_probe,
-        examples={
-            "t-handle": Example(
-                "a T-handle that tumbles",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "times": {"start": 0.0, "stop": 20.0, "count": 101},
-                },
-            ),
-            "attitude": Example(
-                "the same with its attitude in space",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "attitude": [1.0, 0.0, 0.0, 0.0],
-                    "times": [0.0, 1.0, 2.453763074],
-                    "accuracy": 1e-12,
-                },
-            ),
-            "points": Example(
-                "four point masses, their principal axes askew, with the attitude",
-                {
-                    "body": {
-                        "kind": "point-masses",
-                        "masses": [1.0, 2.0, 1.0, 0.5],
-                        "positions": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]],
-                    },
-                    "angular_velocity": [1.0, 2.0, 0.5],
-                    "attitude": [1.0, 0.0, 0.0, 0.0],
-                    "times": {"start": 0.0, "stop": 10.0, "count": 21},
-                },
-            ),
-            "explicit-euler": Example(
-                "the same by explicit Euler, to see what that does",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "times": {"start": 0.0, "stop": 5.0, "count": 51},
-                    "method": {"kind": "explicit-euler", "step": 0.002},
-                },
-            ),
-        },
+        warming=(RESTING, STEADY),
     ),
 )

@@ -11,7 +11,7 @@ from core.quantities import Quantity, Unit
 from core.rotation.wobble import Day, EarthFigures, from_ellipticity, from_period
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, one
-from service.routing import Answer, Example, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request
 
 
@@ -61,9 +61,5 @@ WOBBLE = (
         wobble,
         CalibratedCost("wobble", one),
         lambda question: True,
-        examples={
-            "chandler": Example("the source's 430 days", {"period": 430.0, "day": "sidereal"}),
-            "shape": Example("back from the shape", {"ellipticity": 1.00336409, "day": "solar"}),
-        },
     ),
 )

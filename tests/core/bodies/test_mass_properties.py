@@ -1,4 +1,4 @@
-"""Parallel axes against rational arithmetic, what is unknown, what is said beside the figures."""
+"""Parallel axes against rational arithmetic, unknown properties, and warnings."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def body(center: tuple[float, float, float] = (1.0, -2.0, 0.5)) -> MassPropertie
     return MassProperties.from_exact(THIRD, [Fraction(x) for x in center], TENSOR)  # type: ignore[arg-type]
 
 
-def test_a_fraction_is_kept_to_106_bits() -> None:
+def test_a_fraction_is_stored_with_106_bits() -> None:
     found = body()
     assert abs(found.exact_mass - THIRD) < THIRD / 2**106
     assert abs(found.exact_inertia[0][1] - Fraction(1, 7)) < Fraction(1, 7) / 2**106
@@ -92,7 +92,7 @@ def test_the_report_has_a_condition_for_the_mass() -> None:
     assert "0.333333 kg" in report["positive-mass"].detail
 
 
-def test_a_tensor_of_no_body_is_judged_at_its_field() -> None:
+def test_an_unphysical_tensor_is_reported_at_its_field() -> None:
     judged = diagonal((2.0, 1.0, 0.5)).judged("moments")
     assert [(notice.code, notice.path) for notice in judged.warnings] == [("unphysical-inertia", ("moments",))]
     assert "2 <= 0.5 + 1" in judged.warnings[0].detail

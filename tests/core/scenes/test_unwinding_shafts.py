@@ -364,3 +364,27 @@ def test_a_motion_needs_positions_and_times_after_the_start() -> None:
     figures = replace(PLAIN, positions=None).answer().figures
     assert "tension" in figures
     assert "events" not in figures
+
+
+@pytest.mark.parametrize("exponent", [5, 12, 19, 20, 30, 100, 160, 200, 300])
+def test_a_number_of_jerks_beyond_all_integers_is_given_as_a_double(exponent: int) -> None:
+    """Without loss the arcs are all alike, each as long as the jerk is fast: half the speed, twice the jerks."""
+    scene = UnwindingShafts(
+        masses=(2.0, 1.0), radii=(0.1, 0.2), slopes=(0.5, 0.9), gravity=9.81, positions=(1.0, 1.5), wound=(0.5, 0.8),
+        velocities=(-(10.0**-exponent), 0.0), restitution=1.0,
+    )  # fmt: skip
+    found = scene.answer(np.array([0.0, 0.3]))
+    last = found.figures["phases"][-1]
+    assert last["kind"] == "slack"
+    # Counted one by one where they still can be: 3.3e5 for a speed of 1e-5 m/s.
+    assert last["jerks"] * 10.0**-exponent == pytest.approx(3.33898807506669, rel=2e-5 if exponent == 5 else 1e-11)
+    assert isinstance(last["jerks"], int) is (exponent < 16)
+    assert np.isfinite(found.trajectory["positions"]).all()  # type: ignore[index]
+
+
+def test_slower_than_any_double_it_is_refused_and_does_not_fail() -> None:
+    with pytest.raises(InvalidParameter):
+        UnwindingShafts(
+            masses=(2.0, 1.0), radii=(0.1, 0.2), slopes=(0.5, 0.9), gravity=9.81, positions=(1.0, 1.5),
+            wound=(0.5, 0.8), velocities=(-5e-324, 0.0), restitution=1.0,
+        ).answer(np.array([0.0, 0.3]))  # fmt: skip

@@ -140,7 +140,7 @@ def _axis_rotations(part, duration, w, inertia):
 
 @kernel(DISCRETE_STEP)
 def _moser_veselov(duration, w, inertia, increment):
-    """By simple iteration of I e = (h M/2 - e x I e)/r, where the house uses Newton's method."""
+    """By simple iteration of I e = (h M/2 - e x I e)/r, where core uses Newton's method."""
     e, turned = 0.5 * duration * w, np.empty(3)
     half = inertia * e
     for _ in range(200):

@@ -215,3 +215,17 @@ def test_closed_form_methods_and_work_precision_divide_by_the_same_norm(moments,
         dense = np.linalg.norm(system.closed_form().sample(np.linspace(0.0, period, 4001)), axis=1).max()
         assert dense <= norm * (1 + 1e-14)
         assert dense >= norm * (1 - 1e-4)
+
+
+@pytest.mark.parametrize("far", [1e300, 1e307, 1.7e308])
+def test_no_stated_error_leaves_the_range_of_doubles(far: float) -> None:
+    """Errors next to the largest double, to which the reference's own is added."""
+    component = measured(np.array([[1.0, 0.5]]), np.array([[1.0, 1.0 / far]]), TIMES[:1], 1.0).beyond(2.0)
+    assert np.isfinite([component.largest, *component.components]).all()
+    assert component.components[1] >= 0.5
+    try:
+        whole = measured(np.array([[far]]), np.array([[1.0]]), TIMES[:1], 1.0).beyond(2.0)
+    except NotApplicable:
+        assert far > 1e307
+    else:
+        assert np.isfinite(whole.largest)

@@ -171,6 +171,16 @@ async def test_media_type_may_have_parameters(client: httpx.AsyncClient) -> None
     assert (await client.post("/v1/toy", content=json.dumps(GOOD), headers=headers)).status_code == 200
 
 
+async def test_an_unknown_path_is_answered_with_the_nearest_one(client: httpx.AsyncClient) -> None:
+    response = await client.post("/v1/toys", json=GOOD, headers={"x-request-id": "mine"})
+    document = response.json()
+    assert document["detail"] == (
+        "there is nothing at this path; did you mean /v1/toy? GET /openapi.json lists every path"
+    )
+    assert document["instance"] == "urn:polhode:request:mine"
+    assert document["request_id"] == response.headers["x-request-id"] == "mine"
+
+
 async def test_unknown_paths_and_methods(client: httpx.AsyncClient) -> None:
     for path in ("/v1", "/v1/toy/", "/V1/TOY", "/v1//toy", "/..%2f..%2fetc/passwd", "/page/", "/page/../settings.py"):
         response = await client.post(path, json=GOOD)
@@ -308,8 +318,9 @@ async def test_the_application_may_be_mounted(service: Service, client: httpx.As
     outer = Starlette(routes=[Mount("/mechanics", app=service)])
     async with client_of(outer) as mounted:
         for method, path, body in (("POST", "/v1/toy", GOOD), ("GET", "/v1/toy", None), ("HEAD", "/healthz", None)):
-            inside = await mounted.request(method, "/mechanics" + path, json=body)
-            outside = await client.request(method, path, json=body)
+            same = {"x-request-id": "same"}
+            inside = await mounted.request(method, "/mechanics" + path, json=body, headers=same)
+            outside = await client.request(method, path, json=body, headers=same)
             assert (inside.status_code, inside.content) == (outside.status_code, outside.content)
             assert inside.headers.get("allow") == outside.headers.get("allow")
         assert (await mounted.get("/mechanics/nothing")).json()["code"] == "not-found"

@@ -161,10 +161,10 @@ class TestInOnePiece:
         assert wire.status == problem.type.status == 429
         assert wire.headers == {
             "content-type": "application/problem+json",
-            "content-length": str(len(problem.body())),
+            "content-length": str(len(problem.body(wire.exchange.id))),
             "retry-after": "7",
         }
-        assert wire.body == (b"" if method == "HEAD" else problem.body())
+        assert wire.body == (b"" if method == "HEAD" else problem.body(wire.exchange.id))
         assert b'polhode_problems_total{code="too-busy"} 1.0' in wire.metrics.exposition()
         assert wire.counted() == {"429": "1.0"}
 

@@ -103,7 +103,7 @@ def test_steady_symmetric_and_separating_motions_are_covered(case: Uncertain) ->
 @pytest.mark.parametrize(
     "case", [case for case in SPECIAL if case.kind == "principal moments"][:3], ids=lambda c: c.start
 )
-def test_a_steady_spin_along_an_axis_of_the_body_keeps_its_share(case: Uncertain) -> None:
+def test_a_steady_spin_along_a_body_axis_has_the_relative_error_of_its_input(case: Uncertain) -> None:
     exact = TorqueFree(case.body(case.numbers).mass_properties(), np.array(case.start)).closed_form()
     assert exact.inherited(np.array([1e9]), 1e-6) == pytest.approx(1e-6, rel=1e-5)
 
@@ -114,7 +114,7 @@ def test_the_angle_of_a_steady_spin_is_lost_when_it_is_a_radian_off() -> None:
     assert rotation.horizon_of(1e-6) is None
     lost = free.horizon_of(1e-6)
     assert lost is not None
-    # The angle is off by 1e-6 of 1.5 t, and no longer told by first derivatives beyond a tenth of a radian.
+    # The angle is off by 1e-6 of 1.5 t, and first derivatives no longer apply beyond a tenth of a radian.
     assert lost == pytest.approx(0.1 / 1.5e-6, rel=1e-3)
 
 
@@ -175,13 +175,17 @@ def test_at_the_ends_of_the_double_range_it_is_a_number(
         assert 0.0 < free.inherited(times, uncertainty) <= np.pi
 
 
+# Starts nearer to the middle axis than doubles resolve are refused, as a test of their own says.
+component = st.floats(-1.0, 1.0).map(lambda x: x if abs(x) > 1e-30 else 0.0)
+
+
 @settings(deadline=None, derandomize=True, max_examples=150)
 @drawn(
     st.floats(0.3, 3.0),
     st.sampled_from((1e-15, 1e-9, 1e-4, 0.1, 1.0)),
     st.floats(0.3, 3.0),
-    st.tuples(*3 * [st.floats(-1.0, 1.0)]),
-    st.tuples(*3 * [st.floats(-1.0, 1.0)]),
+    st.tuples(*3 * [component]),
+    st.tuples(*3 * [component]),
     st.floats(-2.0, 4.0),
 )
 def test_no_difference_of_two_motions_grows_faster_than_groenwall_allows(first, gap, third, spin, away, late):

@@ -1,0 +1,111 @@
+"""What is kept of compiled code: whatever happens to it, the same numbers come out."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+PROGRAM = """
+from core.compiled import kernel
+
+@kernel()
+def double(x):
+    return x + x
+
+@kernel("float64(float64)")
+def quadruple(x):
+    return double(double(x))
+
+print(double(1.5), quadruple(1.5))
+print(sum(sum(dispatcher.stats.cache_hits.values()) for dispatcher in (double, quadruple)))
+"""
+
+FULL = """
+import resource, signal
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+"""
+"""Every write fails, as on a disk without room."""
+
+
+class Program:
+    """A program with two kernels, and the directory in which they are kept."""
+
+    def __init__(self, directory: Path) -> None:
+        self.kept = directory / "kept"
+        self.kept.mkdir()
+        self.file = directory / "program.py"
+        self.file.write_text(PROGRAM)
+
+    def run(self, before: str = "", **environment: str) -> tuple[int, str]:
+        """Return how many functions were not compiled anew, and what was written as an error."""
+        entry = f"{before}\nimport runpy\nrunpy.run_path({str(self.file)!r}, run_name='program')"
+        given = {"NUMBA_CACHE_DIR": str(self.kept), "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+        done = subprocess.run(
+            [sys.executable, "-c", entry], capture_output=True, text=True, env={**os.environ, **given, **environment}
+        )
+        assert done.returncode == 0, done.stderr
+        numbers, hits = done.stdout.splitlines()
+        assert numbers == "3.0 6.0"
+        return int(hits), done.stderr
+
+    def files(self, ending: str) -> list[Path]:
+        found = sorted(self.kept.rglob(f"*.{ending}"))
+        assert found
+        return found
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Program:
+    return Program(tmp_path)
+
+
+def truncated(data: bytes) -> bytes:
+    return data[: len(data) // 2]
+
+
+def emptied(data: bytes) -> bytes:
+    return b""
+
+
+def flipped(data: bytes) -> bytes:
+    """Return data with one bit changed, in the machine code."""
+    middle = data.index(b"ELF") + 200
+    return data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
+
+
+@pytest.mark.parametrize(
+    ("ending", "damage"), [("nbi", truncated), ("nbi", emptied), ("nbc", truncated), ("nbc", emptied), ("nbc", flipped)]
+)
+def test_what_is_damaged_is_compiled_again(program: Program, ending: str, damage: Callable[[bytes], bytes]) -> None:
+    program.run()
+    hits, errors = program.run()
+    assert (hits, errors) == (2, "")
+    for file in program.files(ending):
+        file.write_bytes(damage(file.read_bytes()))
+    hits, errors = program.run()
+    assert hits == 0
+    assert "CacheUnusable" in errors
+    # And kept again.
+    assert program.run() == (2, "")
+
+
+def test_where_there_is_no_room_nothing_is_kept(program: Program) -> None:
+    hits, errors = program.run(FULL)
+    assert hits == 0
+    assert "CacheUnusable" in errors
+    assert program.run()[0] == 0
+
+
+def test_where_nothing_can_be_written_nothing_is_kept(program: Program) -> None:
+    """Neither where it should be, nor beside the program, nor in a home."""
+    program.file.with_name("__pycache__").write_text("no directory")
+    hits, errors = program.run(NUMBA_CACHE_DIR="/dev/null/none", HOME="/dev/null", XDG_CACHE_HOME="/dev/null/none")
+    assert hits == 0
+    assert "compiled code cannot be kept" in errors

@@ -1,0 +1,76 @@
+"""Ready means that every kernel which a request can reach is compiled."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[3]
+Kernel = tuple[str, str]
+
+OF_NO_REQUEST = {
+    ("core.elliptic.integrals", "_carlson_rf"),
+    ("core.elliptic.integrals", "_complete_k"),
+    ("core.rotation.precession.constants", "angle_per_period"),
+}
+"""Kernels that Python code calls for users of the library; requests reach them inside of other kernels only."""
+
+
+def is_kernel(node: ast.AST) -> bool:
+    return isinstance(node, ast.FunctionDef) and any(
+        isinstance(mark, ast.Call) and isinstance(mark.func, ast.Name) and mark.func.id == "kernel"
+        for mark in node.decorator_list
+    )
+
+
+def names_outside_kernels(node: ast.AST) -> Iterator[str]:
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.Name):
+            yield child.id
+        if not is_kernel(child):
+            yield from names_outside_kernels(child)
+
+
+def entry_kernels() -> set[Kernel]:
+    """Return the compiled functions that Python code names: all others are compiled with those that call them."""
+    trees = {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts): ast.parse(path.read_text())
+        for path in (ROOT / "core").rglob("*.py")
+    }
+    kernels = {(module, node.name) for module, tree in trees.items() for node in ast.walk(tree) if is_kernel(node)}  # type: ignore[attr-defined]
+    found = set()
+    for module, tree in trees.items():
+        known = {name: (module, name) for own, name in kernels if own == module}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom):
+                known |= {alias.asname or alias.name: (node.module or "", alias.name) for alias in node.names}
+        found |= {known[name] for name in names_outside_kernels(tree) if known.get(name) in kernels}
+    return found
+
+
+PROGRAM = """
+import gc
+from pkgutil import resolve_name
+from numba.core.dispatcher import Dispatcher
+from core.systems.budget import Budget
+from service.execution.request_handler import RequestHandler
+from service.requests.request_reader import Limits
+from service.routing import TABLE
+
+RequestHandler(resolve_name(TABLE)(), Budget(), Limits()).warm()
+for found in gc.get_objects():
+    if isinstance(found, Dispatcher) and found.signatures:
+        print(found.py_func.__module__, found.py_func.__name__)
+"""
+
+
+def test_warming_compiles_every_kernel_that_a_request_can_reach() -> None:
+    """In a process of its own, which has called nothing for other tests."""
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True, cwd=ROOT)
+    compiled = {tuple(line.split()) for line in done.stdout.splitlines()}
+    entries = entry_kernels()
+    assert len(entries) > 40
+    assert entries - compiled == OF_NO_REQUEST
