@@ -39,7 +39,7 @@ class ResponseCache:
 
     def put(self, path: str, body: bytes, answer: Representation) -> None:
         """Cache an answer if it is small and its question has been asked before."""
-        if not self._most or len(body) + len(answer.text) > LARGEST:
+        if not self._most or len(body) + len(answer.body) > LARGEST:
             return
         question = hash((path, body))
         if question in self._asked:
