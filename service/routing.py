@@ -34,6 +34,37 @@ class Reply:
     status: int = 200
 
 
+Growth = Callable[[Answer], Mapping[str, float]]
+"""From the fields of an outline's answer to how many times as long some of them are in the whole answer, by name."""
+
+
+def as_long(fields: Answer) -> Mapping[str, float]:
+    """Return that no field of an answer is longer than in its outline."""
+    return {}
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A question that costs little in place of another, and what its answer tells of the other's.
+
+    Attributes
+    ----------
+    question : Any
+        Has the same model, warnings and refusals.
+    growth : callable
+        By how much the whole answer is longer.
+    error : float or None
+        Order of magnitude of the error of a method that is named.
+    exact : Any
+        For a method that is named, of which few steps are run: the question in closed form at the farthest time.
+    """
+
+    question: Any
+    growth: Growth = as_long
+    error: float | None = None
+    exact: Any = None
+
+
 def free(question: Any, budget: Budget) -> float:
     """Price of a question that costs less than reading it."""
     return 0.0
@@ -60,9 +91,8 @@ class PostRoute:
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
     small : callable
         Whether a question may be begun in the event loop, by counts that it states; decided without computing anything.
-    planning_probe : callable or None
-        From a question to one that costs little and has the same model, warnings and refusals, by which it is planned;
-        None if the question is that itself.
+    outline : callable or None
+        From a question and a budget to the `Outline` by which it is planned; None if the question is that itself.
     examples : mapping
         By a short name.
     warming : sequence of mappings
@@ -82,7 +112,7 @@ class PostRoute:
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
     small: Callable[[Any], bool] = never
-    planning_probe: Callable[[Any], Any] | None = None
+    outline: Callable[[Any, Budget], Outline] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     warming: Sequence[Mapping[str, Any]] = ()

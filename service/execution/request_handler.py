@@ -45,9 +45,7 @@ class RequestHandler:
 
     def answer(self, route: PostRoute, question: Any) -> Answer:
         """Return the whole answer: signature, warnings, fields."""
-        answer = {"signature": SIGNATURE, "warnings": (), **route.handle(question, self._budget)}
-        answer["warnings"] = [_warning(notice) for notice in answer["warnings"]]
-        return answer
+        return signed(route.handle(question, self._budget))
 
     def warm(self) -> None:
         """Have every kernel that can be reached compiled or loaded, so that no client waits for that."""
@@ -56,6 +54,13 @@ class RequestHandler:
                 self.answer(route, self.read(route, orjson.dumps(question)))
         # What its methods import when one of them is first asked for would hold up the event loop.
         import_module("scipy.integrate")
+
+
+def signed(fields: Answer) -> Answer:
+    """Return the whole answer that has such fields."""
+    answer = {"signature": SIGNATURE, "warnings": (), **fields}
+    answer["warnings"] = [_warning(notice) for notice in answer["warnings"]]
+    return answer
 
 
 def _warning(notice: Notice) -> dict[str, str]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import Field
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError
@@ -16,20 +16,17 @@ from core.quantities import Unit
 from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.system import Model
-from service.execution import cost_model as pricing
-from service.execution.cost_model import CalibratedCost, CostModel, one
+from service.execution.cost_model import UNCOUNTABLE, CalibratedCost, calibration, one
+from service.execution.request_handler import signed
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
-from service.routes.bodies import speed_to_follow
-from service.routing import Answer, PostRoute
+from service.routing import Answer, Outline, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
 
 WITHIN = "/request"
-CHEAP = 0.02
-"""A question without an planning_probe of its own is looked into only if it takes less than this (s)."""
 
 
 class PlanRequest(Request):
@@ -120,40 +117,35 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
 
 def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
     seconds = route.price(asked, budget)
-    method = getattr(asked, "method", None)
-    evaluations = _evaluations(asked, budget)
-    fields: Answer = {}
-    if route.planning_probe is not None or seconds < CHEAP:
-        try:
-            fields = route.handle(asked if route.planning_probe is None else route.planning_probe(asked), budget)
-        except AccuracyUnreachable as fault:
-            # Times and accuracies that are beyond the closed form do not keep a method that is named from its run.
-            if method is None or method.kind == "closed-form" or fault.path[:1] not in (("times",), ("accuracy",)):
-                raise
-    length = route.price.size(asked, budget) if isinstance(route.price, CostModel) else 0.0
-    length -= _spared(route, asked, fields)
-    model, stated = fields.get("model"), _stated(fields)
+    method, evaluations = getattr(asked, "method", None), _evaluations(route, asked, budget)
+    outline = Outline(asked) if route.outline is None else route.outline(asked, budget)
+    fields = route.handle(outline.question, budget)
+    length = _length(fields, outline.growth(fields))
+    model, stated, notices = fields.get("model"), _stated(fields), list(fields.get("warnings", ()))
     if model is None and fields.get("members"):
         model = fields["members"][0]["model"]
-    notices = [notice for notice in fields.get("warnings", ()) if notice.code not in OF_THE_OUTLINE]
-    if method is not None and method.kind == "closed-form":
-        method = None
-    if method is not None:
-        times, speed = asked.times, _speed(asked)
-        error = pricing.error_of(method, times, speed)
-        if error > asked.accuracy:
-            detail = f"the error of {method.kind} with this setting is expected to be of the order of {error:.1g}"
+    if outline.error is not None:
+        exact: Answer = {}
+        # Times that are beyond the closed form do not keep a method that is named from its run.
+        with suppress(AccuracyUnreachable):
+            exact = route.handle(outline.exact, budget)
+        notices = [notice for notice in (exact or fields)["warnings"] if notice.code not in OF_FEW_STEPS]
+        if outline.error > asked.accuracy:
+            detail = f"the error of {asked.method.kind} with this setting is expected to be of the order of {outline.error:.1g}"
             notices.append(Notice("accuracy-not-reached", detail, ("method",)))
-        stated = {"error": error, "how": "record of the method", "inherited": (stated or {}).get("inherited")}
+        inherited = (_stated(exact) or {}).get("inherited")
+        stated = {"error": outline.error, "how": "record of the method", "inherited": inherited}
+    elif stated:
+        method = {"kind": "closed-form"}
     return {
         "answerable": True,
         "model": model,
-        "method": method or ({"kind": "closed-form"} if stated else None),
+        "method": method,
         "cost": {
             "evaluations": evaluations,
             "samples": _samples(asked),
             "bytes": round(length),
-            "milliseconds": round(1e3 * (seconds + length * pricing.calibration().writing), 3),
+            "milliseconds": round(1e3 * (seconds + length * calibration().writing), 3),
         },
         "accuracy": stated,
         "errors": [],
@@ -161,23 +153,15 @@ def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
     }
 
 
-def _spared(route: PostRoute, asked: Any, fields: Answer) -> float:
-    """Return by how many bytes an answer is shorter because nothing changes: every row is the probe's only one."""
-    rows, model, samples = fields.get("angular_velocity"), fields.get("model"), _samples(asked)
-    if not isinstance(rows, np.ndarray) or rows.shape != (1, 3) or model is None or model.degrees_of_freedom != 0:
-        return 0.0
-    if samples is None or not isinstance(route.price, CalibratedCost) or asked.round is not None:
-        return 0.0
-    usual = pricing.calibration().bytes[route.price.operation]
-    row = len(written(rows[0])) + LENGTH_OF_A_TIME
-    return samples * max(0.0, usual["samples"] + 3 * usual["numbers"] - row)
+def _length(fields: Answer, growth: Mapping[str, float]) -> float:
+    """Return the length of an answer as JSON, of which some fields are so many times as long as those given."""
+    entries = signed(fields).items()
+    # Quotes, colon and comma of each entry, and the braces around all.
+    return 1.0 + sum(len(name) + 4 + len(written(value)) * growth.get(name, 1.0) for name, value in entries)
 
 
-LENGTH_OF_A_TIME = 20
-"""Characters of a time that has all its digits, with a comma."""
-
-OF_THE_OUTLINE = ("accuracy-not-reached", "rounded-beyond-accuracy")
-"""Warnings about a method or digits that the planning_probe of a question leaves out."""
+OF_FEW_STEPS = ("accuracy-not-reached", "rounded-beyond-accuracy")
+"""Warnings about the few steps that are run of a method."""
 
 
 def _stated(fields: Answer) -> dict[str, Any] | None:
@@ -191,24 +175,17 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
     return {"error": worst["error"], "how": worst["how"], "inherited": worst.get("inherited")}
 
 
-def _evaluations(asked: Any, budget: Budget) -> int | None:
-    method, times = getattr(asked, "method", None), getattr(asked, "times", None)
-    if getattr(asked, "methods", None) is not None or getattr(asked, "measure", None) is not None:
-        return None
-    if method is None or times is None:
+def _evaluations(route: PostRoute, asked: Any, budget: Budget) -> int | None:
+    if not isinstance(route.price, CalibratedCost):
         return 0
-    speed = _speed(asked)
-    count = round(min(1e18, pricing.evaluations(method, times, speed)))
-    name, _ = pricing.setting(method) if method.kind != "closed-form" else ("", 0.0)
-    if name == "step" and count > budget.evaluations:
+    counts = route.price.counts(asked, budget)
+    if "ladders" in counts:
+        return None
+    count = round(min(UNCOUNTABLE, sum(n for name, n in counts.items() if name.startswith("evaluations of "))))
+    if hasattr(getattr(asked, "method", None), "step") and count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
     return count
-
-
-def _speed(asked: Any) -> float:
-    starts = getattr(asked, "angular_velocities", None) or [getattr(asked, "angular_velocity", (1.0,))]
-    return speed_to_follow((asked.method,), asked.body, max(pricing.speed_of(start) for start in starts))
 
 
 def _samples(asked: Any) -> int | None:

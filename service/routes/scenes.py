@@ -11,15 +11,16 @@ from pydantic import Field, create_model
 
 from core.quantities import Tolerance, members_of
 from core.scenes import Scene
-from core.scenes.answer import ConstrainedSystem, SceneEvent
+from core.scenes.answer import HORIZON, ConstrainedSystem, SceneEvent
 from core.systems.budget import Budget
 from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, numbers
 from service.routes.bodies import few_times
 from service.routes.examples import examples
+from service.routes.outlines import FEW, few_of
 from service.routes.rotation.trajectory import Accuracy
-from service.routing import Answer, PostRoute
+from service.routing import Answer, Outline, PostRoute
 from service.schemas import (
     ROUND,
     Envelope,
@@ -189,12 +190,34 @@ def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
     }
 
 
-def scene_probe(question: Any) -> Any:
-    """Return the question about the earliest and the latest time alone."""
-    if question.times is None:
-        return question
-    times = question.times if isinstance(question.times, list) else [question.times.start, question.times.stop]
-    return question.model_copy(update={"times": [min(times), max(times)], "round": None})
+def outlining(
+    answer: Callable[[Any, Budget], Answer], instants: Callable[[Any, Budget], Any], most: int = FEW
+) -> Callable[[Any, Budget], Outline]:
+    """Return what outlines a question about a scene by at most so many of the times up to the end of its motion.
+
+    Parameters
+    ----------
+    answer : callable
+        Answers it.
+    instants : callable
+        From its times and the budget to their array.
+    """
+
+    def outline(question: Any, budget: Budget) -> Outline:
+        if question.times is None:
+            return Outline(question)
+        times = instants(question.times, budget)
+        ends = {"times": [times.min(), times.max()]}
+        if question.outputs is not None and "trajectory" not in question.outputs:
+            return Outline(question.model_copy(update=ends))
+        found = answer(question.model_copy(update=ends | {"outputs": ["events", "ended"]}), budget)
+        end = ends["times"][1] if found["ended"] == HORIZON else type(times[0])(found["events"][-1]["time"])
+        existing = times[times <= end]
+        few = list(dict.fromkeys([*existing[few_of(existing.size, most)], *ends["times"]]))
+        growth = {"trajectory": existing.size / max(1, sum(time <= end for time in few))}
+        return Outline(question.model_copy(update={"times": few}), lambda fields: growth)
+
+    return outline
 
 
 @cache
@@ -211,7 +234,7 @@ def questions() -> tuple[PostRoute, ...]:
             answering(scene),
             CalibratedCost(operation_of(scene), scene_counts),
             lambda question: question.times is None or few_times(question.times),
-            scene_probe,
+            outlining(answering(scene), sample_times),
             warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()

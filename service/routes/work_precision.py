@@ -26,7 +26,7 @@ from service.execution.cost_model import CalibratedCost, calibration, effort, ex
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
-from service.routing import Answer, PostRoute
+from service.routing import Answer, Outline, PostRoute
 from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
 
 LADDER_RADIANS = 50.0
@@ -152,10 +152,11 @@ def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> di
     return counts
 
 
-def work_precision_probe(question: WorkPrecisionRequest) -> WorkPrecisionRequest:
+def outline(question: WorkPrecisionRequest, budget: Budget) -> Outline:
     """Return the question about the closed form at the farthest time alone."""
     changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
-    return question.model_copy(update=changes)
+    growth = {"curves": float(_runs(question))}
+    return Outline(question.model_copy(update=changes), lambda fields: growth)
 
 
 def drawn(answer: Answer) -> bytes:
@@ -187,7 +188,7 @@ WORK_PRECISION = (
         WorkPrecisionAnswer,
         answer_work_precision,
         CalibratedCost("work_precision", work_precision_counts),
-        planning_probe=work_precision_probe,
+        outline=outline,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
         representations={SVG: drawn},
     ),

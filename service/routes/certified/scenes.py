@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from core.certified.scenes import certified_scene, exact_scene
 from core.errors import InvalidParameter
 from core.scenes.answer import ConstrainedSystem
@@ -14,14 +16,22 @@ from core.systems.trajectory import Work
 from service.requests.decimal_models import (
     DecimalTimes,
     DigitCount,
-    ends,
     explicit_fields,
     fields_in_numerals,
     instants,
 )
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
-from service.routes.certified.cost import CertifiedCost, Cost, PerSample, affordable
-from service.routes.scenes import TIMES, SceneAnswer, answer_model, members, name_of, questions, request_model
+from service.routes.certified.cost import SET_UP, PerSample, affordable
+from service.routes.scenes import (
+    TIMES,
+    SceneAnswer,
+    answer_model,
+    members,
+    name_of,
+    outlining,
+    questions,
+    request_model,
+)
 from service.routing import Answer, PostRoute
 from service.schemas import DecimalString
 
@@ -35,8 +45,8 @@ ELEMENTARY = PerSample(1.1e-5, 3e-8, 1e-10)
 SAMPLES: Mapping[str, PerSample] = {"rod-in-hole": PerSample(4.5e-5, 1.5e-7, 1.5e-9)}
 """Scenes with elliptic functions; the others are elementary."""
 
-WRITTEN: Mapping[str, int] = {"rod-in-hole": 5, "chain-on-wedge": 4}
-"""Numbers that are written of a sample, its time among them, where they are not as many as may be."""
+FEW = 8
+"""Samples by which more of them are foreseen."""
 
 
 def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
@@ -76,9 +86,8 @@ def _samples(question: Any, budget: Budget) -> int:
     return 0 if question.times is None else affordable(question.times, question.digits, COLUMNS, budget)
 
 
-def scene_probe(question: Any) -> Any:
-    """Return the question about the earliest and the latest time alone."""
-    return question if question.times is None else question.model_copy(update={"times": list(ends(question.times))})
+def _instants(times: Any, budget: Budget) -> Any:
+    return np.array(instants(times), dtype=object)
 
 
 class CertifiedSceneAnswer(Certified, SceneAnswer[DecimalString]):
@@ -92,12 +101,10 @@ def certified_scenes() -> tuple[PostRoute, ...]:
 
 
 def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
-    name = name_of(scene)
-    each = SAMPLES.get(name, ELEMENTARY)
+    each = SAMPLES.get(name_of(scene), ELEMENTARY)
 
-    def cost(question: Any, budget: Budget) -> Cost:
-        samples = _samples(question, budget)
-        return Cost(samples * each.seconds(question.digits), 10 + samples * WRITTEN.get(name, COLUMNS))
+    def cost(question: Any, budget: Budget) -> float:
+        return SET_UP + _samples(question, budget) * each.seconds(question.digits)
 
     own = fields_in_numerals(scene) | {"times": (DecimalTimes | None, TIMES), "digits": (DigitCount, ...)}
     return certified_route(
@@ -105,6 +112,6 @@ def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
         question=request_model(scene, "Certified", **own),
         answer=answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString),
         handle=answering(scene),
-        price=CertifiedCost(cost),
-        planning_probe=scene_probe,
+        price=cost,
+        outline=outlining(answering(scene), _instants, FEW),
     )

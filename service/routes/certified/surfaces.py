@@ -14,7 +14,7 @@ from service.requests.decimal_models import DecimalAngularVelocity, DecimalBody,
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices
-from service.routes.certified.cost import CertifiedCost, Cost, PerSample, summing
+from service.routes.certified.cost import SET_UP, PerSample, summing
 from service.routes.rotation.surfaces import (
     SURFACES,
     Count,
@@ -22,9 +22,10 @@ from service.routes.rotation.surfaces import (
     EllipsoidSurface,
     curve_points,
     curves_drawn,
+    outlined_surface,
     require_one,
 )
-from service.routing import Answer
+from service.routing import Answer, Outline
 from service.schemas import DecimalString, Request, fields_of
 
 
@@ -117,8 +118,8 @@ VERTEX = PerSample(5e-6, 1e-8, 6e-11)
 FACE = PerSample(2e-5, 2.5e-8, 1.5e-10)
 
 
-def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> Cost:
-    """Return what is counted: points of curves, vertices, and triangles, of which angles are measured.
+def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> float:
+    """Return the predicted time (s), by points of curves, vertices, and triangles, of which angles are measured.
 
     Raises
     ------
@@ -130,27 +131,22 @@ def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> Cost:
     check_digits(digits, _numbers(question))
     layout, resolution = _surface(question)
     faces = 20 * resolution**2 if layout == "triangles" else 0
-    seconds = (
-        summing(question.body)
+    return (
+        SET_UP
+        + summing(question.body)
         + curves * CURVE.seconds(digits)
         + points * POINT.seconds(digits)
         + _vertices(question) * VERTEX.seconds(digits)
         + faces * FACE.seconds(digits)
     )
-    # A third of the axes' components are zeros.
-    return Cost(seconds, 8 + _numbers(question), 600.0 + 14 * faces)
 
 
-def ellipsoid_probe(question: CertifiedEllipsoidRequest) -> CertifiedEllipsoidRequest:
-    """Return the question about a coarse surface and few points."""
-    changes: dict[str, Any] = {"points": min(question.points, 16)}
-    if question.resolution is not None and question.resolution <= 200:
-        changes["resolution"] = min(question.resolution, 4)
-    elif question.layout is not None and question.resolution is None:
-        changes["resolution"] = 4
-    if question.polhodes is not None:
-        changes["polhodes"] = question.polhodes.model_copy(update={"count": min(question.polhodes.count, 4)})
-    return question.model_copy(update=changes)
+def ellipsoid_outline(question: CertifiedEllipsoidRequest, budget: Budget) -> Outline:
+    """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
+    layout, resolution = _surface(question)
+    few = {} if layout is None or resolution > 200 else {"resolution": min(resolution, 4)}
+    whole = question if layout is None else question.model_copy(update={"resolution": resolution})
+    return Outline(*outlined_surface(whole, few, 16))
 
 
 CERTIFIED_ELLIPSOID = certified_route(
@@ -158,7 +154,7 @@ CERTIFIED_ELLIPSOID = certified_route(
     question=CertifiedEllipsoidRequest,
     answer=CertifiedEllipsoidAnswer,
     handle=energy_ellipsoid,
-    price=CertifiedCost(ellipsoid_cost),
-    planning_probe=ellipsoid_probe,
+    price=ellipsoid_cost,
+    outline=ellipsoid_outline,
     representations={SVG: ellipsoid_figure},
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any, Generic, Literal
 
 import numpy as np
@@ -15,10 +16,11 @@ from core.rotation.precession.precession import Precession, Regime, precession
 from core.rotation.stability.stability import stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
+from core.systems.methods import ClosedFormEvaluation
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
-from service.routing import Answer, PostRoute
+from service.routing import Answer, Outline, PostRoute
 from service.schemas import (
     Envelope,
     N,
@@ -31,6 +33,9 @@ from service.schemas import (
     UnitVector,
     View,
 )
+
+COARSE = 1000
+"""Samples by which a measurement of more of them is foreseen."""
 
 
 class PrecessionRequest(Request):
@@ -154,9 +159,12 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     return found | effort(measure.method, times, speed, measure.samples)
 
 
-def precession_probe(question: PrecessionRequest) -> PrecessionRequest:
-    """Return the question without its measurement."""
-    return question.model_copy(update={"measure": None})
+def outline(question: PrecessionRequest, budget: Budget) -> Outline:
+    """Return the question with a measurement of the closed form on a grid that is not fine."""
+    if question.measure is None:
+        return Outline(question)
+    coarse = replace(question.measure, method=ClosedFormEvaluation(), samples=min(question.measure.samples, COARSE))
+    return Outline(question.model_copy(update={"measure": coarse}))
 
 
 PRECESSION = (
@@ -170,7 +178,7 @@ PRECESSION = (
         answer_precession,
         CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
-        precession_probe,
+        outline,
     ),
     PostRoute(
         "/v1/rotation/stability",

@@ -21,7 +21,8 @@ from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.bodies import FEW_SAMPLES, counts, is_small, properties_of
-from service.routing import Answer, PostRoute
+from service.routes.outlines import FEW
+from service.routing import Answer, Growth, Outline, PostRoute
 from service.schemas import (
     AngularMomentumMagnitude,
     AngularVelocityRow,
@@ -214,15 +215,30 @@ def is_small_ellipsoid(question: EllipsoidRequest) -> bool:
     return question.resolution <= COARSE and curves * question.points <= FEW_POINTS and is_small(question)
 
 
-def ellipsoid_probe(question: EllipsoidRequest) -> EllipsoidRequest:
+def ellipsoid_outline(question: EllipsoidRequest, budget: Budget) -> Outline:
     """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
-    changes: dict[str, Any] = {"points": min(question.points, 16)}
-    if question.resolution <= FINEST_PRICED:
-        changes["resolution"] = min(question.resolution, 4)
+    coarse = min(question.resolution, {"triangles": 8, "grid": 16}[question.layout])
+    changes = {"resolution": coarse} if question.resolution <= FINEST_PRICED else {}
+    return Outline(*outlined_surface(question, changes, FEW))
+
+
+def outlined_surface(question: Any, changes: dict[str, Any], points: int) -> tuple[Any, Growth]:
+    """Return a question about a surface with changes and with few curves of few points, and the growth from it."""
+    changes["points"] = min(question.points, points)
     if question.polhodes is not None:
-        few = min(question.polhodes.count, 4)
-        changes["polhodes"] = question.polhodes.model_copy(update={"count": few})
-    return question.model_copy(update=changes)
+        changes["polhodes"] = question.polhodes.model_copy(update={"count": min(question.polhodes.count, 4)})
+    few = question.model_copy(update=changes)
+    fineness = (question.resolution / few.resolution) ** 2 if few.resolution else 1.0
+    length = (question.points + 1) / (few.points + 1)
+
+    def growth(fields: Answer) -> dict[str, float]:
+        polhodes = question.polhodes.count / few.polhodes.count if few.polhodes is not None else 1.0
+        # That of a steady rotation is a single point.
+        if any(curve["closed"] for curve in fields.get("polhodes", ())):
+            polhodes *= length
+        return {"mesh": fineness, "grid": fineness, "polhodes": polhodes, "separatrix": length}
+
+    return few, growth
 
 
 def states(question: StatesRequest, budget: Budget) -> Answer:
@@ -234,6 +250,13 @@ def states(question: StatesRequest, budget: Budget) -> Answer:
         "seed": question.seed,
         "warnings": tuple(notice.inside("body") for notice in body.warnings),
     }
+
+
+def states_outline(question: StatesRequest, budget: Budget) -> Outline:
+    """Return the question about few starts."""
+    few = min(question.count, FEW)
+    growth = {"angular_velocities": question.count / few}
+    return Outline(question.model_copy(update={"count": few}), lambda fields: growth)
 
 
 def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
@@ -252,7 +275,7 @@ SURFACES = (
         energy_ellipsoid,
         CalibratedCost("energy_ellipsoid", ellipsoid_counts),
         is_small_ellipsoid,
-        ellipsoid_probe,
+        ellipsoid_outline,
         description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
         representations={SVG: ellipsoid_figure},
     ),
@@ -266,5 +289,6 @@ SURFACES = (
         states,
         CalibratedCost("initial_states", states_counts),
         lambda question: question.count <= FEW_SAMPLES and is_small(question),
+        states_outline,
     ),
 )

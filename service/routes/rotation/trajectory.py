@@ -8,14 +8,15 @@ from pydantic import Field
 
 from core.bodies import Body
 from core.quantities import AngularVelocity, Quaternion, Tolerance, Uncertainty
-from core.rotation.sampled_rotation import Output, require_closed_form, sample_rotation, wanted_outputs
+from core.rotation.sampled_rotation import Output, sample_rotation, wanted_outputs
 from core.systems.budget import Budget
-from core.systems.methods import ClosedFormEvaluation, Method
+from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import How, Work
-from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
-from service.routing import Answer, PostRoute
+from service.routes.outlines import in_closed_form, outline_in_samples
+from service.routing import Answer, Outline, PostRoute
 from service.schemas import (
     ROUND,
     AngularMomentumMagnitude,
@@ -206,15 +207,13 @@ def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, 
     found = counts(question, budget) | {"samples": samples}
     if "attitude" in wanted:
         found |= {"attitudes": 1.0, "attitude samples": samples}
-    speed = speed_to_follow((question.method,), question.body, speed_of(question.angular_velocity))
-    found |= effort(question.method, question.times, speed, samples)
+    found |= effort(question.method, question.times, _speed(question), samples)
     columns = 3 * ("angular_velocity" in wanted) + 4 * ("attitude" in wanted)
     return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
 
 
-def in_closed_form(method: Any) -> bool:
-    """Return whether nothing is to be integrated."""
-    return method is None or isinstance(method, ClosedFormEvaluation)
+def _speed(question: TrajectoryRequest) -> float:
+    return speed_to_follow((question.method,), question.body, speed_of(question.angular_velocity))
 
 
 def is_small_trajectory(question: TrajectoryRequest) -> bool:
@@ -222,15 +221,9 @@ def is_small_trajectory(question: TrajectoryRequest) -> bool:
     return in_closed_form(question.method) and few_times(question.times) and is_small(question)
 
 
-def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
-    """Return the question about the farthest time alone, in closed form."""
-    if "attitude" in wanted_outputs(question.outputs, question.attitude):
-        require_closed_form(question.method)
-    changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
-    if question.method is not None and not isinstance(question.method, ClosedFormEvaluation):
-        # A method that is named is answered whatever its error.
-        changes["accuracy"] = 0.5
-    return question.model_copy(update=changes)
+def outline(question: TrajectoryRequest, budget: Budget) -> Outline:
+    """Return the question about few times."""
+    return outline_in_samples(question, _speed(question), budget)
 
 
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
@@ -251,7 +244,7 @@ ROTATION = (
         trajectory,
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
-        trajectory_probe,
+        outline,
         warming=(RESTING, STEADY),
     ),
 )
