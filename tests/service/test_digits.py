@@ -15,7 +15,7 @@ from mpmath import mp, mpf
 from core.systems.budget import Budget
 from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
-from service.routing import PostRoute
+from service.routes import questions
 from tests.oracles.free_rotation import flip_interval, period, reference_angular_velocity, reference_attitude
 from tests.service.conftest import Server, client_of, inline_service
 
@@ -412,7 +412,7 @@ async def test_the_key_may_be_written_with_escapes() -> None:
 
 
 def test_none_runs_in_the_server_and_long_ones_cost_more() -> None:
-    routes = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+    routes = questions()
     answering = RequestHandler(routes, Budget(), Limits())
     asking = [
         (route, dict(example.question))
