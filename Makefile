@@ -1,12 +1,16 @@
-# Everything runs in an environment that this file makes: Python 3.11 and a compiler are all it needs.
+# Everything runs in an environment that this file makes. `make serve` installs what the service needs to run, the other
+# targets install what the tests need, too.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 ENV := .venv
 BIN := $(ENV)/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes
+# Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
+PIP += --no-compile
 
 .PHONY: serve test check environment openapi judge record peers clean
 
-serve: environment
-	$(BIN)/python -m service
+serve: $(ENV)/runs
+	@$(BIN)/python -m service
 
 test: environment check
 	$(BIN)/python -m pytest -q -n 2 --dist worksteal
@@ -18,10 +22,20 @@ check: environment
 
 environment: $(ENV)/made
 
-$(ENV)/made: requirements-dev.lock
-	$(PYTHON) -m venv $(ENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
-	touch $@
+$(ENV)/bin/python:
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 14))' || \
+		{ echo "Polhode needs Python 3.11, 3.12 or 3.13; name it: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)"; exit 1; }
+	@$(PYTHON) -m venv $(ENV)
+
+$(ENV)/runs: requirements.lock | $(ENV)/bin/python
+	@echo "installing the packages of requirements.lock into $(ENV), once..."
+	@$(PIP) -r requirements.lock
+	@touch $@
+
+$(ENV)/made: requirements-dev.lock | $(ENV)/bin/python
+	@echo "installing the packages of requirements-dev.lock into $(ENV), once..."
+	@$(PIP) -r requirements-dev.lock
+	@touch $@ $(ENV)/runs
 
 openapi: environment
 	$(BIN)/python -m service --openapi > docs/openapi.json

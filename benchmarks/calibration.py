@@ -23,7 +23,7 @@ import numpy as np
 import orjson
 from scipy.optimize import nnls
 
-from benchmarks.machine import RESULTS, described
+from benchmarks.machine import RESULTS, T_HANDLE, described
 from core.bodies import measured as measured_bodies
 from core.bodies.measured import PrincipalMoments
 from core.errors import MechanicsError
@@ -45,7 +45,6 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.rotation.trajectory import T_HANDLE
 from service.routing import PostRoute
 
 ROOT = Path(__file__).parents[1]
@@ -157,7 +156,9 @@ def variants() -> dict[str, list[dict[str, Any]]]:
         "work_precision": compared,
     }
     for route in questions():
-        own = [dict(e.question) for e in route.examples.values() if "digits" not in e.question]
+        if own_price(route) is None:
+            continue
+        own = [dict(e.question) for e in route.examples.values()]
         if route.operation_id.startswith("scene_"):
             grown = [
                 entry | {"times": span(n, entry["times"]["stop"])} for entry in own if "times" in entry for n in SIZES
@@ -168,9 +169,8 @@ def variants() -> dict[str, list[dict[str, Any]]]:
 
 
 def own_price(route: PostRoute) -> pricing.CalibratedCost | None:
-    """Return the price by counts of a route, also of one that has another price for numbers of many digits."""
-    price = getattr(route.price, "own", route.price)
-    return price if isinstance(price, pricing.CalibratedCost) else None
+    """Return the price by counts of a route; certified routes have another."""
+    return route.price if isinstance(route.price, pricing.CalibratedCost) else None
 
 
 def measured_cost(answering: RequestHandler, route: PostRoute, question: dict[str, Any]) -> tuple[float, int, float]:
@@ -215,7 +215,8 @@ def method_table() -> dict[str, dict[str, float]]:
         work, errors = [], []
         for body, start in zip(BODIES[:2], STARTS[:2], strict=True):
             system = TorqueFree(PrincipalMoments(tuple(body["moments"])).mass_properties(), np.array(start))
-            exact, speed = system.closed_form().sample(times), math.hypot(*start)
+            motion, speed = system.closed_form(), math.hypot(*start)
+            exact = motion.sample(times)
             for setting in settings:
                 try:
                     run = method(setting).integrate(system, times)
@@ -225,7 +226,7 @@ def method_table() -> dict[str, dict[str, float]]:
                 small = setting * speed if kind in FIXED else setting
                 per = pricing.steps(times.tolist(), setting) if kind in FIXED else turned
                 work.append((math.log(setting), math.log(run.work.evaluations / per)))
-                error = measured(run.states, exact, times).largest
+                error = measured(run.states, exact, times, motion.largest_norm).largest
                 if 1e-13 < error < 0.3:
                     errors.append((math.log(small), math.log(error / turned)))
         slope, start_at = np.polyfit(*np.array(errors).T, 1)

@@ -81,7 +81,7 @@ def motion(
     period = found.period
     assert period is not None
     # A body with nearly equal moments turns very often in a period: half of its motions end where turns can be counted.
-    turns = 1e9 / found.largest_rate
+    turns = 1e9 / found.largest_norm
     longest = min(1e9 * period, turns) if countable else 1e9 * period
     quarter = 1.0 / found.motion.p / found.motion.time_scale
     times = [longest, -longest * rng.random()]

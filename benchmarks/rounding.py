@@ -10,13 +10,12 @@ from typing import Any
 
 import orjson
 
-from benchmarks.machine import RESULTS, described, medians
+from benchmarks.machine import RESULTS, T_HANDLE, described, medians
 from core.systems.budget import Budget
 from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import chunks
 from service.routes import questions
-from service.routes.rotation.trajectory import T_HANDLE
 
 QUESTION: dict[str, Any] = {
     "body": T_HANDLE,

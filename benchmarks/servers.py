@@ -43,24 +43,29 @@ def _children(process: int) -> list[int]:
 def service(**settings: str) -> Iterator[Server]:
     """Run the service until it is ready and as long as it is used; `settings` are POLHODE_* variables."""
     environment = {**os.environ, **{f"POLHODE_{name.upper()}": value for name, value in settings.items()}}
-    with _running([sys.executable, "-m", "service", "--port", "0"], environment) as server:
-        until = time.monotonic() + 180.0
-        while _status(server.port) != 200:
-            assert time.monotonic() < until, "the service does not get ready"
-            time.sleep(0.2)
+    with running([sys.executable, "-m", "service", "--port", "0"], environment) as server:
+        until_ready(server)
         yield server
+
+
+def until_ready(server: Server) -> None:
+    """Wait until a service is ready; an application without readiness is at once."""
+    until = time.monotonic() + 300.0
+    while _status(server.port) == 503:
+        assert time.monotonic() < until, "the service does not get ready"
+        time.sleep(0.2)
 
 
 @contextlib.contextmanager
 def control() -> Iterator[Server]:
     """Run an application that does nothing but answer."""
     command = [sys.executable, "-m", "uvicorn", "benchmarks.servers:bare", "--port", "0", "--no-access-log"]
-    with _running([*command, "--loop", "uvloop", "--http", "httptools"], dict(os.environ)) as server:
+    with running([*command, "--loop", "uvloop", "--http", "httptools"], dict(os.environ)) as server:
         yield server
 
 
 @contextlib.contextmanager
-def _running(command: list[str], environment: dict[str, str]) -> Iterator[Server]:
+def running(command: list[str], environment: dict[str, str]) -> Iterator[Server]:
     process = subprocess.Popen(command, stderr=subprocess.PIPE, env=environment, cwd=ROOT)
     try:
         assert process.stderr is not None

@@ -114,9 +114,7 @@ def _own() -> int:
 def serve() -> None:
     """Serve and print the port."""
     app = Watched()
-    config = uvicorn.Config(
-        app, port=0, loop="uvloop", http="service.http.protocol:Protocol", log_config=None, access_log=False
-    )
+    config = uvicorn.Config(app, port=0, loop="uvloop", http="zttp", log_config=None, access_log=False)
     server = uvicorn.Server(config)
 
     async def run() -> None:

@@ -1,95 +1,109 @@
-"""Requests per second of a small question, relative to a bare ASGI application under the same server.
+"""Requests per second of a small question in the deployed configurations, relative to a bare ASGI application.
 
-Run: python -m benchmarks.service_speed [rounds] [seconds]. Everything stays on 127.0.0.1. In each round every server is
-driven for the same time, one after the other, each round in another order, and ratios are taken within a round, so that
-a drifting machine drifts for all; the result is the median of the ratios and their quartiles. Processor time per
-request is the server process's own, as its scheduler counts it, and suffers less from what else the machine does.
+Run: python -m benchmarks.service_speed [rounds] [seconds]. It needs wrk; everything stays on 127.0.0.1. In each round
+every server is driven for the same time, one after the other, each round in another order. Ratios are taken within a
+round, so that a drifting machine drifts for all; the result is the median of the ratios and their quartiles. Processor
+time per request is the server process's own, as its scheduler counts it.
 
-"bare" is uvicorn with uvloop and httptools, reading the body and answering as many bytes. "transport" answers the
-question from a constant: all that is left is parsing, limits, metrics, writing. "plain" serves the same through
-uvicorn's own protocol. "real" keeps no answers, so that every question is computed; "real, new" is the service as it
-is set by default, asked for another body and another spin each time. The load comes from wrk where it is installed,
-otherwise from threads of http.client, which flatter the slow servers.
+"bare" is an application that reads the body and answers as many bytes, under uvicorn with its default parser. The
+question is for another body and another spin each time, except for "cached", which is the same question each time, and
+"constant", where the answer is a constant: what remains is reading, limits, keys, metrics and writing.
 """
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
+import hashlib
 import http.client
 import json
 import math
 import os
-import shutil
+import re
 import statistics
 import subprocess
 import sys
 import tempfile
-import threading
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from pkgutil import resolve_name
-from typing import Annotated, Any, Literal
-
-import uvicorn
-import uvloop
-from pydantic import BaseModel, Field
+from typing import Any
 
 from benchmarks.machine import RESULTS, described
-from core.bodies.measured import PrincipalMoments
-from service.routes.rotation.precession import PRECESSION
-from service.routing import TABLE, PostRoute
+from benchmarks.servers import Server, running, until_ready
 
-QUESTION = PRECESSION[0]
+PATH = "/v1/rotation/precession"
 BODY = json.dumps(
     {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}, "angular_velocity": [0.1, 1.0, 0.1]}
 ).encode()
-CONNECTIONS = 16
-Moment = Annotated[float, Field(gt=0)]
-TRANSPORT = "benchmarks.service_speed:transport"
-REAL = TABLE
-OURS = "service.http.protocol:Protocol"
+KEY, ORIGIN = "benchmark-key", "https://pages.example"
+CONNECTIONS = 32
+UVICORN = [sys.executable, "-m", "uvicorn", "--port", "0", "--no-access-log"]
+SERVICE = [sys.executable, "-m", "service", "--port", "0"]
 
 
-def transport() -> tuple[PostRoute, ...]:
-    """Return a table with the question as the service has it, whose answer is a constant of the same content."""
-    content = _content()
-    (asked,) = (route for route in resolve_name(REAL)() if route.path == QUESTION.path)
-    return (replace(asked, handle=lambda question, budget: content),)
+@dataclass(frozen=True)
+class Setup:
+    """A server and what it is sent."""
+
+    command: list[str]
+    keys: bool = True
+    cors: bool = False
+    new: bool = True
 
 
-def _content() -> dict[str, Any]:
+SETUPS = {
+    "bare": Setup([*UVICORN, "benchmarks.service_speed:bare"]),
+    "service, no keys": Setup(SERVICE, keys=False),
+    "service, keys": Setup(SERVICE),
+    "service, keys and CORS": Setup(SERVICE, cors=True),
+    "uvicorn service.app:app, keys": Setup([*UVICORN, "service.app:app"]),
+    "service, keys, constant": Setup([*UVICORN, "--http", "zttp", "benchmarks.service_speed:constant"], new=False),
+    "service, keys, cached": Setup(SERVICE, new=False),
+}
+
+
+def answer() -> dict[str, Any]:
+    """Return the fields of the answer to `BODY`."""
     from core.systems.budget import Budget
     from service.execution.request_handler import RequestHandler
-    from service.requests.request_reader import Limits
+    from service.requests.document_limits import Limits
+    from service.routes.rotation.precession import PRECESSION
 
-    answering = RequestHandler([QUESTION], Budget(), Limits())
-    return QUESTION.handle(answering.read(QUESTION, BODY), Budget())
+    handler = RequestHandler([PRECESSION[0]], Budget(), Limits())
+    return PRECESSION[0].handle(handler.read(PRECESSION[0], BODY), Budget())
 
 
-def _answer() -> bytes:
-    from core.systems.budget import Budget
-    from service.execution.request_handler import RequestHandler
-    from service.requests.request_reader import Limits
+def constant_table() -> tuple[Any, ...]:
+    """Return a table with the question, whose answer is a constant."""
+    from service.routes.rotation.precession import PRECESSION
+
+    content = answer()
+    return (replace(PRECESSION[0], handle=lambda question, budget: content),)
+
+
+def __getattr__(name: str) -> Any:
+    """Make the applications that servers ask for by name."""
+    if name == "bare":
+        return _bare()
+    if name == "constant":
+        from service.app import Service
+        from service.settings import Settings
+
+        return Service(Settings(cached_answers=0), "benchmarks.service_speed:constant_table")
+    raise AttributeError(name)
+
+
+def _bare() -> Any:
     from service.responses.json_rows import written
 
-    answering = RequestHandler([QUESTION], Budget(), Limits())
-    return written(answering.answer(QUESTION, answering.read(QUESTION, BODY)))
-
-
-def bare() -> Any:
-    """Return an application that reads the body and answers bytes of the same size."""
-    body = _answer()
+    body = written(answer() | {"signature": {"source": "polhode", "version": "0.1.0"}, "warnings": ()})
     headers = [(b"content-type", b"application/json"), (b"content-length", b"%d" % len(body))]
 
     async def app(scope: Any, receive: Any, send: Any) -> None:
         if scope["type"] == "lifespan":
-            await receive()
-            await send({"type": "lifespan.startup.complete"})
-            await receive()
-            await send({"type": "lifespan.shutdown.complete"})
+            for name in ("startup", "shutdown"):
+                await receive()
+                await send({"type": f"lifespan.{name}.complete"})
             return
         while (await receive()).get("more_body"):
             pass
@@ -99,226 +113,100 @@ def bare() -> Any:
     return app
 
 
-def ours(table: str, cached: int) -> Any:
-    """Return the service with every limit, metric and header on."""
-    from service.app import Service
-    from service.settings import Settings
-
-    return Service(Settings(cached_answers=cached, compute_workers=1), table)
-
-
-class AskedBody(BaseModel):
-    """A body, as FastAPI's tutorial would declare it."""
-
-    kind: Literal["principal-moments"]
-    moments: tuple[Moment, Moment, Moment]
-
-
-class Asked(BaseModel):
-    """The question, likewise."""
-
-    body: AskedBody
-    angular_velocity: tuple[float, float, float]
-
-
-def asked(question: Asked) -> dict[str, Any]:
-    """Return the fields of the question that core is asked."""
-    body = PrincipalMoments(moments=question.body.moments)
-    return {"body": body, "angular_velocity": question.angular_velocity, "measure": None}
-
-
-def idiomatic(table: str) -> Any:
-    """Return the question as FastAPI's tutorial would serve it: a model in, a model out, nothing else."""
-    from fastapi import FastAPI
-
-    from core.systems.budget import Budget
-
-    handle = QUESTION.handle if table == REAL else transport()[0].handle
-    signature = {"source": "polhode", "version": "0"}
-    app = FastAPI()
-
-    async def endpoint(question: Asked) -> Any:
-        answer = dict(handle(QUESTION.question.model_construct(**asked(question)), Budget()))
-        return {"signature": signature, **answer, "warnings": []}
-
-    app.post(QUESTION.path, response_model=QUESTION.answer)(endpoint)
-    return app
-
-
-SERVERS: dict[str, tuple[Callable[[], Any], str]] = {
-    "bare": (bare, "httptools"),
-    "transport": (lambda: ours(TRANSPORT, 0), OURS),
-    "transport, cache": (lambda: ours(TRANSPORT, 1024), OURS),
-    "transport, plain": (lambda: ours(TRANSPORT, 0), "httptools"),
-    "transport, cache, plain": (lambda: ours(TRANSPORT, 1024), "httptools"),
-    "transport, FastAPI": (lambda: idiomatic(TRANSPORT), "httptools"),
-    "real": (lambda: ours(REAL, 0), OURS),
-    "real, new": (lambda: ours(REAL, 1024), OURS),
-    "real, cache": (lambda: ours(REAL, 1024), OURS),
-    "real, FastAPI": (lambda: idiomatic(REAL), "httptools"),
-}
-"""Applications, and the protocol they are served by."""
-
-ALIKE = """wrk.method = "POST"
-wrk.body = '%s'
-wrk.headers["Content-Type"] = "application/json"
-"""
-NEW = """local question = '{"body": {"kind": "principal-moments", "moments": [%%.15f, %%.15f, %%.15f]}, '
+SCRIPT = """local question = '{"body": {"kind": "principal-moments", "moments": [%%.15f, %%.15f, %%.15f]}, '
   .. '"angular_velocity": [%%.15f, %%.15f, %%.15f]}'
-local head = "POST %s HTTP/1.1\\r\\nHost: 127.0.0.1\\r\\nContent-Type: application/json\\r\\nContent-Length: "
+local head = "POST %s HTTP/1.1\\r\\nHost: 127.0.0.1\\r\\nContent-Type: application/json\\r\\n%sContent-Length: "
+local r = %s
 function request()
-  local r = math.random
   local body = question:format(1 + r(), 2 + r() / 2, 2.5 + r() / 2, r(), r(), r())
   return head .. #body .. "\\r\\n\\r\\n" .. body
 end
 """
-"""What wrk asks: the same question each time, or another one."""
+"""What wrk sends: another question each time, or the same."""
 
 
-def serve(name: str) -> None:
-    """Serve one of the applications and print its port."""
-    application, protocol = SERVERS[name]
-    config = uvicorn.Config(
-        application(),
-        host="127.0.0.1",
-        port=0,
-        loop="uvloop",
-        http=protocol,
-        log_config=None,
-        access_log=False,
-        server_header=False,
-        proxy_headers=False,
-    )
-    server = uvicorn.Server(config)
-
-    async def run() -> None:
-        task = asyncio.ensure_future(server.serve())
-        while not server.started:
-            await asyncio.sleep(0.01)
-        print(server.servers[0].sockets[0].getsockname()[1], flush=True)
-        await task
-
-    uvloop.run(run())
-
-
-@dataclass(frozen=True)
-class Target:
-    """A server that runs."""
-
-    port: int
-    process: int
-
-    def processor_seconds(self) -> float:
-        """Return the time for which its threads have had a processor, NaN where the system does not tell."""
-        threads = Path(f"/proc/{self.process}/task").glob("*/schedstat")
-        return sum(int(thread.read_text().split()[0]) for thread in threads) / 1e9 or math.nan
+def script(setup: Setup, folder: Path) -> Path:
+    """Return the file with what is sent."""
+    headers = f"Authorization: Bearer {KEY}\\r\\n" if setup.keys else ""
+    headers += f"Origin: {ORIGIN}\\r\\n" if setup.cors else ""
+    numbers = "math.random" if setup.new else "function() return 0.25 end"
+    text = SCRIPT % (PATH, headers, numbers)
+    file = folder / hashlib.sha256(text.encode()).hexdigest()[:12]
+    file.write_text(text)
+    return file
 
 
 @contextlib.contextmanager
-def running(name: str) -> Iterator[Target]:
-    """Run a server in a process of its own, once it is ready."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "benchmarks.service_speed", "--serve", name], stdout=subprocess.PIPE, text=True
-    )
-    try:
-        assert process.stdout is not None
-        port = int(process.stdout.readline())
-        while _status(port, "/readyz") == 503:
-            time.sleep(0.1)
-        _ask(port)
-        yield Target(port, process.pid)
-    finally:
-        process.terminate()
-        process.wait(30)
+def started(setup: Setup, keys: Path) -> Iterator[Server]:
+    """Run a server until it is ready and as long as it is used."""
+    environment = {**os.environ, "POLHODE_COMPUTE_WORKERS": "1"}
+    if setup.keys:
+        environment["POLHODE_KEYS_FILE"] = str(keys)
+    if setup.cors:
+        environment["POLHODE_CORS_ORIGINS"] = ORIGIN
+    with running(setup.command, environment) as server:
+        until_ready(server)
+        yield server
 
 
-def _status(port: int, path: str) -> int:
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
-    with contextlib.closing(connection):
-        connection.request("GET", path)
-        return connection.getresponse().status
+def processor_seconds(process: int) -> float:
+    """Return the time for which a process's threads have had a processor, NaN where the system does not tell."""
+    threads = Path(f"/proc/{process}/task").glob("*/schedstat")
+    return sum(int(thread.read_text().split()[0]) for thread in threads) / 1e9 or math.nan
 
 
-def _ask(port: int) -> bytes:
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
-    connection.request("POST", QUESTION.path, BODY, {"content-type": "application/json"})
-    response = connection.getresponse()
-    content = response.read()
-    assert response.status == 200, content[:300]
-    connection.close()
-    return content
-
-
-Load = tuple[int, float]
-"""Requests that were answered, and how many in a second."""
-
-
-def with_wrk(port: int, seconds: float, script: Path) -> Load:
-    """Return what wrk counts."""
-    url = f"http://127.0.0.1:{port}{QUESTION.path}"
-    command = ["wrk", "-t1", f"-c{CONNECTIONS}", f"-d{seconds:g}s", "-s", str(script), url]
+def drive(port: int, seconds: float, what: Path) -> tuple[int, float]:
+    """Return how many requests were answered, and how many in a second."""
+    url = f"http://127.0.0.1:{port}{PATH}"
+    command = ["wrk", "-t1", f"-c{CONNECTIONS}", f"-d{seconds:g}s", "-s", str(what), url]
     out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    done, rate = re.search(r"(\d+) requests in", out), re.search(r"Requests/sec: +([\d.]+)", out)
+    assert done
+    assert rate
     assert "Non-2xx" not in out, out
-    done = next(line for line in out.splitlines() if "requests in" in line).split()[0]
-    return int(done), float(next(line for line in out.splitlines() if "Requests/sec" in line).split(":")[1])
+    return int(done[1]), float(rate[1])
 
 
-def with_threads(port: int, seconds: float, script: Path) -> Load:
-    """Return what a few threads count, who ask the same question each time."""
-    counts: list[int] = []
-    until = time.monotonic() + seconds
-
-    def drive() -> None:
-        connection = http.client.HTTPConnection("127.0.0.1", port)
-        done = 0
-        while time.monotonic() < until:
-            connection.request("POST", QUESTION.path, BODY, {"content-type": "application/json"})
-            connection.getresponse().read()
-            done += 1
-        counts.append(done)
-
-    threads = [threading.Thread(target=drive) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return sum(counts), sum(counts) / seconds
+def answered(port: int, keys: bool) -> int:
+    """Return the length of an answer."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    headers = {"content-type": "application/json"} | ({"authorization": f"Bearer {KEY}"} if keys else {})
+    with contextlib.closing(connection):
+        connection.request("POST", PATH, BODY, headers)
+        return len(connection.getresponse().read())
 
 
 def main(rounds: int = 9, seconds: float = 1.0) -> None:
     """Measure and write the result."""
-    rates: dict[str, list[float]] = {name: [] for name in SERVERS}
-    costs: dict[str, list[float]] = {name: [] for name in SERVERS}
-    before = os.getloadavg()
-    drive = with_wrk if shutil.which("wrk") else with_threads
+    rates: dict[str, list[float]] = {name: [] for name in SETUPS}
+    costs: dict[str, list[float]] = {name: [] for name in SETUPS}
+    load = os.getloadavg()
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        alike, new = folder / "alike.lua", folder / "new.lua"
-        alike.write_text(ALIKE % BODY.decode())
-        new.write_text(NEW % QUESTION.path)
-        targets = {name: stack.enter_context(running(name)) for name in SERVERS}
-        scripts = {name: new if name.endswith(", new") else alike for name in SERVERS}
-        for name, target in targets.items():
-            drive(target.port, 1.0, scripts[name])
-        order = list(targets)
+        keys = folder / "keys"
+        keys.write_text(f"benchmark {hashlib.sha256(KEY.encode()).hexdigest()} - -\n")
+        servers = {name: stack.enter_context(started(setup, keys)) for name, setup in SETUPS.items()}
+        scripts = {name: script(setup, folder) for name, setup in SETUPS.items()}
+        for name, server in servers.items():
+            drive(server.port, 1.0, scripts[name])
+        order = list(SETUPS)
         for _ in range(rounds):
             for name in order:
-                since = targets[name].processor_seconds()
-                done, rate = drive(targets[name].port, seconds, scripts[name])
+                since = processor_seconds(servers[name].pid)
+                done, rate = drive(servers[name].port, seconds, scripts[name])
                 rates[name].append(rate)
-                costs[name].append((targets[name].processor_seconds() - since) / done)
+                costs[name].append((processor_seconds(servers[name].pid) - since) / done)
             order = order[1:] + order[:1]
-        bytes_out = {name: len(_ask(targets[name].port)) for name in SERVERS}
-    ratios = {name: [own / base for own, base in zip(rates[name], rates["bare"], strict=True)] for name in SERVERS}
+        lengths = {name: answered(server.port, SETUPS[name].keys) for name, server in servers.items()}
+    ratios = {name: [own / base for own, base in zip(rates[name], rates["bare"], strict=True)] for name in SETUPS}
     result = {
-        "machine": described("uvicorn", "fastapi", "starlette", "uvloop", "httptools", "pydantic", "orjson"),
-        "load_average": {"before": before, "after": os.getloadavg()},
-        "driver": drive.__name__,
+        "machine": described("uvicorn", "fastapi", "starlette", "uvloop", "httptools", "zttp", "pydantic", "orjson"),
+        "load_average": {"before": load, "after": os.getloadavg()},
         "rounds": rounds,
         "seconds_per_round": seconds,
         "connections": CONNECTIONS,
         "bytes_in": len(BODY),
-        "bytes_out": bytes_out,
+        "bytes_out": lengths,
         "requests_per_second": {name: round(statistics.median(found)) for name, found in rates.items()},
         "processor_microseconds_per_request": {
             name: round(1e6 * statistics.median(found), 1) for name, found in costs.items()
@@ -337,7 +225,4 @@ def main(rounds: int = 9, seconds: float = 1.0) -> None:
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--serve"]:
-        serve(sys.argv[2])
-    else:
-        main(*(kind(value) for kind, value in zip((int, float), sys.argv[1:], strict=False)))
+    main(*(kind(value) for kind, value in zip((int, float), sys.argv[1:], strict=False)))

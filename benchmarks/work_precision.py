@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.machine import T_HANDLE
 from core.bodies.measured import PrincipalMoments
 from core.rotation.free_rotation import FreeRotation
 from core.systems.budget import Budget
 from service.responses.svg import Curve, Level, log_log
-from service.routes.rotation.trajectory import T_HANDLE
 from service.routes.work_precision import WorkPrecisionRequest, answer_work_precision, drawn
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"

@@ -1,4 +1,4 @@
-"""Numbers with a proven enclosure are computed by a library whose precision belongs to the process: one lock guards it.
+"""The working precision of ball arithmetic, which the library holds once per process, and the lock that protects it.
 
 References
 ----------
@@ -14,12 +14,12 @@ from threading import RLock
 
 from flint import ctx
 
-# Whoever changes the precision holds this, so that no thread computes at another's.
+# Held while the precision is changed, so that no thread computes at the precision of another.
 _precision_lock = RLock()
 
 
 @contextmanager
 def precision(bits: int) -> Iterator[None]:
-    """Compute in balls of so many bits inside the block."""
+    """Set the working precision to `bits` inside the block."""
     with _precision_lock, ctx.workprec(bits):
         yield

@@ -1,9 +1,9 @@
-"""The one way in which functions are compiled, and three machine instructions that the compiler does not offer.
+"""Compilation with numba, and three machine instructions that numba does not provide.
 
-Compiled code is kept on disk, so only the first process after an installation compiles. The compiler by itself would
-notice a change of a function's own file only, and go on calling what it had compiled from another file before that
-changed; so what is kept is kept under a digest of every file that holds compiled functions or constants of theirs.
-Floating-point semantics stay strict (no reassociation, no contraction): the error bounds rest on it.
+Compiled code is cached on disk, so only the first process after an installation compiles. Numba's cache depends only on
+the file of a function, and would return outdated code if an inlined function of another file changed. The cache
+directory is therefore named by a digest of all files that contain compiled functions or constants used in them.
+Floating-point semantics are strict (no reassociation, no contraction), because the error bounds rely on them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _IMPORTED = re.compile(rb"^from core\.([\w.]+) import", re.MULTILINE)
 
 
 def _digest() -> str:
-    """Return a digest of every source file that compiles something, and of those that it takes constants from."""
+    """Return a digest of every source file with compiled functions, and of those that provide constants to them."""
     found, core = hashlib.sha256(numba.__version__.encode()), Path(__file__).parent
     texts = {path: path.read_bytes() for path in core.rglob("*.py")}
     compiling = {path for path, text in texts.items() if b"core.compiled" in text or path.name == "compiled.py"}
@@ -43,9 +43,9 @@ def _digest() -> str:
 
 
 def _keep_by_content() -> None:
-    """Let the compiler keep its code under the digest, below its own setting or beside this file.
+    """Set the cache directory: named by the digest, in NUMBA_CACHE_DIR or beside this file.
 
-    Where that cannot be written the compiler's own choice, a directory of the user, stays.
+    If that is not writable, numba's own choice, a directory of the user, remains.
     """
     config: Any = numba.config
     base = Path(config.CACHE_DIR or Path(__file__).parent / "__pycache__")
@@ -56,18 +56,25 @@ def _keep_by_content() -> None:
 _keep_by_content()
 
 
+def has_compiled_code() -> bool:
+    """Return whether an earlier process has kept compiled code, so that this one need not compile."""
+    config: Any = numba.config
+    directory = str(config.CACHE_DIR)
+    return bool(directory) and any(Path(directory).rglob("*.nbc"))
+
+
 class CacheUnusable(RuntimeWarning):
-    """Compiled code could not be kept, or what was kept is damaged; it is compiled again and everything works."""
+    """Compiled code could not be cached, or the cache is damaged; the code is compiled again."""
 
 
-# The compiler's packages carry no types.
+# Numba's packages have no type annotations.
 _CodeCache: Any = caching.CompileResultCacheImpl
 _FunctionCache: Any = caching.FunctionCache
 _dumps: Any = serialize.dumps
 
 
 class _CheckedCode(_CodeCache):  # type: ignore[misc]
-    """Compiled code with a digest of its bytes, because a damaged machine code might run and compute something else."""
+    """Compiled code with a digest of its bytes, because damaged machine code might run and give wrong results."""
 
     def reduce(self, cres: Any) -> tuple[bytes, bytes]:
         code: bytes = _dumps(super().reduce(cres))
@@ -81,14 +88,14 @@ class _CheckedCode(_CodeCache):  # type: ignore[misc]
 
 
 class _CheckedCache(_FunctionCache):  # type: ignore[misc]
-    """The compiler's cache of one function, of which no fault is more than the loss of what was kept."""
+    """Numba's cache of one function; an error in it only causes a new compilation."""
 
     _impl_class = _CheckedCode
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:
             return super().load_overload(sig, target_context)
-        # Whatever a damaged file makes of its reading.
+        # Reading a damaged file may raise anything.
         except Exception as fault:
             self._unusable(fault)
             return None
@@ -100,14 +107,14 @@ class _CheckedCache(_FunctionCache):  # type: ignore[misc]
             self._unusable(fault)
 
     def _unusable(self, fault: Exception) -> None:
-        # One place in the code, so that a thousand faults are one warning.
+        # One place in the code, so that many errors give one warning.
         warnings.warn(f"compiled code in {self.cache_path} is not used: {fault!r}", CacheUnusable, stacklevel=1)
         with suppress(Exception):
             self.flush()
 
 
 def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
-    """Compile a function to machine code, on import for given signatures, otherwise at the first call."""
+    """Compile a function to machine code, on import if signatures are given, otherwise at the first call."""
 
     def compile_it(function: F) -> F:
         compiler: Any = numba.njit
@@ -115,7 +122,7 @@ def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
         try:
             dispatcher._cache = _CheckedCache(function)
         except RuntimeError as fault:
-            # No directory can be written: neither this one nor one of the user's.
+            # No directory is writable: neither this one nor one of the user.
             warnings.warn(f"compiled code cannot be kept: {fault}", CacheUnusable, stacklevel=1)
         if signatures:
             for signature in signatures:

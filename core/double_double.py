@@ -113,11 +113,11 @@ def dd_sqrt(ah: float, al: float) -> Pair:
     if ah <= 0.0:
         return 0.0, 0.0
     s = math.sqrt(ah)
-    # Corrections are multiplied by it: dividing takes longer, and the last digit of a correction decides nothing.
+    # Corrections are multiplied by the inverse: division is slower, and the last digit of a correction has no effect.
     inverse = 0.5 / s
     rho = fma(-s, s, ah) + al
     sh, sl = fast_two_sum(s, rho * inverse)
-    # One Newton step in pairs takes the error of the step above (about 2^-104) below the pair's own.
+    # One Newton step in pairs reduces the error of the step above (about 2^-104) below the rounding of a pair.
     ph, pl = dd_mul(sh, sl, sh, sl)
     dh, _ = dd_add(ah, al, -ph, -pl)
     return dd_add_d(sh, sl, dh * inverse)
@@ -127,16 +127,16 @@ def dd_sqrt(ah: float, al: float) -> Pair:
 def dd_exp(ah: float, al: float) -> Pair:
     """Return exp(a) for |a| < 700, to 8 + |a| units of 2^-106.
 
-    The argument is reduced to |r| < ln(2)/512 and the Taylor series summed to the twelfth power.
+    The argument is reduced to |r| < ln(2)/512, and the Taylor series is summed to the twelfth power.
     """
     k = math.floor(ah / LN2[0] + 0.5)
     kh, kl = dd_mul_d(LN2[0], LN2[1], k)
-    # The third word of ln 2 keeps the reduction right to 2^-106 of one for k up to a thousand.
+    # With the third word of ln 2 the reduction is accurate to 2^-106 for k up to a thousand.
     rh, rl = dd_add(ah, al, -kh, -kl)
     rh, rl = dd_add_d(rh, rl, -k * 5.707708438416212e-34)
     rh, rl = rh / 256.0, rl / 256.0
-    # s <- r/n (1 + s), so that s ends as exp(r) - 1; what is left from the sixth power on is multiplied by r^5/5!, and
-    # doubles suffice for it.
+    # s <- r/n (1 + s), so that s ends as exp(r) - 1. The terms from the sixth power on are multiplied by r^5/5!, so
+    # doubles suffice for them.
     sh, sl = 0.0, 0.0
     for n in range(12, 5, -1):
         sh = rh / n * (1.0 + sh)
@@ -145,11 +145,11 @@ def dd_exp(ah: float, al: float) -> Pair:
         th, tl = dd_mul(th, tl, rh, rl)
         sh, sl = dd_div_d(th, tl, float(n))
     for _ in range(8):
-        # (1 + s)^2 - 1 = s (2 + s): squaring without losing the small part.
+        # (1 + s)^2 - 1 = s (2 + s): squaring without cancellation.
         th, tl = dd_add_d(sh, sl, 2.0)
         sh, sl = dd_mul(th, tl, sh, sl)
     sh, sl = dd_add_d(sh, sl, 1.0)
-    # In two steps, as 2^k itself may lie outside the normal range where the product does not.
+    # In two steps, because 2^k may be outside the normal range although the product is not.
     half = int(k) // 2
     first, second = math.ldexp(1.0, half), math.ldexp(1.0, int(k) - half)
     return sh * first * second, sl * first * second
@@ -178,7 +178,7 @@ def scaled(h: float, low: float, exponent: int) -> Scaled:
     if -1000 < e < 1000:
         f = _power(-e)
         return Scaled(h * f, low * f, exponent + e)
-    # Near the ends of the range, 2^-e or h itself may be no normal number.
+    # Near the ends of the range, 2^-e or h itself may be subnormal or overflow.
     m, e = math.frexp(h)
     return Scaled(m, math.ldexp(low, -e), exponent + e)
 
@@ -237,7 +237,7 @@ def sc_sqrt(a: Scaled) -> Scaled:
 
 @kernel()
 def sc_pair(a: Scaled) -> Pair:
-    """Return a as a pair of doubles: exact unless it leaves their range."""
+    """Return a as a pair of doubles; exact unless it is outside their range."""
     e = a.exponent
     if e < -1000 or e > 1000:
         half = e >> 1

@@ -1,4 +1,4 @@
-"""Every error that the mechanics raises on purpose, as one tree.
+"""The exceptions of core.
 
 * MechanicsError
   - InvalidParameter (ValueError)
@@ -8,8 +8,8 @@
   - AccuracyUnreachable
   - BudgetExceeded
 
-Each error carries data, not only a sentence: where the fault is, which rule it breaks, what would mend it.
-The service turns the tree into HTTP answers in one table; nothing here knows a status code.
+Each error carries data besides its message: the path of the faulty field, the rule and a remedy. The service maps the
+classes to HTTP responses in one table; no status code appears here.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ Path = tuple[str | int, ...]
 
 
 class MechanicsError(Exception):
-    """Base class of every error raised on purpose.
+    """Base class of the exceptions of core.
 
     Attributes
     ----------
     detail : str
-        One sentence for the person who asked.
+        One sentence for the user.
     path : tuple of str and int
-        Where the fault is, as steps into the question; empty when it is nowhere in particular.
+        Path of the faulty field in the question; empty if no field is at fault.
     remedy : str or None
-        What would mend it.
+        How to correct the question.
     """
 
     def __init__(self, detail: str, *, path: Path = (), remedy: str | None = None) -> None:
@@ -36,16 +36,16 @@ class MechanicsError(Exception):
 
 
 class InvalidParameter(MechanicsError, ValueError):
-    """A parameter lies outside the range in which the model means anything.
+    """A parameter is outside its admissible range.
 
     Parameters
     ----------
     path : str, or tuple of str and int
-        The parameter, as steps from the object that is being built: ``("moments", 1)``.
+        Path of the parameter from the object under construction: ``("moments", 1)``.
     rule : str
-        What the parameter must do, completing the sentence "moments/1 must ...".
+        The rule, completing the sentence "moments/1 must ...".
     remedy : str, optional
-        What would mend it.
+        How to correct the parameter.
     """
 
     def __init__(self, path: str | Path, rule: str, *, remedy: str | None = None) -> None:
@@ -54,7 +54,7 @@ class InvalidParameter(MechanicsError, ValueError):
         self.rule = rule
 
     def inside(self, *outer: str | int) -> InvalidParameter:
-        """Return the same fault seen from an enclosing object."""
+        """Return the same error with the path from an enclosing object."""
         return type(self)((*outer, *self.path), self.rule, remedy=self.remedy)
 
 
@@ -67,17 +67,17 @@ class OpenMesh(InvalidParameter):
 
 
 class NotApplicable(MechanicsError):
-    """The method or model that was asked for does not exist for this system."""
+    """The requested method or model does not exist for this system."""
 
 
 class AccuracyUnreachable(MechanicsError):
-    """No method at hand reaches the accuracy that was asked for.
+    """No available method reaches the requested accuracy.
 
     Parameters
     ----------
     requested : float or None
-        Largest error of any sample, relative to the motion's largest norm, that was asked for; None where the question
-        is beyond any accuracy.
+        Requested largest error of any sample, relative to the motion's largest norm; None if the question cannot be
+        answered at any accuracy.
     achievable : float
         The error that can be reached.
     """
@@ -101,7 +101,7 @@ class AccuracyUnreachable(MechanicsError):
 
 
 class BudgetExceeded(MechanicsError):
-    """The question needs more work than one question may have.
+    """The question needs more work than the budget allows.
 
     Parameters
     ----------

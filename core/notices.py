@@ -1,4 +1,4 @@
-"""What an answer has to say beside its figures: a warning that a program can tell apart and a person can read."""
+"""Warnings that are part of an answer, with a code for programs and a text for people."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from core.errors import Path
 
 @dataclass(frozen=True)
 class Notice:
-    """A warning that goes with an answer; it never replaces one.
+    """A warning that accompanies an answer.
 
     Attributes
     ----------
     code : str
         Stable name for programs, for example ``"unphysical-inertia"``.
     detail : str
-        One or two sentences for a person.
+        One or two sentences for the user.
     path : tuple of str and int
-        What it is about, as steps into the question; empty when it is about the whole.
+        Path of the field concerned in the question; empty if it concerns the whole.
     """
 
     code: str
@@ -26,5 +26,5 @@ class Notice:
     path: Path = ()
 
     def inside(self, *outer: str | int) -> Notice:
-        """Return the same notice seen from an enclosing object."""
+        """Return the same notice with the path from an enclosing object."""
         return Notice(self.code, self.detail, (*outer, *self.path))

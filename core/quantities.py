@@ -2,7 +2,7 @@
 
 The annotations are read by three parties. `check` enforces them wherever an object is built; the service's
 validator and its OpenAPI document read the same marks through the two hooks below, which return plain
-dictionaries, so that nothing is imported here for their sake.
+dictionaries, so that nothing is imported here for their sake. What is computed has a unit alone (`Unit`).
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 from core.errors import InvalidParameter, Path
+
+RADIANS = "angles are in radians: 30 degrees is 0.5236"
 
 
 @dataclass(frozen=True)
@@ -54,14 +56,15 @@ class Quantity:
         unit = "" if self.unit == "1" else f" {self.unit}"
         if not isfinite(number):
             raise InvalidParameter(path, "be finite")
+        remedy = RADIANS if self.unit == "rad" else None
         if number <= self.above:
-            raise InvalidParameter(path, f"be greater than {self.above:g}{unit}")
+            raise InvalidParameter(path, f"be greater than {self.above:g}{unit}", remedy=remedy)
         if number < self.at_least:
-            raise InvalidParameter(path, f"be at least {self.at_least:g}{unit}")
+            raise InvalidParameter(path, f"be at least {self.at_least:g}{unit}", remedy=remedy)
         if number > self.at_most:
-            raise InvalidParameter(path, f"be at most {self.at_most:g}{unit}")
+            raise InvalidParameter(path, f"be at most {self.at_most:g}{unit}", remedy=remedy)
         if number >= self.below:
-            raise InvalidParameter(path, f"be less than {self.below:g}{unit}")
+            raise InvalidParameter(path, f"be less than {self.below:g}{unit}", remedy=remedy)
 
     @property
     def limits(self) -> dict[str, float]:
@@ -76,14 +79,41 @@ class Quantity:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
         names = {"gt": self.above, "ge": self.at_least, "le": self.at_most, "lt": self.below}
-        ends = {name: end for name, end in names.items() if isfinite(end)}
+        # The unit is for the words in which a fault is told.
+        rest = {name: end for name, end in names.items() if isfinite(end)} | {"metadata": {"unit": self.unit}}
         if source is int:
-            return {"type": "int", "strict": True, **ends}
-        return {"type": "float", "strict": True, "allow_inf_nan": False, **ends}
+            return {"type": "int", "strict": True, **rest}
+        return {"type": "float", "strict": True, "allow_inf_nan": False, **rest}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         kind = "integer" if schema["type"] == "int" else "number"
         return {"type": kind, **self.limits, "x-unit": self.unit}
+
+
+@dataclass(frozen=True)
+class Unit:
+    """The unit of every number in a computed figure; nothing is checked.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit, ``"1"`` for a pure number.
+    """
+
+    unit: str
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        described: dict[str, Any] = self._on_numbers(handler(schema))
+        return described
+
+    def _on_numbers(self, schema: Any) -> Any:
+        if isinstance(schema, list):
+            return [self._on_numbers(entry) for entry in schema]
+        if not isinstance(schema, Mapping):
+            return schema
+        if schema.get("type") in ("number", "string"):
+            return {**schema, "x-unit": self.unit}
+        return {key: self._on_numbers(entry) for key, entry in schema.items()}
 
 
 @dataclass(frozen=True)
@@ -113,7 +143,7 @@ Length = Annotated[float, Quantity("m", above=0)]
 LengthOrZero = Annotated[float, Quantity("m", at_least=0)]
 Coordinate = Annotated[float, Quantity("m")]
 InertiaFactor = Annotated[float, Quantity("1", at_least=0)]
-MomentOfInertia = Annotated[float, Quantity("kg m^2", above=0)]
+MomentOfInertia = Annotated[float, Quantity("kg m^2", at_least=0)]
 InertiaComponent = Annotated[float, Quantity("kg m^2")]
 AngularRate = Annotated[float, Quantity("rad s^-1")]
 Angle = Annotated[float, Quantity("rad")]

@@ -1,7 +1,7 @@
-"""Many quantities of one kind: rows of numbers that are kept as one array.
+"""Many quantities of one kind, stored in one array.
 
-The annotation is read by the same parties as `core.quantities.Quantity`: by `check`, by the service's validator, which
-keeps such arrays as they are, and by its OpenAPI document.
+The annotation is used like `core.quantities.Quantity`: by `check`, by the validator of the service, which does not
+convert such arrays, and in its OpenAPI document.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from core.work import spend
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of numbers kept as one array, checked without a Python object per number where they are an array already.
+    """Rows of numbers in one array. An array is checked without creating a Python object for each number.
 
     Parameters
     ----------
     width : int
-        Numbers in a row; 0 for a plain list of numbers.
+        Numbers per row; 0 for a plain list of numbers.
     quantity : Quantity
-        What each number is.
+        Unit and range of each number.
     at_least, at_most : int
         Admissible numbers of rows.
     whole : bool
-        Whether the numbers are indices: whole, and kept as such.
+        Whether the numbers are indices, stored as integers.
     """
 
     width: int
@@ -42,12 +42,12 @@ class Rows:
     whole: bool = False
 
     def read(self, path: Path, value: object) -> NDArray[Any]:
-        """Return `value` as an array that cannot be written, shape (n, width) or (n,).
+        """Return `value` as a read-only array, shape (n, width) or (n,).
 
         Raises
         ------
         InvalidParameter
-            Naming the first entry that is no finite number of the right kind.
+            With the path of the first entry that is not a finite number of the right kind.
         """
         if isinstance(value, np.ndarray) and value.dtype.kind in ("iu" if self.whole else "fiu"):
             return self._kept(path, value)
@@ -57,7 +57,7 @@ class Rows:
         if not self.at_least <= len(rows) <= self.at_most:
             raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(rows)}")
         spend(len(rows))
-        # Types and lengths are gathered as sets, which takes no Python code per row.
+        # Types and lengths are collected as sets, without Python code for each row.
         if self.width and not (set(map(type, rows)) <= {list, tuple} and set(map(len, rows)) <= {self.width}):
             i = next(i for i, row in enumerate(rows) if type(row) not in (list, tuple) or len(row) != self.width)
             raise InvalidParameter((*path, i), f"be a list of {self.width} numbers")
@@ -80,7 +80,7 @@ class Rows:
         return array
 
     def _kept(self, path: Path, value: NDArray[Any]) -> NDArray[Any]:
-        """Return a copy of an array of numbers that cannot be written, no number of it looked at by itself."""
+        """Return a read-only copy of an array, checked without a Python loop over its numbers."""
         if value.ndim == 0:
             raise InvalidParameter(path, "be a list")
         if not self.at_least <= len(value) <= self.at_most:
@@ -121,7 +121,7 @@ class Rows:
         )
 
     def test(self, value: object) -> bool:
-        """Return whether `value` has been read already."""
+        """Return whether `value` has already been read."""
         return isinstance(value, np.ndarray)
 
     def check(self, path: Path, value: object) -> None:

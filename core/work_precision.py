@@ -14,13 +14,14 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
 from core.systems.budget import Budget
-from core.systems.error_statements import drifts, estimated, measured
+from core.systems.error_statements import drifts, estimated, known_norm, measured
 from core.systems.methods import (
     ClosedFormEvaluation,
     DiscreteMoserVeselov,
@@ -57,7 +58,7 @@ class Measurement:
     method : Method
     error, final_error : float or None
         Largest norm of any sample's error, and of the one farthest from the start, relative to the largest norm of the
-        motion. None if the method failed.
+        whole motion, as in `core.systems.trajectory.Accuracy`. None if the method failed.
     component_errors : tuple of float
         Largest error of each component, relative to the largest magnitude that this component takes.
     drifts : dict of str to float
@@ -165,7 +166,7 @@ def work_precision(
     Raises
     ------
     InvalidParameter
-        For times as in `solve`, or no methods at all.
+        For times as in `solve`, no methods at all, or one with the same settings twice.
     AccuracyUnreachable
         If no reference can be had.
     """
@@ -173,12 +174,20 @@ def work_precision(
     instants = checked_times(times, budget)
     chosen = default_methods(system, instants) if methods is None else tuple(methods)
     if not chosen:
-        raise InvalidParameter("methods", "name at least one method")
-    reference, states, own = _reference(system, instants, budget)
-    found = [_measure(system, instants, method, states, own, repeats, budget, clock) for method in chosen]
+        raise InvalidParameter(
+            "methods", "name at least one method", remedy="leave it out for a ladder of every method"
+        )
+    for k, method in enumerate(chosen):
+        if method in chosen[:k]:
+            rule = f"differ from methods/{chosen.index(method)}, which is the same method with the same settings"
+            raise InvalidParameter(
+                ("methods", k), rule, remedy="give each setting once; repeats says how often it is timed"
+            )
+    reference = _reference(system, instants, budget)
+    found = [_measure(system, instants, method, reference, repeats, budget, clock) for method in chosen]
     ordered = sorted(found, key=lambda one: (one.method.kind, one.evaluations, -(one.error or math.inf)))
     curves = tuple(_curve(kind, tuple(group)) for kind, group in groupby(ordered, key=lambda one: one.method.kind))
-    return WorkPrecision(reference, own, curves, pareto_front(found), _recommended(found, accuracy))
+    return WorkPrecision(reference.kind, reference.error, curves, pareto_front(found), _recommended(found, accuracy))
 
 
 def default_methods(system: System, times: Floats) -> tuple[Method, ...]:
@@ -217,10 +226,19 @@ def pareto_front(measurements: Sequence[Measurement]) -> tuple[Measurement, ...]
     return tuple(front)
 
 
-def _reference(system: System, times: Floats, budget: Budget) -> tuple[str, Floats, float]:
+class _Reference(NamedTuple):
+    """States to compare with, what they may be wrong by, and the norm that errors are relative to."""
+
+    kind: str
+    states: Floats
+    error: float
+    largest_norm: float
+
+
+def _reference(system: System, times: Floats, budget: Budget) -> _Reference:
     exact = system.closed_form()
     if exact is not None:
-        return "closed form", exact.sample(times), exact.error(times)
+        return _Reference("closed form", exact.sample(times), exact.error(times), exact.largest_norm)
     method = DormandPrince853(10 * SMALLEST_TOLERANCE)
     run = method.integrate(system, times, budget)
     error = estimated(method, system, times, run, budget, run.work.evaluations).errors.largest
@@ -232,23 +250,22 @@ def _reference(system: System, times: Floats, budget: Budget) -> tuple[str, Floa
             path=("times",),
             remedy="ask for earlier times",
         )
-    return method.kind, run.states, error
+    return _Reference(method.kind, run.states, error, known_norm(run.states, system.initial_state))
 
 
 def _measure(
     system: System,
     times: Floats,
     method: Method,
-    reference: Floats,
-    own: float,
+    reference: _Reference,
     repeats: int,
     budget: Budget,
     clock: Callable[[], float],
 ) -> Measurement:
     try:
         run = method.integrate(system, times, budget)
-        # The closed form is not measured against itself: its error is its own bound, which is all that `own` says.
-        errors = measured(run.states, reference, times).beyond(own)
+        # The closed form is not measured against itself: its error is its own bound, which is all that is added.
+        errors = measured(run.states, reference.states, times, reference.largest_norm).beyond(reference.error)
     except MechanicsError as fault:
         return Measurement(method, failure=fault.detail)
     seconds = []

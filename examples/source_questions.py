@@ -11,7 +11,7 @@ from math import acos, cos, degrees, sin, sqrt
 from pathlib import Path
 from typing import Any
 
-from examples.ask import SERVICE, ask
+from examples.ask import ask, service_url
 
 Answers = Sequence[Mapping[str, Any]]
 Figures = dict[str, float]
@@ -149,6 +149,21 @@ def _eigenvalues(answers: Answers) -> Figures:
     }
 
 
+def _flip_interval(answer: Mapping[str, Any]) -> float:
+    """Return the interval between flips of a body that does turn over."""
+    if not answer["tumbles"]:
+        raise ValueError("the middle component changes its sign, but the body does not turn over")
+    return float(answer["flip_interval"])
+
+
+def _flip_of_disturbed(answer: Mapping[str, Any]) -> float:
+    """Return the same of a spin about the middle axis after a disturbance."""
+    flip = answer["flip"]
+    if not flip["reason"].startswith("it turns over every half period"):
+        raise ValueError(flip["reason"])
+    return float(flip["interval"])
+
+
 def _thrown(answers: Answers) -> Figures:
     deck, coin = answers
     low, middle, high, _ = (1e5 * (x["moment"] or 0.0) for x in deck["equilibria"])
@@ -157,7 +172,7 @@ def _thrown(answers: Answers) -> Figures:
         "middle": middle,
         "high": high,
         "growth": deck["equilibria"][1]["growth_rate"],
-        "flip": deck["flip"]["interval"],
+        "flip": _flip_of_disturbed(deck),
         "across": 1e7 * coin["equilibria"][0]["moment"],
         "along": 1e7 * coin["equilibria"][2]["moment"],
     }
@@ -179,11 +194,11 @@ def _t_handle(answers: Answers) -> Figures:
 def _tumbling(answers: Answers) -> Figures:
     free, euler, pinned, pinned_euler, near = answers
     return {
-        "flip": free["flip_interval"],
+        "flip": _flip_interval(free),
         "growth": 100.0 * euler["accuracy"]["drifts"]["energy"],
         "tilt": degrees(acos(10.0 / sqrt(102.0))),
-        "near": near["flip"]["interval"],
-        "source": pinned["flip_interval"],
+        "near": _flip_of_disturbed(near),
+        "source": _flip_interval(pinned),
         "source_growth": 100.0 * pinned_euler["accuracy"]["drifts"]["energy"],
     }
 
@@ -263,7 +278,7 @@ def page(found: Mapping[str, Figures]) -> str:
 def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--service", default=SERVICE, help="where it runs (default: %(default)s)")
+    parser.add_argument("--service", default=service_url(), help="where it runs (default: %(default)s)")
     service = parser.parse_args().service
     print(page(figures(lambda name: ask(name, service))), end="")
 

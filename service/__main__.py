@@ -1,19 +1,27 @@
-"""Starts the service: python -m service [--host --port --workers]."""
+"""Starts the service: python -m service [--host --port --workers].
+
+The application is imported last: what is wrong with the command line, the settings or the port is said at once.
+"""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import errno
 import os
+import signal
+import socket
 import sys
 from collections.abc import Sequence
+from multiprocessing import forkserver
 
 from pydantic import ValidationError
 
 from service import VERSION
-from service.app import create_app
+from service.execution import PRELOAD
 from service.http.keys import new_key
-from service.observability.logs import configure
-from service.running import Config, run
+from service.observability.logs import LOG, configure
+from service.observability.shared_counts import sharing
 from service.settings import Settings
 
 
@@ -43,7 +51,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the service until it is told to stop."""
+    """Run the service under uvicorn until it is told to stop."""
     options = parser().parse_args(arguments)
     if options.new_key is not None:
         key, line = new_key(options.new_key)
@@ -56,26 +64,60 @@ def main(arguments: Sequence[str] | None = None) -> None:
         faults = [f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}" for fault in error.errors()]
         sys.exit("\n".join(faults))
     if options.openapi:
-        sys.stdout.buffer.write(create_app(settings).openapi() + b"\n")
+        from service.app import create_app
+
+        sys.stdout.buffer.write(create_app(settings).openapi_text() + b"\n")
         return
     configure(settings.log_level)
+    host, port = settings.host, free_port(settings.host, settings.port)
     # Server processes read their settings from the environment that they inherit.
     os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
-    config = Config(
-        "service.server:app",
-        host=settings.host,
-        port=settings.port,
-        workers=settings.workers,
-        log_config=None,
-        access_log=False,
-        server_header=False,
-        # The address of the client is not used, so headers of proxies need not be read.
-        proxy_headers=False,
-        timeout_graceful_shutdown=settings.shutdown_seconds,
-        timeout_keep_alive=15,
-        h11_max_incomplete_event_size=65536,
-    )
-    run(config)
+    # uvicorn ends by the signal that stopped it, once it has finished; this makes that an ordinary end.
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
+    several = settings.workers > 1
+    if not several:
+        # It imports as much as this process does, at the same time.
+        forkserver.set_forkserver_preload([PRELOAD])
+        forkserver.ensure_running()
+    from core.compiled import has_compiled_code
+
+    LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: about 40 s, once")
+    import uvicorn
+
+    from service.app import create_app
+
+    with sharing() if several else contextlib.nullcontext():
+        uvicorn.run(
+            "service.app:app" if several else create_app(settings, f"http://{host}:{port}"),
+            host=host,
+            port=port,
+            workers=settings.workers,
+            http=settings.http_parser,
+            log_config=None,
+            access_log=False,
+            server_header=False,
+            # The address of the client is used for quotas only; behind a proxy, it is the proxy's.
+            proxy_headers=False,
+            timeout_graceful_shutdown=settings.shutdown_seconds,
+            timeout_keep_alive=settings.keep_alive_seconds,
+            h11_max_incomplete_event_size=65536,
+        )
+
+
+def free_port(host: str, port: int) -> int:
+    """Return a port that can be listened on, any free one for 0, or end with the reason why it cannot be."""
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind(address)
+            number: int = probe.getsockname()[1]
+            return number
+    except OSError as error:
+        hint = ""
+        if error.errno == errno.EADDRINUSE:
+            hint = "; choose another: --port 8001, or POLHODE_PORT=8001 make serve"
+        sys.exit(f"cannot listen on {host}, port {port}: {error.strerror}{hint}")
 
 
 if __name__ == "__main__":

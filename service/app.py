@@ -1,4 +1,8 @@
-"""The application: puts the parts together and holds their life cycle."""
+"""The application: FastAPI with the route table, and the life cycle of its parts.
+
+``uvicorn service.app:app`` or any other ASGI server serves it; ``python -m service`` is the same under uvicorn with the
+service's settings.
+"""
 
 from __future__ import annotations
 
@@ -11,17 +15,18 @@ from typing import Any
 
 import orjson
 from fastapi import FastAPI
+from starlette.middleware.cors import CORSMiddleware
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.execution.request_handler import RequestHandler
 from service.execution.supervision import end_with_supervisor
 from service.http.dispatch import Dispatcher
-from service.http.limits import Receive
-from service.http.request_context import Scope, Send
-from service.observability.logs import LOG
+from service.http.keys import Keys
+from service.observability.logs import LOG, configure
 from service.observability.metrics import Metrics
-from service.openapi.document import documented, openapi
+from service.openapi.document import ABOUT, document_routes, openapi
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages
@@ -29,69 +34,106 @@ from service.routing import TABLE, PostRoute, Route
 from service.settings import Settings
 
 
-class Service:
-    """The ASGI application.
+class Service(FastAPI):
+    """The application.
+
+    A request whose method and path are in the route table goes straight to its handler, by one look into a dict;
+    FastAPI would try the routes one by one and pass the request through six middlewares, at five times the cost of a
+    small answer. Everything else (unknown paths, methods and protocols, start and stop) takes FastAPI's own way.
+
+    Parameters
+    ----------
+    settings : Settings
+    table : str
+        Where the questions are: ``"module:function"``.
+    address : str
+        URL under which the service is announced as ready, if it is known.
 
     Attributes
     ----------
-    routes : tuple of Route
-        The one table.
-    documented : FastAPI
-        The same table as FastAPI sees it: the OpenAPI document, and a second way in that answers the same bytes.
+    table : tuple of Route
+        Everything that is served.
     warm : bool
         Whether every kernel is compiled and the compute processes have been up.
     """
 
-    def __init__(self, settings: Settings, table: str = TABLE) -> None:
-        self.settings = settings
+    def __init__(self, settings: Settings, table: str = TABLE, address: str = "") -> None:
+        super().__init__(**ABOUT, lifespan=self.lifespan)
+        self.settings, self._address = settings, address
         self.warm = False
         self.metrics = Metrics()
-        asked: tuple[PostRoute, ...] = resolve_name(table)()
+        questions: tuple[PostRoute, ...] = resolve_name(table)()
         self.compute = Compute(settings, self.metrics, table)
         terms = self.compute.terms
-        self._answering = RequestHandler(asked, terms.budget, terms.limits)
-        self.routes: tuple[Route, ...] = (
-            *asked,
+        self.answering = RequestHandler(questions, terms.budget, terms.limits)
+        self.table: tuple[Route, ...] = (
+            *questions,
             *catalogues(),
             *operations(ready=lambda: self.warm and self.compute.any_ready, metrics=self.metrics),
-            *pages(self.openapi),
+            *pages(self.openapi_text),
         )
-        self.dispatcher = Dispatcher(
-            self.routes, answering=self._answering, compute=self.compute, metrics=self.metrics, settings=settings
+        self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)
+        dispatcher = Dispatcher(
+            self.table,
+            answering=self.answering,
+            compute=self.compute,
+            metrics=self.metrics,
+            settings=settings,
+            keys=self._keys,
         )
-        self.documented: FastAPI = documented(self.routes, self.dispatcher.serve, self.lifespan)
-        self._openapi = b""
+        self._handlers, self._bodies = dispatcher.handlers, dispatcher.bodies
+        document_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
+        self._http = self._with_cors(self._known_or_not)
+        self._openapi_text = b""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve a request, or the server's start and stop."""
-        if scope["type"] == "http":
-            await self.dispatcher(scope, receive, send)
-        elif scope["type"] == "lifespan":
-            await self.documented(scope, receive, send)
-        else:
-            # Websockets are not spoken here.
-            await send({"type": "websocket.close", "code": 1000})
+        await (self._http if scope["type"] == "http" else super().__call__)(scope, receive, send)
 
-    def openapi(self) -> bytes:
+    async def _known_or_not(self, scope: Scope, receive: Receive, send: Send) -> None:
+        path: str = scope["path"]
+        if root := scope.get("root_path"):
+            path = path.removeprefix(root)
+        handler = self._handlers.get((scope["method"], path)) or super().__call__
+        await handler(scope, receive, send)
+
+    def _with_cors(self, app: ASGIApp) -> ASGIApp:
+        origins = [origin.strip() for origin in self.settings.cors_origins.split(",") if origin.strip()]
+        if not origins:
+            return app
+        return CORSMiddleware(
+            app,
+            allow_origins=origins,
+            allow_methods=("GET", "HEAD", "POST"),
+            allow_headers=("authorization", "content-type", "if-none-match", "x-request-id"),
+            expose_headers=("etag", "retry-after", "server-timing", "x-request-id"),
+            max_age=3600,
+        )
+
+    def openapi_text(self) -> bytes:
         """Return the OpenAPI document as JSON."""
-        if not self._openapi:
-            self._openapi = orjson.dumps(openapi(self.documented), option=orjson.OPT_INDENT_2)
-        return self._openapi
+        if not self._openapi_text:
+            self._openapi_text = orjson.dumps(openapi(self), option=orjson.OPT_INDENT_2)
+        return self._openapi_text
 
     @contextlib.asynccontextmanager
     async def lifespan(self, app: Any = None) -> AsyncIterator[None]:
         """Get ready in the background, while health is already answered; stop the compute processes at the end."""
-        warming = asyncio.create_task(self._warm())
-        publishing = asyncio.create_task(self._publish())
+        if not LOG.hasHandlers():
+            # Servers configure their own logging, not that of an application.
+            configure(self.settings.log_level)
+        kept_up = [self._warm(), self._publish(), self._bodies.watch()]
+        if self._keys is not None:
+            kept_up.append(self._keys.follow())
+        tasks = [asyncio.create_task(work) for work in kept_up]
         end_with_supervisor()
         try:
             yield
         finally:
             self.warm = False
-            publishing.cancel()
-            warming.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await warming
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
             await self.compute.stop()
 
     async def _warm(self) -> None:
@@ -104,7 +146,8 @@ class Service:
         gc.collect()
         gc.freeze()
         self.warm = True
-        LOG.info("ready", extra={"compute_processes": self.compute.size})
+        at = f" at {self._address}" if self._address else ""
+        LOG.info("ready%s", at, extra={"compute_processes": self.compute.size})
 
     async def _publish(self) -> None:
         while self.metrics.shared is not None:
@@ -112,10 +155,17 @@ class Service:
             await asyncio.sleep(1.0)
 
     def _prepare(self) -> None:
-        self._answering.warm()
-        self.openapi()
+        self.answering.warm()
+        self.openapi_text()
 
 
-def create_app(settings: Settings | None = None) -> Service:
+def create_app(settings: Settings | None = None, address: str = "") -> Service:
     """Return the application; settings come from the environment unless given."""
-    return Service(settings or Settings())
+    return Service(settings or Settings(), address=address)
+
+
+def __getattr__(name: str) -> Service:
+    """Make ``service.app:app`` when a server asks for it, so that importing this module builds nothing."""
+    if name != "app":
+        raise AttributeError(f"module {__name__} has no attribute {name}")
+    return create_app()

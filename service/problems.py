@@ -16,6 +16,11 @@ from core import errors
 MEDIA_TYPE = "application/problem+json"
 MOST_FAULTS = 20
 MOST_BYTES = 1900
+LONGEST_REMEDY = 80
+"""Characters of a remedy that a headline repeats."""
+
+KNOWN = "known here: "
+"""How a remedy begins that lists names."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,9 @@ REGISTRY: Mapping[str, ProblemType] = {
             "method-not-allowed", 405, "This path does not answer this method", "The Allow header lists the methods."
         ),
         ProblemType("not-acceptable", 406, "No representation fits the Accept header", "Accept application/json."),
+        ProblemType(
+            "body-too-slow", 408, "The body did not arrive in time", "The limit is named; send the body without pauses."
+        ),
         ProblemType("body-too-large", 413, "The body is too large", "The limit is named; send less or split it."),
         ProblemType(
             "unsupported-media-type",
@@ -130,6 +138,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             500,
             "The service failed",
             "Not the question's fault. Report the id, under which the failure is logged.",
+        ),
+        ProblemType(
+            "unsupported-transfer-coding",
+            501,
+            "The body has a transfer coding that is not understood",
+            "Send the body with its Content-Length, or chunked.",
         ),
         ProblemType(
             "worker-lost",
@@ -232,16 +246,26 @@ class Problem:
     headers: tuple[tuple[str, str], ...] = ()
     extra: Mapping[str, Any] = field(default_factory=dict)
 
-    def body(self) -> bytes:
-        """Return the document, with as many faults as fit into the bounds on their number and on its length."""
+    def body(self, request_id: str = "") -> bytes:
+        """Return the document, with as many faults as fit into the bounds on their number and on its length.
+
+        Parameters
+        ----------
+        request_id : str
+            Of the request that is refused, by which this occurrence is identified.
+        """
         document: dict[str, Any] = {
             "type": self.type.uri,
             "title": self.type.title,
             "status": self.type.status,
             "detail": self.detail,
             "code": self.type.code,
+            **({"instance": f"urn:polhode:request:{request_id}", "request_id": request_id} if request_id else {}),
             **self.extra,
         }
+        wait = dict(self.headers).get("Retry-After")
+        if wait is not None:
+            document.setdefault("retry_after_seconds", float(wait))
         room = MOST_BYTES - len(orjson.dumps(document))
         entries: list[dict[str, str]] = []
         for fault in self.faults[:MOST_FAULTS]:
@@ -266,10 +290,18 @@ def problem_of(error: errors.MechanicsError) -> Problem:
     detail = error.detail
     if isinstance(error, errors.InvalidParameter):
         fault = Fault(fault.pointer, f"must {error.rule}", error.remedy)
-        detail = fault.sentence
+        detail = headline((fault,))
     known = ("detail", "path", "remedy", "rule")
     data = {name: value for name, value in vars(error).items() if name not in known}
     return Problem(REGISTRY[code_of(error)], detail, (fault,), extra=data)
+
+
+def headline(faults: Sequence[Fault]) -> str:
+    """Return one sentence about faults: the first, with its remedy unless that is long, and how many more there are."""
+    first = faults[0]
+    brief = first.remedy is not None and len(first.remedy) <= LONGEST_REMEDY and not first.remedy.startswith(KNOWN)
+    advice = f" ({first.remedy})" if brief else ""
+    return f"{first.sentence}{advice}" + (f", and {len(faults) - 1} more" if len(faults) > 1 else "")
 
 
 def pointer_of(path: Iterable[str | int]) -> str:

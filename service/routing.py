@@ -69,6 +69,8 @@ class PostRoute:
         Questions beside the examples by which every kernel that the route can reach is compiled or loaded at the start.
     representations : mapping
         By media type, how an answer is written other than as JSON.
+    elsewhere : mapping
+        Fields that belong to another route, each with the remedy for who sends it here.
     """
 
     path: str
@@ -85,6 +87,7 @@ class PostRoute:
     examples: Mapping[str, Example] = field(default_factory=dict)
     warming: Sequence[Mapping[str, Any]] = ()
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     method: str = "POST"
 
 
@@ -98,6 +101,8 @@ class GetRoute:
         Returns what is sent now.
     answer : type or None
         Pydantic model that documents a JSON page.
+    example : callable or None
+        Returns an example of a JSON page.
     """
 
     path: str
@@ -108,6 +113,7 @@ class GetRoute:
     answer: type[BaseModel] | None = None
     media_type: str = "application/json"
     description: str = ""
+    example: Callable[[], Mapping[str, Any]] | None = None
     method: str = "GET"
 
 

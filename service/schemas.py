@@ -1,6 +1,7 @@
 """Requests that hold core's dataclasses as they are, and views of the answers for the documentation.
 
 Answers are never passed through these views; they are written as they come from the handlers. A test compares the two.
+Views of what is also answered in decimal strings are generic in the kind of number, so that their fields stand once.
 """
 
 from __future__ import annotations
@@ -8,19 +9,45 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields
 from math import isfinite
-from typing import Annotated, Any, Literal, Protocol
+from typing import Annotated, Any, Literal, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from core.errors import BudgetExceeded, InvalidParameter
-from core.quantities import Time
+from core.quantities import Time, Unit
 from core.systems.budget import Budget
+from core.systems.rounding import ROUND_TRIP
 from service import VERSION
 from service.requests.error_messages import ARRAY, OBJECT
 
 SIGNATURE = {"source": "polhode", "version": VERSION}
+
+
+class DecimalString(str):
+    """A number of a certified answer: a decimal string whose digits are proven."""
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> dict[str, Any]:
+        return {"type": "str"}
+
+
+N = TypeVar("N")
+"""Kind of number in which an answer is written: `float` or `DecimalString`."""
+
+Vector = Annotated[list[N], Field(min_length=3, max_length=3)]
+Matrix = Annotated[list[Vector[N]], Field(min_length=3, max_length=3)]
+QuaternionRow = Annotated[list[N], Field(min_length=4, max_length=4)]
+UnitVector = Annotated[Vector[N], Unit("1")]
+AngularVelocityRow = Annotated[Vector[N], Unit("rad s^-1")]
+Ratio = Annotated[N, Unit("1")]
+Seconds = Annotated[N, Unit("s")]
+Radians = Annotated[N, Unit("rad")]
+RadiansPerSecond = Annotated[N, Unit("rad s^-1")]
+PerSecond = Annotated[N, Unit("s^-1")]
+Joules = Annotated[N, Unit("J")]
+AngularMomentumMagnitude = Annotated[N, Unit("kg m^2 s^-1")]
 
 
 class Request(BaseModel):
@@ -42,19 +69,24 @@ class Signature(View):
     version: str = Field(description="Version of the service; equal questions get equal bytes within one version.")
 
 
-class Warned(View):
+class Notice(View):
     """Something the client should know about an answer that is given all the same."""
 
-    code: str
-    detail: str
+    code: str = Field(description="Stable name for machines.")
+    detail: str = Field(description="One sentence for people.")
     pointer: str | None = Field(default=None, description="RFC 6901 pointer into the question.")
 
 
-class Envelope(View):
-    """What every answer carries."""
+class Signed(View):
+    """What every document carries."""
 
     signature: Signature
-    warnings: list[Warned]
+
+
+class Envelope(Signed):
+    """What every answer carries."""
+
+    warnings: list[Notice] = Field(description="What the client should know about the answer.")
 
 
 def fields_of(found: Any) -> dict[str, Any]:
@@ -66,31 +98,69 @@ def fields_of(found: Any) -> dict[str, Any]:
     }
 
 
-class ProblemFault(View):
+class Fault(View):
     """A place in the document that was sent and what must hold there."""
 
     pointer: str = Field(description="RFC 6901 pointer into the document that was sent.")
-    detail: str
-    remedy: str | None = None
+    detail: str = Field(description="What must hold there.")
+    remedy: str | None = Field(default=None, description="What would mend it.")
 
 
 class ProblemDocument(BaseModel):
     """RFC 9457 problem document."""
 
-    type: str
-    title: str
-    status: int
-    detail: str
-    code: str = Field(description="Stable; GET /v1/errors lists them all.")
-    errors: list[ProblemFault] | None = None
+    type: str = Field(description="URI reference of the problem type, an entry of GET /v1/errors.")
+    title: str = Field(description="The same for every occurrence.")
+    status: int = Field(description="HTTP status.")
+    detail: str = Field(description="What happened this time.")
+    code: str = Field(description="Stable name for machines; GET /v1/errors lists them all.")
+    instance: str | None = Field(default=None, description="This occurrence: a URN that ends in the request's id.")
+    request_id: str | None = Field(default=None, description="The request's id, as in the X-Request-ID header.")
+    errors: list[Fault] | None = Field(default=None, description="Places in the document that was sent, at most 20.")
+    what: str | None = Field(default=None, description="What is counted, where a budget is exceeded.")
+    needed: int | None = Field(default=None, description="How much of it the question needs.")
+    limit: int | None = Field(default=None, description="How much of it one question may have.")
+    requested: Ratio[float] | None = Field(default=None, description="Relative error that was tolerated.")
+    achievable: Ratio[float] | None = Field(default=None, description="Relative error that can be reached.")
+    retry_after_seconds: Seconds[float] | None = Field(default=None, description="When to ask again.")
+    id: str | None = Field(default=None, description="Request id under which a failure is logged.")
+
+
+class _ReadAsOne:
+    """Has the union read and documented as one thing, so that a fault names its place and not its members."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
+        choices = [
+            {"type": "literal", "expected": ["meaningful"]},
+            {"type": "int", "strict": True, "ge": 1, "le": ROUND_TRIP},
+        ]
+        return {
+            "type": "custom-error",
+            "schema": {"type": "union", "mode": "left_to_right", "choices": choices},
+            "custom_error_type": "digits",
+            "custom_error_message": f"must be 'meaningful' or an integer from 1 to {ROUND_TRIP}",
+        }
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        whole = {"type": "integer", "minimum": 1, "maximum": ROUND_TRIP}
+        return {"anyOf": [{"type": "string", "const": "meaningful"}, whole]}
+
+
+Rounding = Annotated[Literal["meaningful"] | int, _ReadAsOne()]
+ROUND: Any = Field(
+    default=None,
+    description="Write samples with fewer digits: 'meaningful' keeps the decimal places that the error and the "
+    "inherited error support, a number keeps as many significant digits. The stated error covers it. "
+    "Default: every number reads back as the same double.",
+)
 
 
 class Span(Request):
     """Evenly spaced times, both ends included, exactly as numpy.linspace gives them."""
 
-    start: Time
-    stop: Time
-    count: int = Field(ge=1, le=10**9)
+    start: Time = Field(description="First time.")
+    stop: Time = Field(description="Last time.")
+    count: int = Field(ge=1, le=10**9, description="Number of times.")
 
     def values(self) -> NDArray[np.float64]:
         """Return the times, shape (count,)."""
@@ -147,8 +217,3 @@ def sample_times(times: Span | list[float], budget: Budget) -> NDArray[np.float6
     if not isinstance(times, Span):
         return np.array(times, dtype=np.float64)
     return times.values()
-
-
-Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
-Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
-QuaternionRow = Annotated[list[float], Field(min_length=4, max_length=4)]

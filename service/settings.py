@@ -27,8 +27,19 @@ class Settings(BaseSettings):
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
     workers: int = Field(default=1, ge=1, le=256, description="Number of server processes that share the port.")
 
+    http_parser: Literal["zttp", "httptools", "h11"] = Field(
+        default="zttp",
+        description="HTTP parser of uvicorn; zttp and h11 bound the memory of a connection, h11 is the slowest.",
+    )
+    keep_alive_seconds: int = Field(
+        default=75, ge=1, le=LONGEST, description="Time after which a connection without a request is closed."
+    )
+
     max_body_bytes: int = Field(
         default=8_000_000, ge=1, description="Largest request body; a longer one is refused unread (413)."
+    )
+    body_seconds: float = Field(
+        default=30.0, gt=0, le=LONGEST, description="Time in which a request body must have arrived (408)."
     )
     max_nesting: int = Field(
         default=32, ge=1, le=200, description="Deepest nesting of arrays and objects in a request body (400)."
@@ -81,8 +92,8 @@ class Settings(BaseSettings):
     max_held_bytes: int = Field(
         default=512_000_000,
         ge=1,
-        description="Memory of requests that are being answered and of answers that are being read by their clients "
-        "above which new large requests are refused (429).",
+        description="Memory of bodies that are arriving, of requests that are being answered and of answers that are "
+        "being read by their clients above which new large requests are refused (429).",
     )
     stalled_seconds: float = Field(
         default=20.0,
@@ -91,10 +102,9 @@ class Settings(BaseSettings):
         description="Time in which a client must take some of its answer; otherwise it is let go.",
     )
     cached_answers: int = Field(
-        default=1024, ge=0, description="Number of small answers that are kept for questions asked again; 0 keeps none."
-    )
-    cached_bytes: int = Field(
-        default=8_000_000, ge=0, description="Memory that kept answers may take; those unused for longest go first."
+        default=1024,
+        ge=0,
+        description="Number of answers of at most 8 kB that are cached, with their questions; 0 caches none.",
     )
 
     keys_file: Annotated[FilePath, BeforeValidator(_named)] | None = Field(

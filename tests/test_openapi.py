@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +13,15 @@ import httpx
 import jsonschema
 import pytest
 
+from core.quantities import members_of
+from core.scenes import Scene
 from service.routing import PostRoute
 from tests.service.conftest import inline_service
 
 SNAPSHOT = Path(__file__).parent.parent / "docs" / "openapi.json"
 SERVICE = inline_service()
-DOCUMENT: dict[str, Any] = json.loads(SERVICE.openapi())
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+DOCUMENT: dict[str, Any] = json.loads(SERVICE.openapi_text())
+QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 EXAMPLES = [(route, name) for route in QUESTIONS for name in route.examples]
 
 
@@ -25,15 +29,78 @@ def test_the_document_is_the_committed_one() -> None:
     assert json.loads(SNAPSHOT.read_text()) == DOCUMENT, "run: python -m service --openapi > docs/openapi.json"
 
 
+def nodes(node: Any) -> Iterator[dict[str, Any]]:
+    """Yield every object of a document."""
+    if isinstance(node, dict):
+        yield node
+    for entry in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
+        yield from nodes(entry)
+
+
+OPERATIONS = [entry for verbs in DOCUMENT["paths"].values() for entry in verbs.values()]
+SCHEMAS = DOCUMENT["components"]["schemas"]
+
+
 def test_operations_have_ids_and_problems() -> None:
-    operations = [entry for verbs in DOCUMENT["paths"].values() for entry in verbs.values()]
-    ids = [entry["operationId"] for entry in operations]
+    ids = [entry["operationId"] for entry in OPERATIONS]
     assert len(set(ids)) == len(ids)
-    for entry in operations:
-        problems = [status for status in entry["responses"] if int(status) >= 400]
+    for entry in OPERATIONS:
+        problems = [one for status, one in entry["responses"].items() if int(status) >= 400]
         assert problems
-        for status in problems:
-            assert list(entry["responses"][status]["content"]) == ["application/problem+json"]
+        for problem in problems:
+            name = problem["$ref"].rsplit("/", 1)[1]
+            assert list(DOCUMENT["components"]["responses"][name]["content"]) == ["application/problem+json"]
+
+
+def test_a_client_learns_who_serves_it_under_which_licence() -> None:
+    assert DOCUMENT["info"]["license"]["identifier"] == "Apache-2.0"
+    assert DOCUMENT["info"]["contact"]["name"]
+    assert DOCUMENT["servers"][0]["url"] == "/"
+
+
+def test_every_json_operation_has_an_example() -> None:
+    for entry in OPERATIONS:
+        if "requestBody" in entry:
+            assert entry["requestBody"]["content"]["application/json"]["examples"]
+        elif content := entry["responses"]["200"]["content"].get("application/json"):
+            assert content["example"], entry["operationId"]
+
+
+def test_there_are_no_more_schemas_than_questions_and_answers_need() -> None:
+    assert len(SCHEMAS) <= 95
+
+
+def test_every_number_of_an_answer_has_its_unit() -> None:
+    for name in [name for name in SCHEMAS if name.endswith("Answer")] + ["ProblemDocument"]:
+        for node in nodes(SCHEMAS[name]):
+            kinds = node.get("type", [])
+            if {"number", "integer"} & ({kinds} if isinstance(kinds, str) else set(kinds)):
+                assert "x-unit" in node, (name, node)
+    for name in [name for name in SCHEMAS if name.startswith("Certified") and name.endswith("Answer")]:
+        units = [node for node in nodes(SCHEMAS[name]) if "string" in str(node.get("type")) and "x-unit" in node]
+        assert len(units) >= 4, name
+
+
+@pytest.mark.parametrize("scene", members_of(Scene), ids=lambda scene: str(scene.__name__))
+@pytest.mark.parametrize("form", ["", "Certified"])
+def test_a_scene_answers_with_its_own_figures(scene: Any, form: str) -> None:
+    properties = SCHEMAS[f"{form}{scene.__name__}Answer"]["properties"]
+    assert set(scene.outputs) <= set(properties)
+    columns = properties["trajectory"]["anyOf"][0]["properties"]
+    assert set(columns) == {entry.name for entry in fields(scene.samples_type)}
+
+
+def test_unions_of_objects_are_told_apart() -> None:
+    for node in nodes(DOCUMENT):
+        members = [
+            m for m in (*node.get("oneOf", ()), *node.get("anyOf", ())) if "$ref" in m or m.get("type") == "object"
+        ]
+        assert len(members) <= 1 or "discriminator" in node, node
+
+
+def test_what_a_problem_adds_is_in_its_schema() -> None:
+    own = {"needed", "limit", "what", "requested", "achievable", "retry_after_seconds", "instance", "errors", "code"}
+    assert own <= set(SCHEMAS["ProblemDocument"]["properties"])
 
 
 def test_kinds_are_required_where_they_tell_members_of_a_union_apart() -> None:
@@ -63,11 +130,12 @@ def test_every_number_that_is_asked_for_is_described() -> None:
 
 
 def test_descriptions_are_those_of_the_docstrings_with_their_units() -> None:
-    assert asked("Ball") == {"radius": "(m).", "mass": "Not 0 (kg).", "density": "Not 0 (kg m^-3).", "kind": None}
-    assert asked("BallInNumerals")["density"] == "Not 0 (kg m^-3)."
+    assert asked("Ball")["mass"] == "Given by this or by the density; not 0 (kg)."
+    assert asked("RodInHoleRequest")["hole_radius"] == "Radius of the hole (m)."
+    assert asked("UnwindingShaftsRequest")["masses"] == "Of the shafts (kg)."
     assert "rad" in asked("RodInHoleRequest")["angle"]
     assert "rad" in asked("ChainOnWedgeRequest")["slopes"]
-    assert asked("TrajectoryRequest")["angular_velocity"] == "At t = 0, in body axes (rad/s)."
+    assert asked("TrajectoryRequest")["angular_velocity"] == "At t = 0, in body axes."
     assert not [
         name
         for name, schema in DOCUMENT["components"]["schemas"].items()

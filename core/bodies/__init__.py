@@ -1,4 +1,4 @@
-"""What has mass. The union `Body` is the catalogue: validation, OpenAPI and the contract tests follow from it."""
+"""Rigid bodies. The union `Body` is the catalogue, from which validation, OpenAPI and contract tests are derived."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether triangles close: every edge belongs to two faces, which run along it in opposite directions."""
+"""Whether triangles form a closed surface: every edge belongs to two faces, which traverse it in opposite senses."""
 
 from __future__ import annotations
 
@@ -12,37 +12,37 @@ Integers = NDArray[np.int64]
 
 
 def closed(vertices: Floats, faces: Integers) -> Integers:
-    """Return the faces if they enclose a volume on a known side, and refuse them otherwise.
+    """Return the faces if they enclose a volume on a known side; otherwise raise.
 
     Parameters
     ----------
     vertices : ndarray, shape (n, 3)
-        Vertices at equal places count as one where the faces do not close by their indices alone, as in files that
-        give each triangle corners of its own.
+        Vertices at the same position are merged if the faces are not closed by their indices alone, as in files that
+        repeat the corners of each triangle.
     faces : ndarray, shape (m, 3)
         Indices of vertices.
 
     Returns
     -------
     ndarray, shape (m, 3)
-        The faces, by indices that close; an array that cannot be written.
+        The faces, with indices that form a closed surface; read-only.
 
     Raises
     ------
     OpenMesh
         If an edge belongs to one face only.
     InvalidParameter
-        If a face names a vertex that there is not, or one twice; if a face is given twice; if more than two faces share
-        an edge; if two neighbours run along their edge in the same direction.
+        If a face has an index out of range, or an index twice; if a face is given twice; if more than two faces share
+        an edge; if two neighbouring faces traverse their edge in the same direction.
     """
     _refuse_wrong_indices(faces, len(vertices))
     if _closes(faces, len(vertices)):
         return faces
-    # Adding zero joins -0 to 0.
+    # Adding zero turns -0 into 0.
     _, kept, place = np.unique(vertices + 0.0, axis=0, return_index=True, return_inverse=True)
     joined: Integers = kept[place.reshape(-1)][faces]
     joined.setflags(write=False)
-    # A face of which two corners coincide has no area, and closes nothing.
+    # A face of which two corners coincide has no area, and does not belong to the surface.
     solid = np.flatnonzero((joined != joined[:, (1, 2, 0)]).all(axis=1))
     if not _closes(joined[solid], len(vertices)):
         _refuse_repeated_faces(joined[solid], solid)
@@ -51,7 +51,7 @@ def closed(vertices: Floats, faces: Integers) -> Integers:
 
 
 def _closes(faces: Integers, vertices: int) -> bool:
-    # An edge and the direction in which a face runs along it are one whole number, so one sort pairs all neighbours.
+    # An edge with its direction is one integer, so one sort pairs all neighbours.
     start, end = _directed_edges(faces)
     keys = (np.minimum(start, end) * vertices + np.maximum(start, end)) * 2 + (start > end)
     keys.sort()
@@ -84,7 +84,7 @@ def _refuse_wrong_indices(faces: Integers, vertices: int) -> None:
 
 
 def _refuse_repeated_faces(faces: Integers, numbers: Integers) -> None:
-    # Written from its smallest index on, a face is the same row whichever corner it was started from.
+    # Starting from its smallest index, a face is the same row whatever its first corner was.
     turned = (np.argmin(faces, axis=1)[:, None] + np.arange(3)) % 3
     rows = np.take_along_axis(faces, turned, axis=1)
     _, first, place = np.unique(rows, axis=0, return_index=True, return_inverse=True)

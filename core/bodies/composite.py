@@ -1,14 +1,16 @@
-"""Bodies welded together: parts placed, turned and, as holes, taken away."""
+"""Composite bodies: parts with a position and an attitude, which are added or, as holes, subtracted."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 from core import bodies
 from core.bodies.mass_moments import MassMoments
 from core.bodies.mass_properties import About, MassProperties
 from core.bodies.mesh import Mesh
+from core.bodies.principal_inertia import DERIVED, ROUNDED_ONCE, Rounding
 from core.bodies.uniform import Uniform
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter, Path, UnphysicalInertia
@@ -17,10 +19,10 @@ from core.quantities import Position, Quaternion, check, members_of
 from core.work import spend
 
 MOST_PARTS = 1000
-"""Bodies of a composite, composites among the parts opened."""
+"""Largest number of bodies in a composite, those of nested composites included."""
 
 DEEPEST = 8
-"""Levels of composites within composites, the outermost included."""
+"""Largest number of nested levels of composites, the outermost included."""
 
 WORK_OF_A_PART = 100
 """Units of work (`core.work`): a part is turned, moved and added in rational numbers."""
@@ -28,7 +30,7 @@ WORK_OF_A_PART = 100
 
 @dataclass(frozen=True)
 class Count:
-    """How many entries a tuple may have."""
+    """Admissible lengths of a tuple."""
 
     at_least: int
     at_most: int
@@ -41,7 +43,7 @@ class Count:
             raise InvalidParameter(path, f"have from {self.at_least} to {self.at_most} entries, not {len(value)}")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        # The upper end is stated here as well, so that no more entries than these are ever built.
+        # The upper limit is given to the validator as well, so that it never builds more entries.
         return {**handler(source), "max_length": self.at_most}
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
@@ -50,21 +52,21 @@ class Count:
 
 @dataclass(frozen=True)
 class Part:
-    """A body in its place within a composite.
+    """A body with its position and attitude in a composite.
 
-    A point r of the body comes to lie at position + R r, with R the rotation of the attitude: the body is turned about
-    its own origin and then moved.
+    A point r of the body is at position + R r in the composite, with R the rotation of the attitude: the body is
+    rotated about its own origin and then displaced.
 
     Attributes
     ----------
     body : Body
-        Of known mass and centre of mass. A solid or mesh of negative mass or density is a hole.
+        With known mass and centre of mass. A solid or mesh of negative mass or density is a hole.
     position : tuple of 3 floats
-        Of the origin of the part's frame, in the composite's frame (m).
+        Origin of the part's frame, in the composite's frame (m).
     attitude : tuple of 4 floats
         Quaternion [w, x, y, z] from the part's axes to the composite's; any length but zero.
     hole : bool
-        Whether the body is taken away instead of added: for bodies that have no negative mass to give.
+        Whether the body is subtracted instead of added; for kinds of body that cannot have a negative mass.
     """
 
     body: bodies.Body
@@ -98,7 +100,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Composite:
-    """Bodies welded together.
+    """Bodies that are rigidly connected.
 
     Attributes
     ----------
@@ -135,7 +137,7 @@ class Composite:
 
     @property
     def count(self) -> int:
-        """Number of bodies in all, composites among the parts opened."""
+        """Total number of bodies, those of nested composites included."""
         return sum(part.body.count if isinstance(part.body, Composite) else 1 for part in self.parts)
 
     @property
@@ -144,21 +146,28 @@ class Composite:
         return 1 + max(part.body.depth if isinstance(part.body, Composite) else 0 for part in self.parts)
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body.
+        """Return the mass properties.
 
-        A hole that reaches outside of what it is cut from can leave a tensor that no matter has: it is answered with a
-        warning, and refused if a principal moment is negative, as no motion is then defined.
+        A hole that extends beyond the other parts can leave a tensor that no mass distribution has. This is a warning,
+        and an error if a principal moment is negative, because no motion is then defined.
 
         Raises
         ------
         InvalidParameter
-            If a part's mass or centre of mass is not known, the holes weigh as much as the parts, or a figure leaves
-            the range of doubles.
+            If the mass or centre of mass of a part is not known, the holes have at least the mass of the parts, or a
+            result leaves the range of doubles.
         UnphysicalInertia
             If a principal moment is negative.
         """
-        moments, warnings, conditions = _moments_of_parts(self)
-        found = MassProperties.from_exact(*moments.properties(), warnings=warnings, conditions=conditions)
+        moments, share, warnings, conditions = _moments_of_parts(self)
+        mass, center, inertia = moments.properties()
+        trace = sum(inertia[k][k] for k in range(3))
+        rounding = ROUNDED_ONCE
+        if share > 0 and trace > 0:
+            rounding = Rounding(max(DERIVED.share, float(share * moments.spread / trace)), False)
+        found = MassProperties.from_exact(
+            mass, center, inertia, warnings=warnings, conditions=conditions, rounding=rounding
+        )
         if any(condition.name == "positive-moments" for condition in found.validity.violations):
             raise UnphysicalInertia(
                 "parts",
@@ -169,22 +178,26 @@ class Composite:
         return replace(found, about=self.about, described_by=self).judged("parts")
 
 
-_Moments = tuple[MassMoments, tuple[Notice, ...], tuple[Condition, ...]]
+_Moments = tuple[MassMoments, Fraction, tuple[Notice, ...], tuple[Condition, ...]]
 
 
 def _moments_of_parts(composite: Composite) -> _Moments:
-    """Return the moments of mass about the composite's origin, what was noticed, and what the report says."""
-    total = MassMoments()
+    """Return the moments of mass about the composite's origin, what was noticed, and what the report says.
+
+    Second is what the moments may be wrong by, as a share of their spread: nothing where every part is exact.
+    """
+    total, wrong = MassMoments(), Fraction(0)
     warnings: list[Notice] = []
     conditions: list[Condition] = []
     for i, part in enumerate(composite.parts):
         spend(WORK_OF_A_PART)
         try:
-            moments, noticed, reported = _moments(part.body)
+            moments, share, noticed, reported = _moments(part.body)
         except InvalidParameter as fault:
             raise fault.inside("parts", i, "body") from None
         placed = moments.turned(part.attitude).moved(part.position)
         total += -placed if part.hole else placed
+        wrong += share * abs(placed.spread)
         warnings += [notice.inside("parts", i, "body") for notice in noticed]
         conditions += reported
     if not total.massive:
@@ -193,7 +206,7 @@ def _moments_of_parts(composite: Composite) -> _Moments:
             "weigh more than the holes among them",
             remedy="add what the holes are cut from; a composite that is a hole as a whole is a part with hole: true",
         )
-    return total, tuple(warnings), tuple(conditions)
+    return total, wrong / total.spread if wrong else wrong, tuple(warnings), tuple(conditions)
 
 
 def moments_of(body: Any) -> MassMoments:
@@ -210,10 +223,10 @@ def _moments(body: Any) -> _Moments:
         mass = body.weigh(shape)
         exact = MassMoments.of(mass, shape.center_of_mass, [[mass * x for x in row] for row in shape.inertia])
         if not isinstance(body, Mesh):
-            return exact, (), ()
+            return exact, Fraction(0), (), ()
         solid = body.filled() if body.is_hole else body
         own = solid.mass_properties()
-        return exact, own.warnings, own.conditions
+        return exact, Fraction(own.rounding.share), own.warnings, own.conditions
     own = body.mass_properties()
     for name, known in (("mass", own.mass), ("center_of_mass", own.center_of_mass)):
         if known is None:
@@ -223,4 +236,5 @@ def _moments(body: Any) -> _Moments:
                 remedy="give an inertia-tensor with mass and center_of_mass, or another kind of body",
             )
     exact = MassMoments.of(own.exact_mass, own.exact_center_of_mass, own.exact_inertia)
-    return exact, own.warnings, own.conditions
+    share = Fraction(0) if own.rounding.exact_zeros else Fraction(own.rounding.share)
+    return exact, share, own.warnings, own.conditions

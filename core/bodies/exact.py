@@ -1,7 +1,7 @@
 """Rational mechanics of mass: exact while it is computed, rounded once to a pair of doubles.
 
 A double is a rational number, and mass properties of solids and of their assemblies are rational in their dimensions
-(times a power of pi where a density is given), so no cancellation can spoil them, at any scale or offset.
+(times a power of pi where a density is given), so cancellation causes no error, at any scale or offset.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SMALLEST = 2.0**-1022
 
 
 def pair(number: Fraction) -> tuple[float, float]:
-    """Return the nearest double and the nearest double to what is then missing.
+    """Return the nearest double, and the double nearest to the remainder.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def pair(number: Fraction) -> tuple[float, float]:
 
 
 def size_pair(number: Fraction) -> tuple[float, float]:
-    """Return the same for a mass or a moment, which must not lose digits by being small.
+    """Return the same for a mass or a moment, which must not be subnormal.
 
     Raises
     ------
@@ -64,12 +64,12 @@ def _out_of_range() -> InvalidParameter:
 
 
 def vector_pairs(numbers: Vector) -> tuple[Floats, Floats]:
-    """Return values and tails of a vector, shape (3,), as arrays that cannot be written."""
+    """Return values and tails of a vector, shape (3,), as read-only arrays."""
     return _frozen([pair(x) for x in numbers], 3)
 
 
 def tensor_pairs(numbers: Matrix) -> tuple[Floats, Floats]:
-    """Return values and tails of a tensor of inertia, shape (3, 3), as arrays that cannot be written."""
+    """Return values and tails of a tensor of inertia, shape (3, 3), as read-only arrays."""
     found = [
         size_pair(x) if i == j else pair(x) for i, row in enumerate(numbers) for j, x in enumerate(row)
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Bodies with names: those of the lessons, and real ones with the sources of their figures."""
+"""Example bodies: those of the source questions, and real ones with the sources of their data."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ STEEL = 7850.0
 
 
 def t_handle_points() -> PointMasses:
-    """Return the crude T-handle of the lesson: 300 unit masses on a tube along z and on the half of a tube along y.
+    """Return the T-handle of the source questions: 300 unit masses on a tube along z and on half of a tube along y.
 
-    The surfaces are grids of 10 x 20 and 5 x 20 points; their angles run from 0 to 2 pi inclusive, so that the points
-    along the seam are there twice.
+    The surfaces are grids of 10 x 20 and 5 x 20 points; their angles run from 0 to 2 pi inclusive, so the points
+    along the seam occur twice.
     """
     angle, along = np.meshgrid(np.linspace(0, 2 * np.pi, 20), np.linspace(0, 1, 10))
     tube = np.array([np.cos(angle), np.sin(angle), 5 * along])
@@ -52,7 +52,7 @@ def coin() -> Cylinder:
 
 
 def american_football() -> Composite:
-    """Return an American football: a wall 4 mm thick between two ellipsoids, with the middle of the official figures.
+    """Return an American football: a wall 4 mm thick between two ellipsoids, with mean official dimensions.
 
     Length 11 to 11 1/4 in, short circumference 21 to 21 1/4 in, weight 14 to 15 oz: Official Playing Rules of the
     National Football League, rule 2, section 1. The wall, of bladder and leather together, is our estimate.

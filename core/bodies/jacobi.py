@@ -1,8 +1,8 @@
 """Eigenvalues and eigenvectors of a symmetric 3 x 3 tensor in double-double arithmetic, by cyclic Jacobi rotations.
 
-Jacobi's method, unlike a reduction to tridiagonal form or the roots of the characteristic polynomial, leaves what is
-already decoupled untouched (a zero off-diagonal component costs no rotation and no rounding) and finds the small
-eigenvalues of a graded positive tensor to high relative accuracy.
+Jacobi's method, unlike a reduction to tridiagonal form or the roots of the characteristic polynomial, does not change
+components that are already decoupled (a zero off-diagonal component costs no rotation and no rounding) and finds the
+small eigenvalues of a graded positive tensor to high relative accuracy.
 
 References
 ----------
@@ -23,7 +23,7 @@ from core.double_double import dd_add, dd_add_d, dd_div, dd_mul, dd_sqrt, dd_sub
 Floats = NDArray[np.float64]
 
 _SWEEPS = 40
-# Below this share of sqrt(|a_pp a_qq|) an off-diagonal component moves no eigenvalue by one part in 2^106.
+# An off-diagonal component below this fraction of sqrt(|a_pp a_qq|) changes no eigenvalue by one part in 2^106.
 _NEGLIGIBLE = 2.0**-112
 
 

@@ -1,9 +1,9 @@
-"""Moments of mass of order zero, one and two about one point: what adds up when bodies are put together.
+"""Moments of mass of order zero, one and two about one point, which are additive over the parts of a composite.
 
 They are integers in units of 2^-4096. Rational numbers would be exact, but their denominators multiply with every
-attitude, and a thousand parts would take minutes. Here a quotient is rounded once, by less than one unit, and what
-magnifies that later (the square of a distance, at most 2^2048) leaves it below 2^-2000: far smaller than the half of
-any double, so that the pairs of doubles come out as if everything had been exact, however much cancels.
+attitude, and a thousand parts would take minutes. Here a quotient is rounded once, by less than one unit. A later
+factor (the square of a distance, at most 2^2048) leaves this error below 2^-2000, far below half of any double. The
+resulting pairs of doubles are therefore those of exact arithmetic, whatever cancels.
 """
 
 from __future__ import annotations
@@ -21,12 +21,13 @@ Floats = NDArray[np.float64]
 
 BITS = 4096
 UNRESOLVED = 1 << (BITS - 2000)
-"""Moments below this are those of rounding."""
+"""Moments below this are rounding errors."""
 
 _LEAST = 1074
 """Every double is a multiple of 2^-1074."""
 
 _SHARE = Fraction(1, 2**256)
+_NOTHING = Fraction(1, 2**1500)
 
 Integers = tuple[int, ...]
 
@@ -107,10 +108,17 @@ class MassMoments:
         """Whether the mass is positive."""
         return self.mass > UNRESOLVED
 
+    @property
+    def spread(self) -> Fraction:
+        """The integral of r^2 dm about the origin (kg m^2)."""
+        xx, _, _, yy, _, zz = self.second
+        return Fraction(xx + yy + zz, 1 << BITS)
+
     def properties(self) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
         """Return mass, centre of mass and inertia about it; the mass must be positive.
 
-        A component of the tensor that no double can express and that is below 2^-256 of the trace is zero.
+        A component of the tensor that no double can express and that is below 2^-256 of the trace is zero, and moments
+        that differ by as little as their rounding are equal.
         """
         m, s = self.mass, self.first
         center = [_or_zero(Fraction(x, m)) for x in s]
@@ -120,6 +128,9 @@ class MassMoments:
             for (i, j), value in zip(pairs, self.second, strict=True)
         }
         trace = central[0, 0] + central[1, 1] + central[2, 2]
+        for j, k in ((0, 1), (0, 2), (1, 2)):
+            if abs(central[j, j] - central[k, k]) < _NOTHING * trace:
+                central[k, k] = central[j, j]
         inertia = [[(trace if i == j else 0) - central[min(i, j), max(i, j)] for j in range(3)] for i in range(3)]
         least = _SHARE * abs(trace)
         return (
@@ -147,7 +158,7 @@ def _fixed(number: Fraction) -> int:
 
 
 def _or_zero(number: Fraction) -> Fraction:
-    """Return zero for what is below every double."""
+    """Return zero for a number smaller than every double."""
     return number if abs(number) * (1 << (_LEAST + 1)) >= 1 else Fraction(0)
 
 

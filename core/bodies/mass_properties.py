@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia of a body; its principal moments and axes; whether matter can have them."""
+"""Mass, centre of mass and inertia of a body; its principal moments and axes; whether they are physically possible."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from core.bodies.exact import (
     tensor_pairs,
     vector_pairs,
 )
-from core.bodies.principal_inertia import ZEROS, PrincipalInertia, Symmetry
+from core.bodies.principal_inertia import GIVEN, ROUNDED_ONCE, ZEROS, PrincipalInertia, Rounding, Symmetry, summed
 from core.bodies.validity import Condition, Validity, moments_of_matter
 from core.errors import NotApplicable
 from core.notices import Notice
@@ -34,27 +34,31 @@ About = Literal["center-of-mass", "origin"]
 
 @dataclass(frozen=True, eq=False)
 class MassProperties:
-    """What the mechanics needs to know of a body.
+    """Mass, centre of mass and inertia of a body.
 
-    A derived number is kept as an unevaluated sum of two doubles, value and tail, right to about 1e-30, so that
-    rounding it does not enter a motion as an error. Off-diagonal components are I_xy = -(integral of x y dm).
+    A derived number is stored as an unevaluated sum of two doubles, value and tail, accurate to about 1e-30, so its
+    rounding does not add to the error of a motion. Off-diagonal components are I_xy = -(integral of x y dm).
 
     Attributes
     ----------
     inertia, inertia_tail : ndarray, shape (3, 3)
         Tensor of inertia about the centre of mass, in body axes (kg m^2).
     mass, mass_tail : float
-        Total mass (kg); `mass` is None where the body was given by its moments alone.
+        Total mass (kg); `mass` is None if the body was given by its moments alone.
     center_of_mass, center_of_mass_tail : ndarray, shape (3,), or None
         In the frame in which the body was given (m).
     about : {"center-of-mass", "origin"}
         The point about which the body turns: the origin for a body that is pinned there.
     warnings : tuple of Notice
-        What was noticed while the body was read; paths lead from the body.
+        Warnings about the body; paths are relative to it.
     conditions : tuple of Condition
-        What the validity report says beyond the moments.
+        Conditions of the validity report other than those of the moments.
     described_by : Body, optional
-        The body whose numbers these follow from; without one, the components of the tensor are themselves the numbers.
+        The body that these are derived from; without one, the components of the tensor are the inputs.
+    rounding : Rounding
+        What is known of the components of the tensor.
+    unrounded : matrix of Fraction, optional
+        The tensor before it was rounded, where it is exact.
     """
 
     inertia: Floats
@@ -67,6 +71,8 @@ class MassProperties:
     warnings: tuple[Notice, ...] = ()
     conditions: tuple[Condition, ...] = ()
     described_by: Any = None
+    rounding: Rounding = GIVEN
+    unrounded: Matrix | None = None
 
     def __post_init__(self) -> None:
         self.inertia.setflags(write=False)
@@ -85,8 +91,14 @@ class MassProperties:
         *,
         warnings: tuple[Notice, ...] = (),
         conditions: tuple[Condition, ...] = (),
+        rounding: Rounding = ROUNDED_ONCE,
     ) -> MassProperties:
         """Round rational mass properties once, to a pair of doubles each.
+
+        Parameters
+        ----------
+        rounding : Rounding, optional
+            What is known of the rational numbers, where they are not exact.
 
         Raises
         ------
@@ -96,7 +108,10 @@ class MassProperties:
         m, m_tail = size_pair(mass)
         c, c_tail = vector_pairs(center_of_mass)
         i, i_tail = tensor_pairs(inertia)
-        return cls(i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions)
+        return cls(
+            i, i_tail, m, c, m_tail, c_tail, warnings=warnings, conditions=conditions,
+            rounding=_after(inertia, i, i_tail, rounding), unrounded=inertia if rounding.exact_zeros else None,
+        )  # fmt: skip
 
     @property
     def exact_mass(self) -> Fraction:
@@ -120,7 +135,7 @@ class MassProperties:
     @cached_property
     def principal(self) -> PrincipalInertia:
         """Principal inertia about the centre of mass."""
-        return PrincipalInertia.of(self.inertia, self.inertia_tail)
+        return PrincipalInertia.of(self.inertia, self.inertia_tail, self.rounding, self.unrounded)
 
     def inertia_about(self, point: Sequence[float] | Floats) -> tuple[Floats, Floats]:
         """Return the tensor about another point, in body axes, as value and tail, each of shape (3, 3).
@@ -151,7 +166,11 @@ class MassProperties:
     @cached_property
     def principal_about_origin(self) -> PrincipalInertia | None:
         """Principal inertia about the origin, or None where mass or centre of mass is not known."""
-        return None if self.about_origin is None else PrincipalInertia.of(*self.about_origin)
+        if self.about_origin is None or self.center_of_mass is None:
+            return None
+        # Along one axis of the centre of mass nothing is added to a product of inertia, and only sums to a moment.
+        along_one = np.count_nonzero(self.center_of_mass) <= 1 and self.rounding.exact_zeros
+        return PrincipalInertia.of(*self.about_origin, ROUNDED_ONCE if along_one else summed(1))
 
     @property
     def principal_of_motion(self) -> PrincipalInertia:
@@ -174,11 +193,11 @@ class MassProperties:
         return Validity.of(self.principal, (*mass, *self.conditions))
 
     def told(self, warnings: tuple[Notice, ...], conditions: tuple[Condition, ...] = ()) -> MassProperties:
-        """Return the same with more warnings and conditions."""
+        """Return a copy with further warnings and conditions."""
         return replace(self, warnings=(*self.warnings, *warnings), conditions=(*self.conditions, *conditions))
 
     def judged(self, field: str) -> MassProperties:
-        """Return the same, with a warning at `field` if no distribution of positive mass has these moments."""
+        """Return a copy, with a warning at `field` if no distribution of positive mass has these moments."""
         if moments_of_matter(self.principal):
             return self
         failed = "; ".join(condition.detail for condition in self.validity.violations)
@@ -189,6 +208,18 @@ class MassProperties:
             (field,),
         )
         return self.told((notice,))
+
+
+def _after(exact: Matrix, value: Floats, tail: Floats, rounding: Rounding) -> Rounding:
+    """Return what is known of a tensor that was rounded to pairs.
+
+    Different moments may have become equal by it, and a product of inertia zero that is below every double.
+    """
+    for j, k in ((0, 1), (1, 2), (2, 0)):
+        equal = value[j, j] == value[k, k] and tail[j, j] == tail[k, k] and exact[j][j] != exact[k][k]
+        if rounding.exact_zeros and (equal or (value[j, k] == 0.0 and exact[j][k] != 0)):
+            return summed(1)
+    return rounding
 
 
 def diagonal(moments: Sequence[float]) -> MassProperties:

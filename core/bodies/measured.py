@@ -8,10 +8,11 @@ from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.bodies.exact import SMALLEST, exact_matrix, exact_vector, tensor_pairs
 from core.bodies.mass_properties import About, MassProperties, diagonal
-from core.bodies.principal_inertia import EPSILON
+from core.bodies.principal_inertia import EPSILON, summed
 from core.bodies.recentred import Recentred
 from core.bodies.validity import TOLERANCE
 from core.errors import InvalidParameter, UnphysicalInertia
@@ -19,11 +20,18 @@ from core.notices import Notice
 from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Quantity, check
 from core.rows import Rows
 
+Floats = NDArray[np.float64]
+
 POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))
 
 MASS_RANGE = 900
 """Most binary orders of magnitude between the heaviest and the lightest point: no product of theirs is lost to zero."""
+
+SUMMED_EXACTLY = 400
+"""Points of which the moments are formed in whole numbers."""
+
+THIN_ROD = "a thin rod has [0, m l^2/12, m l^2/12]; a body without extent does not turn"
 
 KEPT = 32
 """Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
@@ -41,7 +49,8 @@ class PrincipalMoments:
     Attributes
     ----------
     moments : tuple of 3 floats
-        Each greater than 0 (kg m^2). Moments that no matter can have are answered with a warning.
+        At least 0, at most one of them 0, which is that of a thin rod about itself (kg m^2). Physically impossible
+        moments are answered with a warning.
     """
 
     moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
@@ -49,17 +58,20 @@ class PrincipalMoments:
 
     def __post_init__(self) -> None:
         check(self)
+        if sum(moment == 0.0 for moment in self.moments) > 1:
+            raise InvalidParameter("moments", "have at most one moment of 0 kg m^2", remedy=THIN_ROD)
 
     def mass_properties(self) -> MassProperties:
         """Return what the mechanics needs to know of the body; mass and centre of mass stay unknown."""
         a, b, c = self.moments
-        return _of_moments(float(a), float(b), float(c))
+        # A negative zero is none.
+        return _of_moments(float(a) + 0.0, float(b) + 0.0, float(c) + 0.0)
 
 
 @lru_cache(KEPT)
 def _of_moments(a: float, b: float, c: float) -> MassProperties:
     """Return the mass properties for principal moments, which are kept: a body is asked about again and again."""
-    # Doubles greater than zero, so that those which compare equal are the same.
+    # Doubles without a negative zero, so that those which compare equal are the same.
     return diagonal((a, b, c)).judged("moments")
 
 
@@ -72,7 +84,7 @@ class InertiaTensor:
     tensor : tuple of 3 rows
         Symmetric; off-diagonal components are I_xy = -(integral of x y dm) (kg m^2).
     mass : float, optional
-        kg.
+        Of the body (kg).
     center_of_mass : tuple of 3 floats, optional
         In the frame in which the body is described (m).
     """
@@ -179,16 +191,22 @@ class PointMasses:
             raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body, sums formed in double-double."""
-        # Compiled code is fetched only for the bodies that need it.
-        from core.bodies.point_sums import first_moments, second_moments
+        """Return what the mechanics needs to know of the body; few points exactly, more in double-double.
 
+        Exact products of inertia that cancel are zero, and the axes of a symmetric set of points exact.
+        """
         masses = np.broadcast_to(np.asarray(self.masses, dtype=np.float64), len(self.positions))
         # Powers of two keep products within range and round nothing.
         heavy = int(np.frexp(masses.max())[1])
         m = np.ldexp(masses, -heavy)
         if float(m.min()) < 2.0**-MASS_RANGE:
             raise InvalidParameter("masses", f"not differ by more than a factor of 2^{MASS_RANGE}")
+        if len(m) <= SUMMED_EXACTLY:
+            properties = MassProperties.from_exact(*_exact_properties(masses, self.positions))
+            return replace(properties, about=self.about, described_by=self)
+        # Compiled code is fetched only for the bodies that need it.
+        from core.bodies.point_sums import first_moments, second_moments
+
         local = Recentred.on(self.positions)
         first, second = np.zeros((2, 4)), np.zeros((2, 3, 3))
         first_moments(m, local.high, local.low, first)
@@ -203,5 +221,35 @@ class PointMasses:
         trace = products[0][0] + products[1][1] + products[2][2]
         inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
         return replace(
-            MassProperties.from_exact(kilograms * mass, center, inertia), about=self.about, described_by=self
+            MassProperties.from_exact(kilograms * mass, center, inertia, rounding=summed(len(m))),
+            about=self.about,
+            described_by=self,
         )
+
+
+def _exact_properties(masses: Floats, positions: Floats) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
+    """Return mass, centre of mass and tensor of inertia about it, of few points, shapes (n,) and (n, 3)."""
+    m, kilogram = _whole(masses)
+    columns, units = zip(*(_whole(column) for column in positions.T), strict=True)
+    mass = sum(m)
+    first = [sum(a * x for a, x in zip(m, column, strict=True)) for column in columns]
+    # Times the mass, all is whole: M sum m x y - (sum m x)(sum m y).
+    products = [[Fraction(0)] * 3 for _ in range(3)]
+    for i in range(3):
+        weighted = [a * x for a, x in zip(m, columns[i], strict=True)]
+        for j in range(i, 3):
+            second = sum(a * x for a, x in zip(weighted, columns[j], strict=True))
+            central = Fraction(mass * second - first[i] * first[j], mass) * kilogram * units[i] * units[j]
+            products[i][j] = products[j][i] = central
+    trace = products[0][0] + products[1][1] + products[2][2]
+    inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+    return mass * kilogram, [Fraction(x, mass) * unit for x, unit in zip(first, units, strict=True)], inertia
+
+
+def _whole(values: Floats) -> tuple[list[int], Fraction]:
+    """Return doubles as whole multiples of a power of two, and that power."""
+    mantissas, exponents = np.frexp(values)
+    whole, places = np.ldexp(mantissas, 53).astype(np.int64).tolist(), exponents.tolist()
+    least = min((place for x, place in zip(whole, places, strict=True) if x), default=0)
+    # A zero has no place of its own.
+    return [x << max(0, place - least) for x, place in zip(whole, places, strict=True)], Fraction(2) ** (least - 53)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core.bodies.closed_surface import closed
 from core.bodies.mass_properties import MassProperties
+from core.bodies.principal_inertia import DERIVED, Rounding
 from core.bodies.recentred import Recentred
 from core.bodies.uniform import Shape, Uniform
 from core.bodies.validity import Condition
@@ -28,22 +29,21 @@ VERTICES = Rows(3, Quantity("m"), at_least=4)
 FACES = Rows(3, Quantity("1", at_least=0), at_least=4, whole=True)
 
 UNRESOLVED = Fraction(2) ** -40
-"""A volume is refused if the rounding of its sum may be a larger share of it."""
+"""A volume is rejected if the rounding error of its sum may be a larger fraction of it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh(Uniform):
     """A uniform solid given by its surface, a list of triangles.
 
-    Every edge belongs to exactly two triangles, which run along it in opposite directions. Several closed surfaces may
-    stand apart or, turned inwards, bound cavities. It is not checked whether triangles pass through each other: a
-    region that is enclosed twice counts twice.
+    Every edge belongs to exactly two triangles, which traverse it in opposite directions. There may be several closed
+    surfaces; those that face inwards bound cavities. Intersections of triangles are not checked: a region that is
+    enclosed twice counts twice.
 
     Attributes
     ----------
     vertices : array_like, shape (n, 3)
-        In body axes (m); kept as an array that cannot be written. Vertices at equal places count as one, and those that
-        no face uses are left out.
+        In body axes (m). Vertices at the same position count as one; vertices that no face uses are ignored.
     faces : array_like of int, shape (m, 3)
         Indices of the vertices of each triangle, from 0, counter-clockwise as seen from outside.
     """
@@ -53,7 +53,7 @@ class Mesh(Uniform):
     kind: Literal["mesh"] = "mesh"
 
     def validate(self) -> None:
-        """Keep vertices and faces as arrays; refuse a surface that is not closed or not oriented."""
+        """Convert vertices and faces to arrays; raise for a surface that is not closed or not consistently oriented."""
         object.__setattr__(self, "vertices", VERTICES.read(("vertices",), self.vertices))
         object.__setattr__(self, "faces", FACES.read(("faces",), self.faces))
         assert self._closed.size
@@ -65,6 +65,11 @@ class Mesh(Uniform):
     @cached_property
     def _solid(self) -> _Solid:
         return _Solid.inside(self.vertices, self._closed)
+
+    @property
+    def rounding(self) -> Rounding:
+        """Rounding of the inertia tensor, which is a sum over the faces."""
+        return Rounding(max(DERIVED.share, self._solid.share), False)
 
     def shape(self) -> Shape:
         """Return volume, centre of mass and inertia per mass.
@@ -80,15 +85,15 @@ class Mesh(Uniform):
         return Shape(self._solid.volume, 0, self._solid.centroid, inertia)
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body.
+        """Return the mass properties.
 
         Raises
         ------
         InvalidParameter
-            If the surface encloses no volume, or a figure lies outside the range of doubles.
+            If the surface encloses no volume, or a result is outside the range of doubles.
         UnphysicalInertia
-            If no matter has the moments that were found, so that the surface must pass through itself or a part of it
-            is turned inwards outside of the others.
+            If no mass distribution has the resulting moments. Then the surface intersects itself, or a closed part
+            that faces inwards is not inside another.
         """
         found = super().mass_properties()
         volume = float(self._solid.volume)
@@ -109,27 +114,31 @@ class Mesh(Uniform):
 
 @dataclass(frozen=True)
 class _Solid:
-    """Volume (m^3), centroid (m) and mean of d_i d_j over the solid, d from the centroid (m^2)."""
+    """Volume (m^3), centroid (m) and mean of d_i d_j over the solid, d from the centroid (m^2).
+
+    `share` is the error bound of the means, relative to the largest.
+    """
 
     volume: Fraction
     centroid: Sequence[Fraction]
     products: Sequence[Sequence[Fraction]]
+    share: float
     notices: tuple[Notice, ...]
 
     @classmethod
     def inside(cls, vertices: Floats, faces: Integers) -> _Solid:
-        # Compiled code is fetched only for the bodies that need it.
+        # Compiled code is imported only for the bodies that need it.
         from core.bodies.surface_integrals import connected_surfaces, faces_without_area, signed_tetrahedra
 
         surface = np.empty(len(vertices), dtype=np.int64)
         surfaces = connected_surfaces(faces, surface)
         used = surface >= 0
-        # A vertex that no face uses may lie anywhere; another's place keeps it out of the box.
+        # A vertex that no face uses may be anywhere; the position of another keeps it from enlarging the box.
         local = Recentred.on(np.where(used[:, None], vertices, vertices[faces[0, 0]]))
         sums, volumes = np.zeros((2, 10)), np.zeros(surfaces)
         magnitude = signed_tetrahedra(local.high, local.low, faces, surface, sums, volumes)
-        # What any of the sums may be wrong by, coordinates being at most 1: each face's share is right to 40 units of
-        # 2^-106, every addition to 3 of the sum so far (Joldes, Muller, Popescu 2017).
+        # Error bound of the sums for coordinates of at most 1: 40 units of 2^-106 for the term of a face, and 3 units
+        # of the partial sum for an addition (Joldes, Muller, Popescu 2017).
         rounding = Fraction(2) ** -104 * (len(faces) + 16) * Fraction(magnitude)
         exact = [Fraction(float(h)) + Fraction(float(t)) for h, t in sums.T]
         if abs(exact[0]) * UNRESOLVED <= rounding:
@@ -157,6 +166,7 @@ class _Solid:
         about_middle = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
         about_mean = [[about_middle[i][j] - mean[i] * mean[j] for j in range(3)] for i in range(3)]
         u = local.unit
+        widest = max(u[k] * u[k] * about_mean[k][k] for k in range(3))
         return cls(
             volume * u[0] * u[1] * u[2],
             [o + s * c for o, s, c in zip(local.reference, u, mean, strict=True)],
@@ -164,12 +174,13 @@ class _Solid:
                 [u[i] * u[j] * (about_mean[i][j] if i == j else _resolved(about_mean[i][j], noise)) for j in range(3)]
                 for i in range(3)
             ],
+            float(noise * max(u) ** 2 / widest) if widest > 0 else 1.0,
             tuple(notices),
         )
 
 
 def _resolved(number: Fraction, rounding: Fraction) -> Fraction:
-    """Return a sum whose terms cancel, or zero where all of its digits, and its sign, would be those of rounding."""
+    """Return a sum whose terms cancel, or zero if it is smaller than its rounding error."""
     return number if abs(number) > rounding else Fraction(0)
 
 

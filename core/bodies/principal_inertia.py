@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.bodies.exact import Matrix, exact_matrix
 from core.errors import InvalidParameter
 
 Floats = NDArray[np.float64]
@@ -17,6 +20,48 @@ Symmetry = Literal["spherical", "oblate", "prolate", "triaxial", "linear", "poin
 EPSILON = 2.0**-52
 EQUAL = 16.0 * EPSILON
 """Moments that differ by less than this share of the largest are called equal; inputs that are doubles say no more."""
+
+RESOLUTION = 2.0**-96
+"""Differences of derived moments, and derived components, below this share of the largest are those of rounding."""
+
+
+NOTHING = Fraction(1, 2**3000)
+"""A share that is below any that doubles can make, and above the rounding of `core.bodies.mass_moments`."""
+
+
+class Rounding(NamedTuple):
+    """What is known of the components of a tensor of inertia, each the sum of two doubles.
+
+    Attributes
+    ----------
+    share : float
+        What a component may be wrong by, as a share of itself where zeros are exact, else of the largest component.
+    exact_zeros : bool
+        Whether components that are zero, and moments that are equal, are so exactly: then the axes of a diagonal tensor
+        are exact as well.
+    """
+
+    share: float
+    exact_zeros: bool
+
+
+GIVEN = Rounding(0.0, True)
+"""The components are the numbers that were given."""
+
+ROUNDED_ONCE = Rounding(2.0**-103, True)
+"""Each component is a rational number, rounded to a pair of doubles."""
+
+DERIVED = Rounding(2.0**-100, False)
+"""Moments and axes of a tensor that is not diagonal."""
+
+
+def summed(terms: int) -> Rounding:
+    """Return what is known of sums of so many terms in double-double.
+
+    A term is right to 16 units of 2^-106 and an addition to 3 of the sum so far (Joldes, Muller, Popescu 2017).
+    """
+    return Rounding(max(DERIVED.share, 2.0**-104 * (terms + 16)), False)
+
 
 ZEROS = np.zeros((3, 3))
 ZEROS.setflags(write=False)
@@ -40,6 +85,29 @@ _PERMUTED = {order: _along_body_axes(order, 1.0) for order in _EVEN} | {
 """Right-handed axes by the body axes along which they lie, up to sign."""
 
 
+class KnownTensor(NamedTuple):
+    """A tensor of inertia in rational numbers, as exact as those of the body, and in doubles of order one."""
+
+    components: Matrix
+    near_one: list[list[float]]
+
+    def turns_steadily(self, angular_velocity: Floats) -> bool:
+        """Return whether a rotation about an angular velocity, shape (3,), is steady: I w along w, exactly."""
+        # First in doubles, of order one.
+        (a, d, e), (_, b, f), (_, _, c) = self.near_one
+        x, y, z = angular_velocity.tolist()
+        size = max(abs(x), abs(y), abs(z)) or 1.0
+        x, y, z = x / size, y / size, z / size
+        p, q, r = a * x + d * y + e * z, d * x + b * y + f * z, e * x + f * y + c * z
+        if max(abs(q * z - r * y), abs(r * x - p * z), abs(p * y - q * x)) > 2.0**-40:
+            return False
+        w = [Fraction(float(x)) for x in angular_velocity]
+        rows = [[i * v for i, v in zip(row, w, strict=True)] for row in self.components]
+        momentum = [sum(row, Fraction(0)) for row in rows]
+        least = NOTHING * max(abs(term) for row in rows for term in row) * max(map(abs, w))
+        return all(abs(momentum[j] * w[k] - momentum[k] * w[j]) <= least for j, k in ((0, 1), (1, 2), (2, 0)))
+
+
 @dataclass(frozen=True, eq=False)
 class PrincipalInertia:
     """Principal moments of inertia and the axes to which they belong, with 106 bits each.
@@ -51,16 +119,30 @@ class PrincipalInertia:
     axes, axes_tail : ndarray, shape (3, 3)
         Columns are the principal axes in body axes, right-handed (determinant +1), so that
         ``inertia = axes @ diag(moments) @ axes.T``. Where moments coincide any choice within their plane is one.
+    rounding : Rounding
+        What is known of moments and axes; with exact zeros the axes are body axes, exactly.
+    tensor : KnownTensor, optional
+        The tensor from which moments and axes were derived, where it is not diagonal but exact.
     """
 
     moments: Floats
     moments_tail: Floats
     axes: Floats
     axes_tail: Floats
+    rounding: Rounding = GIVEN
+    tensor: KnownTensor | None = None
 
     @classmethod
-    def of(cls, inertia: Floats, inertia_tail: Floats | None = None) -> PrincipalInertia:
+    def of(
+        cls,
+        inertia: Floats,
+        inertia_tail: Floats | None = None,
+        rounding: Rounding = GIVEN,
+        exact: Matrix | None = None,
+    ) -> PrincipalInertia:
         """Diagonalise a symmetric tensor given as the sum of two arrays of shape (3, 3).
+
+        What is known of the components is `rounding`; before they were rounded they may have been `exact`.
 
         A diagonal tensor is only sorted: its moments stay as they are and its axes are an exact signed permutation.
         Otherwise moments are right to about 1e-30 of the largest (decoupled ones to 1e-31 of themselves) and
@@ -75,11 +157,19 @@ class PrincipalInertia:
         tail = ZEROS if inertia_tail is None else inertia_tail
         (a, d, e), (_, b, f), (_, _, c) = inertia.tolist()
         if d == 0.0 and e == 0.0 and f == 0.0:
-            return cls.along_body_axes((a, b, c), tail)
-        return cls._diagonalised(inertia, tail)
+            return cls.along_body_axes((a, b, c), tail, rounding)
+        found = cls._diagonalised(inertia, tail)
+        share = max(DERIVED.share, rounding.share)
+        if exact is None and rounding == GIVEN:
+            exact = exact_matrix(inertia, tail)
+        exponent = math.frexp(float(np.max(np.abs(inertia))))[1]
+        known = None if exact is None else KnownTensor(exact, np.ldexp(inertia, -exponent).tolist())
+        return replace(found, rounding=Rounding(share, False), tensor=known)
 
     @classmethod
-    def along_body_axes(cls, values: tuple[float, float, float], tail: Floats = ZEROS) -> PrincipalInertia:
+    def along_body_axes(
+        cls, values: tuple[float, float, float], tail: Floats = ZEROS, rounding: Rounding = GIVEN
+    ) -> PrincipalInertia:
         """Return the principal inertia of a diagonal tensor with these moments, their tails on the diagonal of `tail`.
 
         The moments are only sorted: they stay as they are, and the axes are an exact signed permutation.
@@ -95,7 +185,7 @@ class PrincipalInertia:
         i, j, k = order
         moments = np.array((values[i], values[j], values[k]))
         moments.setflags(write=False)
-        return cls(moments, tails, _PERMUTED[i, j, k], ZEROS)
+        return cls(moments, tails, _PERMUTED[i, j, k], ZEROS, rounding)
 
     @classmethod
     def _diagonalised(cls, inertia: Floats, tail: Floats) -> PrincipalInertia:
@@ -130,6 +220,27 @@ class PrincipalInertia:
         for array in (found.moments, found.moments_tail, found.axes, found.axes_tail):
             array.setflags(write=False)
         return found
+
+    @cached_property
+    def apart(self) -> tuple[bool, bool]:
+        """Whether the middle moment is known to differ from the smallest, and the largest from the middle one.
+
+        This is what every motion goes by. Moments that were given, or rounded once, differ if they are not the same; of
+        derived ones a difference below the resolution is that of rounding.
+        """
+        i, tail = self.moments.tolist(), self.moments_tail.tolist()
+        if self.rounding.exact_zeros:
+            return (i[0], tail[0]) != (i[1], tail[1]), (i[1], tail[1]) != (i[2], tail[2])
+        # With the tails: over many turns a difference far below an ulp is seen.
+        low, high = ((i[k + 1] - i[k]) + (tail[k + 1] - tail[k]) for k in (0, 1))
+        return low > RESOLUTION * i[2], high > RESOLUTION * i[2]
+
+    @property
+    def nearly_equal(self) -> bool:
+        """Whether two moments that are known to differ do so by less than 16 eps of the largest."""
+        low, middle, high = self.moments.tolist()
+        first, second = self.apart
+        return (first and middle - low <= EQUAL * high) or (second and high - middle <= EQUAL * high)
 
     @property
     def symmetry(self) -> Symmetry:

@@ -1,4 +1,4 @@
-"""Points relative to the middle of their box, without rounding."""
+"""Points relative to the middle of their bounding box, without rounding."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Floats = NDArray[np.float64]
 class Recentred:
     """Points whose coordinates are reference + unit (high + low), |high| < 1, unit a power of two for each axis.
 
-    Points far from the origin lose no digit in a sum of products, and neither a needle nor a leaf leaves the range of
-    doubles. A coordinate that all points share is zero exactly.
+    Points far from the origin lose no digits in a sum of products, and neither a needle nor a thin plate leaves the
+    range of doubles. A coordinate that all points share is exactly zero.
 
     Attributes
     ----------
@@ -34,11 +34,12 @@ class Recentred:
 
     @classmethod
     def on(cls, points: Floats) -> Recentred:
-        """Refer points, shape (n, 3), to the middle of their box."""
+        """Return points, shape (n, 3), relative to the middle of their bounding box."""
         outer = np.frexp(np.abs(points).max(axis=0))[1].astype(np.int64)
         x = np.ldexp(points, -outer)
         middle = 0.5 * (x.min(axis=0) + x.max(axis=0))
-        # The difference as a sum of two doubles: D. E. Knuth, "The Art of Computer Programming" 2, 4.2.2, theorem B.
+        # The difference as an exact sum of two doubles: D. E. Knuth, "The Art of Computer Programming" 2, 4.2.2,
+        # theorem B.
         high = x - middle
         back = high - x
         low = (x - (high - back)) + (-middle - back)

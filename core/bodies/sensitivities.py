@@ -1,9 +1,9 @@
-"""By how much each number that describes a body moves its tensor of inertia: first derivatives, vectorised.
+"""First derivatives of the inertia tensor with respect to each number that describes a body, vectorised.
 
-About a fixed point c the moments S = integral of d d^T dm, d = r - c, are linear in what is added to a body. About the
-centre of mass they are stationary in c (the first moment vanishes there), so that derivatives about the fixed point
-that is the centre of mass are those of the central moments. Every derivative is multiplied by the number itself: it is
-the move for a relative uncertainty of one, and numbers that are zero, which no relative uncertainty moves, have none.
+About a fixed point c the moments S = integral of d d^T dm, d = r - c, are additive over the parts of a body. About the
+centre of mass they are stationary in c (the first moment vanishes there). The derivatives about the fixed point at the
+centre of mass are therefore those of the central moments. Every derivative is multiplied by the number itself: it is
+the change for a relative uncertainty of one, and zero for a number that is zero.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from core.bodies.uniform import Uniform
 Floats = NDArray[np.float64]
 
 STEP = Fraction(1, 2**30)
-"""Relative step of the differences of solids, which are formed in rational numbers and lose no digit."""
+"""Relative step of the finite differences of solids, which are formed in rational arithmetic without cancellation."""
 
 _UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
@@ -40,14 +40,14 @@ class _Units(NamedTuple):
 
 
 def tensor_sensitivities(properties: MassProperties, exponent: int) -> Floats:
-    """Return by how much each number of a body's description moves its tensor about the point of rotation.
+    """Return the change of the tensor about the point of rotation for each number that describes the body.
 
-    To first order, for a relative uncertainty of one of that number alone.
+    To first order, for a relative uncertainty of one in that number alone.
 
     Parameters
     ----------
     properties : MassProperties
-        Of the body; of one that is not described by other numbers, the components of the tensor are the numbers.
+        If they are not derived from other numbers, the components of the tensor are the numbers.
     exponent : int
         The result is in units of 2^exponent kg m^2.
 
@@ -63,10 +63,10 @@ def tensor_sensitivities(properties: MassProperties, exponent: int) -> Floats:
     about = np.ldexp(center, -length) if properties.about == "center-of-mass" else np.zeros(3)
     second = _of_moments(body, about, _Units(exponent - 2 * length, length))
     # The tensor is the trace times the unit tensor less the moments.
-    moved, trace = -second, second[:, 0, 0] + second[:, 1, 1] + second[:, 2, 2]
+    changes, trace = -second, second[:, 0, 0] + second[:, 1, 1] + second[:, 2, 2]
     for k in range(3):
-        moved[:, k, k] += trace
-    return moved
+        changes[:, k, k] += trace
+    return changes
 
 
 def _of_components(tensor: Floats) -> Floats:
@@ -80,12 +80,12 @@ def _of_components(tensor: Floats) -> Floats:
 
 
 def _of_moments(body: Any, about: Floats, units: _Units) -> Floats:
-    """Return the moves of S about a point, shape (n, 3, 3), of a body that is described by n numbers.
+    """Return the changes of S about a point, shape (n, 3, 3), of a body that is described by n numbers.
 
     Parameters
     ----------
     body : Body
-        Any but principal moments, which say nothing of a mass.
+        Any kind except principal moments, which have no mass.
     about : ndarray, shape (3,)
         In the body's frame, in units of 2^units.length.
     units : Units
@@ -137,11 +137,11 @@ def _of_mesh(body: Mesh, about: Floats, units: _Units) -> Floats:
     second += (six / 120.0)[:, None, None, None, None] * _pair(np.eye(3), (s[:, None] + corners)[:, :, None, :])
     corner = body.faces.ravel()
     at_corner = second.reshape(len(corner), 3, 3, 3)
-    moved = np.zeros((len(r), 3, 3, 3))
+    changes = np.zeros((len(r), 3, 3, 3))
     for j in range(3):
         for k, n in _UPPER:
-            moved[:, j, k, n] = np.bincount(corner, at_corner[:, j, k, n], len(r))
-            moved[:, j, n, k] = moved[:, j, k, n]
+            changes[:, j, k, n] = np.bincount(corner, at_corner[:, j, k, n], len(r))
+            changes[:, j, n, k] = changes[:, j, k, n]
     volume = six.sum() / 6.0
     total = np.einsum("f,fkn->kn", six, q) / 120.0
     if body.mass is None:
@@ -149,9 +149,9 @@ def _of_mesh(body: Mesh, about: Floats, units: _Units) -> Floats:
     else:
         density = np.ldexp(body.mass, -units.mass) / volume
         by_volume = [np.bincount(corner, gradient[:, :, j].ravel(), len(r)) / 6.0 for j in range(3)]
-        moved -= np.stack(by_volume, axis=1)[:, :, None, None] * (total / volume)
-    moved *= density * r[:, :, None, None]
-    return np.concatenate([density * total[None], moved.reshape(-1, 3, 3)])
+        changes -= np.stack(by_volume, axis=1)[:, :, None, None] * (total / volume)
+    changes *= density * r[:, :, None, None]
+    return np.concatenate([density * total[None], changes.reshape(-1, 3, 3)])
 
 
 def _of_solid(body: Uniform, about: Floats, units: _Units) -> Floats:
@@ -166,14 +166,14 @@ def _of_solid(body: Uniform, about: Floats, units: _Units) -> Floats:
         own = [((half if i == j else 0) - shape.inertia[i][j]) / metre**2 for i, j in _UPPER]
         return [mass * (x + d[i] * d[j]) for x, (i, j) in zip(own, _UPPER, strict=True)]
 
-    unmoved, rows = second(body), []
+    given, rows = second(body), []
     for name in (field.name for field in fields(body) if field.name not in ("kind", "mass", "density")):
         value = getattr(body, name)
         for k in range(len(value) if isinstance(value, tuple) else 1):
-            moved = copy.copy(body)
-            object.__setattr__(moved, name, _stretched(value, k))
-            rows.append([float((x - y) / STEP) for x, y in zip(second(moved), unmoved, strict=True)])
-    return _symmetric([*rows, [float(x) for x in unmoved]])
+            stretched = copy.copy(body)
+            object.__setattr__(stretched, name, _stretched(value, k))
+            rows.append([float((x - y) / STEP) for x, y in zip(second(stretched), given, strict=True)])
+    return _symmetric([*rows, [float(x) for x in given]])
 
 
 def _stretched(value: Any, k: int) -> Any:
@@ -202,22 +202,22 @@ def _of_tensor(body: InertiaTensor, about: Floats, units: _Units) -> Floats:
 
 
 def _of_part(part: Any, about: Floats, units: _Units) -> Floats:
-    """Return the moves by a part's own numbers, its place and its attitude."""
+    """Return the changes caused by a part's own numbers, its position and its attitude."""
     turn = np.array([[float(x) for x in row] for row in rotation(part.attitude)])
     place = np.ldexp(np.array(part.position), -units.length)
     own = _of_moments(part.body, turn.T @ (about - place), units)
-    moved = [turn @ own @ turn.T]
+    changes = [turn @ own @ turn.T]
     sign = -1.0 if part.hole else 1.0
     mass, first, second = _placed(part, turn, units)
     from_about = first + mass * (place - about)
-    moved.append(place[:, None, None] * _pair(np.eye(3), from_about[None, :]))
-    # A component of the quaternion turns the part by the vector part of 2 dq q*/|q|^2, about its own origin.
+    changes.append(place[:, None, None] * _pair(np.eye(3), from_about[None, :]))
+    # A change of the quaternion rotates the part by the vector part of 2 dq q*/|q|^2, about its own origin.
     w, x, y, z = np.array(part.attitude) / np.linalg.norm(part.attitude)
     vectors = np.array([[-x, -y, -z], [w, z, -y], [-z, w, x], [y, -x, w]]) * 2.0 * np.array([[w], [x], [y], [z]])
     product = second + np.outer(first, place - about)
     turned = np.cross(vectors[:, None, :], product.T[None, :, :]).swapaxes(1, 2)
-    moved.append(turned + turned.swapaxes(1, 2))
-    return sign * np.concatenate(moved)
+    changes.append(turned + turned.swapaxes(1, 2))
+    return sign * np.concatenate(changes)
 
 
 def _placed(part: Any, turn: Floats, units: _Units) -> tuple[float, Floats, Floats]:

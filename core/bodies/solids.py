@@ -1,6 +1,6 @@
-"""Uniform solids and shells in their usual places: symmetric about z, centred on the origin unless said otherwise.
+"""Uniform solids and shells in standard position: symmetric about z, centred on the origin unless stated otherwise.
 
-Formulas: derived in docs/physics/bodies.md; most stand in F. P. Beer, E. R. Johnston, "Vector Mechanics for Engineers:
+Formulas: derived in docs/physics/bodies.md; most are in F. P. Beer, E. R. Johnston, "Vector Mechanics for Engineers:
 Dynamics", appendix B ("Mass moments of inertia of homogeneous bodies").
 """
 
@@ -19,7 +19,13 @@ ORIGIN = (Fraction(0), Fraction(0), Fraction(0))
 
 @dataclass(frozen=True)
 class Ball(Uniform):
-    """A solid ball centred on the origin."""
+    """A solid ball centred on the origin.
+
+    Attributes
+    ----------
+    radius : float
+        Of the ball (m).
+    """
 
     radius: Length
     kind: Literal["ball"] = "ball"
@@ -33,7 +39,13 @@ class Ball(Uniform):
 
 @dataclass(frozen=True)
 class Cuboid(Uniform):
-    """A rectangular block centred on the origin, edges along x, y and z."""
+    """A rectangular block centred on the origin, edges along x, y and z.
+
+    Attributes
+    ----------
+    edges : tuple of 3 floats
+        Lengths along x, y and z (m).
+    """
 
     edges: tuple[Length, Length, Length]
     kind: Literal["cuboid"] = "cuboid"
@@ -47,7 +59,15 @@ class Cuboid(Uniform):
 
 @dataclass(frozen=True)
 class Cylinder(Uniform):
-    """A solid circular cylinder centred on the origin, axis along z."""
+    """A solid circular cylinder centred on the origin, axis along z.
+
+    Attributes
+    ----------
+    radius : float
+        Of the cylinder (m).
+    height : float
+        Along the axis (m).
+    """
 
     radius: Length
     height: Length
@@ -65,9 +85,9 @@ class Rod(Uniform):
     Attributes
     ----------
     length : float
-        (m).
+        Along the axis (m).
     radius : float
-        0, the default, is the infinitely thin rod: no moment about its own axis, and given by its mass (m).
+        0, the default, is an infinitely thin rod: it has no moment about its own axis and needs a mass (m).
     """
 
     length: Length
@@ -86,9 +106,9 @@ class Disc(Uniform):
     Attributes
     ----------
     radius : float
-        (m).
+        Of the disc (m).
     thickness : float
-        0, the default, is the infinitely thin disc, given by its mass (m).
+        0, the default, is an infinitely thin disc, which needs a mass (m).
     """
 
     radius: Length
@@ -102,7 +122,13 @@ class Disc(Uniform):
 
 @dataclass(frozen=True)
 class Ellipsoid(Uniform):
-    """A solid ellipsoid centred on the origin, semi-axes along x, y and z."""
+    """A solid ellipsoid centred on the origin, semi-axes along x, y and z.
+
+    Attributes
+    ----------
+    semi_axes : tuple of 3 floats
+        Lengths along x, y and z (m).
+    """
 
     semi_axes: tuple[Length, Length, Length]
     kind: Literal["ellipsoid"] = "ellipsoid"
@@ -116,7 +142,15 @@ class Ellipsoid(Uniform):
 
 @dataclass(frozen=True)
 class Cone(Uniform):
-    """A solid circular cone: base on the plane z = 0, apex at z = height; its centre of mass is at height/4."""
+    """A solid circular cone: base on the plane z = 0, apex at z = height; its centre of mass is at height/4.
+
+    Attributes
+    ----------
+    radius : float
+        Of the base (m).
+    height : float
+        From base to apex (m).
+    """
 
     radius: Length
     height: Length
@@ -131,14 +165,22 @@ class Cone(Uniform):
 
 @dataclass(frozen=True)
 class SphericalShell(Uniform):
-    """The solid between two concentric spheres about the origin; equal radii are an infinitely thin shell."""
+    """The solid between two concentric spheres about the origin; equal radii are an infinitely thin shell.
+
+    Attributes
+    ----------
+    outer_radius : float
+        Of the outer surface (m).
+    inner_radius : float
+        Of the cavity (m).
+    """
 
     outer_radius: Length
     inner_radius: LengthOrZero
     kind: Literal["spherical-shell"] = "spherical-shell"
 
     def validate(self) -> None:
-        """Refuse an inner radius larger than the outer."""
+        """Raise for an inner radius larger than the outer one."""
         _nested(self.inner_radius, self.outer_radius)
 
     def shape(self) -> Shape:
@@ -151,7 +193,17 @@ class SphericalShell(Uniform):
 
 @dataclass(frozen=True)
 class CylindricalShell(Uniform):
-    """A tube, open at both ends, centred on the origin, axis along z; equal radii are an infinitely thin wall."""
+    """A tube, open at both ends, centred on the origin, axis along z; equal radii are an infinitely thin wall.
+
+    Attributes
+    ----------
+    outer_radius : float
+        Of the outer surface (m).
+    inner_radius : float
+        Of the bore (m).
+    height : float
+        Along the axis (m).
+    """
 
     outer_radius: Length
     inner_radius: LengthOrZero
@@ -159,7 +211,7 @@ class CylindricalShell(Uniform):
     kind: Literal["cylindrical-shell"] = "cylindrical-shell"
 
     def validate(self) -> None:
-        """Refuse an inner radius larger than the outer."""
+        """Raise for an inner radius larger than the outer one."""
         _nested(self.inner_radius, self.outer_radius)
 
     def shape(self) -> Shape:
@@ -186,7 +238,7 @@ class Torus(Uniform):
     kind: Literal["torus"] = "torus"
 
     def validate(self) -> None:
-        """Refuse a ring that overlaps itself."""
+        """Raise for a ring that overlaps itself."""
         if self.tube_radius > self.ring_radius:
             raise InvalidParameter("tube_radius", "not exceed ring_radius: the ring would overlap itself")
 
@@ -206,7 +258,7 @@ class Capsule(Uniform):
     radius : float
         Of the cylinder and of the half-balls (m).
     length : float
-        Of the cylinder alone; the whole measures length + 2 radius (m).
+        Of the cylinder alone; the total length is length + 2 radius (m).
     """
 
     radius: Length
@@ -225,7 +277,13 @@ class Capsule(Uniform):
 
 @dataclass(frozen=True)
 class Hemisphere(Uniform):
-    """A solid half-ball: flat face on the plane z = 0, dome towards z; its centre of mass is at 3/8 radius."""
+    """A solid half-ball: flat face on the plane z = 0, dome towards z; its centre of mass is at 3/8 radius.
+
+    Attributes
+    ----------
+    radius : float
+        Of the hemisphere (m).
+    """
 
     radius: Length
     kind: Literal["hemisphere"] = "hemisphere"

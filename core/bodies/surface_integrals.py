@@ -1,7 +1,7 @@
 """Volume, first and second moments of the solid inside a triangulated surface, in double-double, compiled.
 
 By the divergence theorem the integral over the solid is the sum over the faces of the integral over the tetrahedron
-that a face (a, b, c) spans with a reference point at the origin, signed by D = a . (b x c):
+that a face (a, b, c) forms with a reference point at the origin, signed by D = a . (b x c):
 
     1: D/6,   x_i: D s_i / 24,   x_i x_j: D (s_i s_j + a_i a_j + b_i b_j + c_i c_j) / 120,   s = a + b + c.
 
@@ -40,7 +40,7 @@ def _cofactor(ph: float, pl: float, qh: float, ql: float, rh: float, rl: float, 
 def signed_tetrahedra(
     vertices: Floats, tails: Floats, faces: Integers, surface: Integers, sums: Floats, volumes: Floats
 ) -> float:
-    """Add up the integrals of all faces.
+    """Sum the integrals over all faces.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def signed_tetrahedra(
     Returns
     -------
     float
-        Sum over the faces of D with every sign taken positive: the size of what was rounded.
+        Sum over the faces of D with every term taken positive, to which the rounding error is proportional.
     """
     magnitude = 0.0
     sh, sl = np.empty(3), np.empty(3)
@@ -97,7 +97,7 @@ def signed_tetrahedra(
 
 @kernel()
 def faces_without_area(vertices: Floats, faces: Integers) -> tuple[int, int]:
-    """Return how many faces have corners on one line, to rounding, and the first of them (-1 for none)."""
+    """Return the number of faces with collinear corners, within rounding, and the first of them (-1 if none)."""
     count, first = 0, -1
     for n in range(faces.shape[0]):
         i, j, k = faces[n, 0], faces[n, 1], faces[n, 2]
@@ -117,9 +117,9 @@ def faces_without_area(vertices: Floats, faces: Integers) -> tuple[int, int]:
 
 @kernel()
 def connected_surfaces(faces: Integers, surface: Integers) -> int:
-    """Number the surfaces that share no vertex, fill `surface`, shape (n,), and return how many there are.
+    """Number the surfaces that share no vertex in `surface`, shape (n,), and return their number.
 
-    A vertex that no face uses belongs to none and is given -1. (Disjoint sets with path halving: R. Sedgewick,
+    A vertex that no face uses belongs to no surface and gets -1. (Disjoint sets with path halving: R. Sedgewick,
     K. Wayne, "Algorithms", 4th ed. (2011), section 1.5.)
     """
     parent = np.full(surface.size, -1, dtype=np.int64)

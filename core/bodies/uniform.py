@@ -1,7 +1,7 @@
-"""What bodies of uniform density have in common: a mass or a density, and mass properties that are rational per mass.
+"""The base class of bodies of uniform density, given by mass or density.
 
-The dimensions are doubles, so volume (up to a power of pi), centre of mass and moments per mass are rational numbers;
-they are computed as such and rounded once, to a pair of doubles.
+The dimensions are doubles, so volume (up to a power of pi), centre of mass and moments per mass are rational numbers.
+They are computed exactly and rounded once, to a pair of doubles.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import NamedTuple, Self
 
 from core.bodies.exact import PI, Matrix, Vector
 from core.bodies.mass_properties import MassProperties
+from core.bodies.principal_inertia import ROUNDED_ONCE, Rounding
 from core.errors import InvalidParameter
 from core.quantities import SignedDensity, SignedMass, check
 
@@ -22,7 +23,7 @@ class Shape(NamedTuple):
     Attributes
     ----------
     volume : Fraction
-        Divided by pi to the power `pi_power` (m^3); zero for what is infinitely thin.
+        Divided by pi to the power `pi_power` (m^3); zero for an infinitely thin body.
     center_of_mass : sequence of 3 Fraction
         (m).
     inertia : sequence of 3 rows of 3 Fraction
@@ -39,14 +40,14 @@ class Shape(NamedTuple):
 class Uniform:
     """A body of uniform density, given by exactly one of mass and density.
 
-    A negative mass or density is a hole: it can be a part of a composite, from which it takes away, and nothing else.
+    A negative mass or density is a hole. It can only be a part of a composite, from which it is subtracted.
 
     Attributes
     ----------
     mass : float, optional
-        Not 0 (kg).
+        Given by this or by the density; not 0 (kg).
     density : float, optional
-        Not 0 (kg m^-3).
+        Given by this or by the mass; not 0 (kg m^-3).
     """
 
     mass: SignedMass | None = None
@@ -63,11 +64,16 @@ class Uniform:
         self.validate()
 
     def validate(self) -> None:
-        """Raise `InvalidParameter` where dimensions contradict each other."""
+        """Raise `InvalidParameter` if dimensions contradict each other."""
 
     def shape(self) -> Shape:
         """Return the body's geometry."""
         raise NotImplementedError
+
+    @property
+    def rounding(self) -> Rounding:
+        """Rounding of the inertia tensor: rational numbers, rounded once."""
+        return ROUNDED_ONCE
 
     @property
     def _stated(self) -> str:
@@ -75,7 +81,7 @@ class Uniform:
 
     @property
     def is_hole(self) -> bool:
-        """Whether the body takes away from the composite of which it is a part."""
+        """Whether the body is subtracted from the composite of which it is a part."""
         return (self.density if self.mass is None else self.mass) < 0.0  # type: ignore[operator]
 
     def filled(self) -> Self:
@@ -104,7 +110,7 @@ class Uniform:
         return Fraction(self.density or 0.0) * shape.volume * PI**shape.pi_power
 
     def mass_properties(self) -> MassProperties:
-        """Return what the mechanics needs to know of the body, from rational arithmetic.
+        """Return the mass properties, from rational arithmetic.
 
         Raises
         ------
@@ -115,7 +121,8 @@ class Uniform:
         shape = self.shape()
         mass = self.weigh(shape)
         inertia = [[mass * x for x in row] for row in shape.inertia]
-        return replace(MassProperties.from_exact(mass, shape.center_of_mass, inertia), described_by=self)
+        found = MassProperties.from_exact(mass, shape.center_of_mass, inertia, rounding=self.rounding)
+        return replace(found, described_by=self)
 
 
 def principal(volume: Fraction, pi_power: int, center: Vector, moments: Vector) -> Shape:

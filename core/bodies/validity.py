@@ -1,4 +1,4 @@
-"""Whether matter can have given mass properties: a report that names each condition, and never a repair.
+"""Whether mass properties are physically possible: a report of each condition. Nothing is repaired.
 
 For any distribution of positive mass the principal moments are not negative and none exceeds the sum of the other
 two, with equality for a lamina (I3 = I1 + I2) and a needle (I1 = 0, I2 = I3).
@@ -7,11 +7,13 @@ two, with equality for a lamina (I3 = I1 + I2) and a needle (I1 = 0, I2 = I3).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from core.bodies.principal_inertia import EPSILON, PrincipalInertia
+from core.quantities import Unit
 
 TOLERANCE = 16.0 * EPSILON
-"""Share of the trace by which a condition may be missed: what the rounding of a tensor's components explains."""
+"""Violation of a condition that rounding of the tensor's components can cause, relative to the trace."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +27,11 @@ class Condition:
     holds : bool
         Whether `excess` is within `tolerance`.
     detail : str
-        The condition with its figures.
+        The condition with its numbers.
     excess : float
-        By how much it is missed, free of scale (for moments, as a share of the trace); negative where there is room.
+        Scale-free violation (for moments, relative to the trace); negative if the condition holds with a margin.
     tolerance : float
-        The largest excess that rounding explains.
+        Largest excess that rounding can cause.
     moments : tuple of float
         The moments concerned, the one that is too large or too small first (kg m^2); empty for other conditions.
     """
@@ -37,9 +39,9 @@ class Condition:
     name: str
     holds: bool
     detail: str
-    excess: float = 0.0
-    tolerance: float = 0.0
-    moments: tuple[float, ...] = ()
+    excess: Annotated[float, Unit("1")] = 0.0
+    tolerance: Annotated[float, Unit("1")] = 0.0
+    moments: Annotated[tuple[float, ...], Unit("kg m^2")] = ()
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Validity:
 
     @classmethod
     def of(cls, principal: PrincipalInertia, others: tuple[Condition, ...] = ()) -> Validity:
-        """Judge principal moments, and adopt further conditions as they are."""
+        """Test principal moments, and add further conditions unchanged."""
         report = (*others, *_moments(principal))
         return cls(all(condition.holds for condition in report), report)
 

@@ -1,1 +1,1 @@
-"""The closed forms in ball arithmetic: answers to any number of digits, every one of them proven."""
+"""The closed forms in ball arithmetic: answers with any number of proven digits."""

@@ -1,4 +1,4 @@
-"""Precision is raised until the enclosures determine every digit that was asked for."""
+"""Evaluation with increasing precision, until the enclosures determine every requested digit."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from core.errors import BudgetExceeded, InvalidParameter
 from core.work import spend
 
 MOST_BITS = 2**16
-"""Working precision that one question may need: twenty times that of a thousand digits."""
+"""Largest working precision of one question: twenty times that of a thousand digits."""
 
 MOST_PRINTED = 3_000_000
-"""Digits that one question may have printed."""
+"""Largest number of digits that one question may print."""
 
 GUARD_BITS = 48
 
@@ -25,14 +25,14 @@ Answer = TypeVar("Answer")
 
 
 def check_digits(digits: object, numbers: int = 1) -> int:
-    """Return the number of significant digits asked for, of so many numbers.
+    """Return the number of significant digits, checked for so many numbers.
 
     Raises
     ------
     InvalidParameter
-        Unless it is an integer from 16 to 1000.
+        If it is not an integer from 16 to 1000.
     BudgetExceeded
-        If more digits would have to be printed than one question may have.
+        If the question would print more digits than allowed.
     """
     if isinstance(digits, bool) or not isinstance(digits, int) or not FEWEST_DIGITS <= digits <= MOST_DIGITS:
         raise InvalidParameter(
@@ -48,16 +48,16 @@ def check_digits(digits: object, numbers: int = 1) -> int:
 
 
 def bits_for(digits: int, magnitude: int = 0) -> int:
-    """Return a first working precision: the digits, guard bits, and the bits before the point of the largest phase."""
+    """Return the first working precision: the digits, guard bits, and the bits of the integer part of the phase."""
     return math.ceil(digits * math.log2(10)) + GUARD_BITS + max(0, magnitude)
 
 
 def until_determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
-    """Evaluate at `bits` of working precision, and at twice as many, and so on, until no digit is in doubt.
+    """Evaluate with `bits` of working precision, then with twice as many, and so on, until all digits are determined.
 
-    A decision that cannot be taken at one precision, and a digit that it does not determine, both raise `Undetermined`.
-    What depends on doubles or on decimal strings of bounded length is decided well before the limit, unless the
-    question has no answer of this form.
+    A decision or a digit that a precision does not determine raises `Undetermined`. For inputs that are doubles or
+    decimal strings of bounded length everything is determined well below the limit, unless the question has no answer
+    of this form.
 
     Raises
     ------
@@ -75,12 +75,12 @@ def until_determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
 
 
 def each_determined(evaluators: Callable[[], Callable[[int], Answer]], count: int, bits: int) -> list[Answer]:
-    """Evaluate `count` independent numbers, and again at twice the precision only those that are still in doubt.
+    """Evaluate `count` independent numbers, and again at twice the precision those that are not determined.
 
     Parameters
     ----------
     evaluators : callable
-        Sets up at the precision that holds when it is called, and returns the function of the index.
+        Performs the set-up at the current precision, and returns the function of the index.
     """
     answers: list[Answer | None] = [None] * count
     waiting: Sequence[int] = range(count)
@@ -104,7 +104,7 @@ def each_determined(evaluators: Callable[[], Callable[[int], Answer]], count: in
 
 
 def working_bits() -> int:
-    """Return the precision that holds now."""
+    """Return the current precision."""
     return int(ctx.prec)
 
 

@@ -1,4 +1,4 @@
-"""From an enclosure to a decimal numeral whose every digit it proves."""
+"""Conversion of an enclosure to a decimal numeral with proven digits."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from flint import arb, fmpz
 FEWEST_DIGITS, MOST_DIGITS = 16, 1000
 
 SPARE_DIGITS = 4
-"""Digits beyond the printed ones that the decimal expansion of a ball is formed with."""
+"""Extra digits of the decimal expansion of a ball, beyond the printed ones."""
 
 SHARE = 100
-"""The radius of an enclosure may be this small a part of one unit of the last printed digit."""
+"""The radius of an enclosure may be at most one unit of the last printed digit divided by this number."""
 
 FLOOR_IN_DIGITS = 2
-"""A component that is this many times the printed digits below the largest norm is given as far as that place."""
+"""Components are printed down to this multiple of the digits below the largest norm."""
 
 DEEPEST = 2000
-"""Where a component is known not to be zero, its digits are given from so many places below the largest norm."""
+"""Decimal places below the largest norm down to which components known not to be zero are printed."""
 
 _TEN = [fmpz(10) ** k for k in range(64)]
 
 
 class Undetermined(ArithmeticError):
-    """The enclosure is too wide for the digits that were asked for; a higher precision narrows it."""
+    """The enclosure is too wide for the requested digits; a higher precision makes it narrower."""
 
 
 def decimal(ball: arb, digits: int, floor: int | None = None) -> str:
@@ -40,8 +40,8 @@ def decimal(ball: arb, digits: int, floor: int | None = None) -> str:
     ball : arb
     digits : int
     floor : int, optional
-        No digit is given beyond the place ``10**floor``, so that a number which is zero, but is not known to be, can be
-        written at all; it then reads ``"0e-60"``. Without it only a ball that is exactly zero is written ``"0"``.
+        No digit is printed below the place ``10**floor``. Without it, a number that is zero but not known to be zero
+        could not be printed; with it, the number reads ``"0e-60"``. A ball that is exactly zero reads ``"0"``.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def decimal(ball: arb, digits: int, floor: int | None = None) -> str:
     if not ball.is_finite():
         raise Undetermined
     if floor is not None and abs(ball) < _far_below(floor):
-        # Without an expansion in decimals, which of a number like exp(-10^9) would have as many digits.
+        # Without a decimal expansion, which for a number like exp(-10^9) would have 10^9 digits.
         return f"0e{floor}"
     mid, rad, exponent = ball.mid_rad_10exp(digits + SPARE_DIGITS)
     negative = mid < 0
@@ -81,7 +81,7 @@ def decimal_of_fraction(number: Fraction, digits: int) -> str:
     if number == 0:
         return "0"
     size = abs(number)
-    # 30103/100000 is log10(2) to five digits: good to one place, which the loop mends.
+    # 30103/100000 is log10(2) to five digits, which is accurate to one place; the loop corrects it.
     place = (size.numerator.bit_length() - size.denominator.bit_length()) * 30103 // 100000 - digits
     while True:
         top, bottom = size.numerator * 10 ** max(0, -place), size.denominator * 10 ** max(0, place)
@@ -95,12 +95,12 @@ def decimal_of_fraction(number: Fraction, digits: int) -> str:
 
 
 def numeral(whole: int, place: int, digits: int, negative: bool) -> str:
-    """Write ``whole * 10**place``: with a plain point where that costs few zeros, else with an exponent."""
+    """Write ``whole * 10**place``, without an exponent if this needs few zeros, otherwise with one."""
     if whole == 0:
         return f"0e{place}"
     written = str(whole)
     if len(written) > digits:
-        # Rounding has carried into a new digit, so the last one is a zero.
+        # Rounding has carried into a new digit, so the last digit is zero.
         written, place = written[:-1], place + 1
     sign = "-" if negative else ""
     exponent = len(written) - 1 + place
@@ -115,18 +115,18 @@ def numeral(whole: int, place: int, digits: int, negative: bool) -> str:
 
 @lru_cache(maxsize=64)
 def _far_below(floor: int) -> arb:
-    """Return a hundredth of the last place, or a little less: an exact number."""
+    """Return an exact number that is a hundredth of the last place or slightly less."""
     return (arb(10) ** (floor - 2)).lower()
 
 
 def place_of(size: arb) -> int:
-    """Return the exponent of ten of the leading digit of a positive number, or the one beside it."""
+    """Return the decimal exponent of a positive number, to within one."""
     mid, _, exponent = size.mid_rad_10exp(3)
     return len(str(mid)) - 1 + int(exponent)
 
 
 def floor_below(size: arb, digits: int) -> int:
-    """Return the last place that is printed of the components of a vector whose largest norm is `size`."""
+    """Return the last printed place of the components of a vector whose largest norm is `size`."""
     return place_of(size) - FLOOR_IN_DIGITS * digits
 
 

@@ -1,4 +1,4 @@
-"""Axes without a sense, told by unit vectors."""
+"""Unit vectors along axes, with a defined sign."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from core.certified.decimals import FLOOR_IN_DIGITS, Undetermined
 from core.certified.exact_start import Balls
 
 TIE_BITS = 320
-"""Components that so many bits do not tell apart are taken as equal."""
+"""Components that this precision does not distinguish count as equal."""
 
 
 def oriented(axis: Balls) -> Balls:
-    """Return a vector or its opposite: the one along the positive side of the body axis that it is nearest to.
+    """Return a vector or its opposite, whichever points along the positive direction of the nearest body axis.
 
-    Of body axes that are equally near the first counts.
+    If several body axes are equally near, the first is used.
 
     Raises
     ------
     Undetermined
-        If that is in doubt.
+        If the precision does not determine it.
     """
     largest = 0
     for k in (1, 2):
@@ -36,5 +36,5 @@ def oriented(axis: Balls) -> Balls:
 
 
 def floor_of_directions(digits: int) -> int:
-    """Return the last place that is printed of the components of a unit vector."""
+    """Return the last printed place of the components of a unit vector."""
     return -FLOOR_IN_DIGITS * digits

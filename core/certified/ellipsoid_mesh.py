@@ -1,4 +1,4 @@
-"""The energy ellipsoid as a surface of triangles or a grid, to any number of digits."""
+"""The energy ellipsoid as a triangle mesh or a grid, to any number of digits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from core.rotation.surfaces.energy_surface import CORNERS, Faces, check_resoluti
 
 @dataclass(frozen=True)
 class CertifiedMeshQuality:
-    """How well triangles stand for the ellipsoid; see `core.rotation.surfaces.energy_surface.MeshQuality`."""
+    """Quality of the mesh; see `core.rotation.surfaces.energy_surface.MeshQuality`."""
 
     watertight: bool
     euler_characteristic: int
@@ -54,7 +54,7 @@ def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: in
         g = (1 + arb(5).sqrt()) / 2
 
         def component(n: int, k: int) -> arb:
-            # A whole number and a multiple of g apart, so that what vanishes is exactly zero.
+            # An integer and a multiple of g, so components that vanish are exactly zero.
             whole, multiple = (
                 sum(w * solid[c][part][k] for w, c in zip(weights[n], corners[n], strict=True)) for part in range(2)
             )
@@ -75,7 +75,7 @@ def certified_triangles(surface: CertifiedEllipsoid, resolution: int, digits: in
         direction, on_surface = directions(), _mapped(surface)
         unit = [direction(n) for n in range(len(weights))]
         points = [on_surface(d) for d in unit]
-        # The volume ratio is the same for sphere and ellipsoid, which differ by a linear map.
+        # A linear map takes the sphere to the ellipsoid, so the volume ratio is the same.
         volume = sum((dot(unit[a], cross_of_balls(unit[b], unit[c])) for a, b, c in faces), arb(0))
         triangles = [(points[a], points[b], points[c]) for a, b, c in faces]
         angle = _extreme(arb.min, (x for triangle in triangles for x in _angles(*triangle)))
@@ -140,7 +140,7 @@ def _floor(surface: CertifiedEllipsoid, digits: int) -> int:
 
 
 def _extreme(of: Callable[[arb, arb], arb], values: Iterable[arb]) -> arb:
-    """Return the least or the greatest of numbers in balls, as a ball."""
+    """Return a ball that encloses the smallest or largest of the numbers in balls."""
     found = None
     for value in values:
         found = value if found is None else of(found, value)

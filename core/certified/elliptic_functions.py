@@ -1,7 +1,7 @@
 """Jacobi's elliptic functions as quotients of theta functions, in ball arithmetic, for 0 <= m < 1.
 
-The argument is counted in half periods: z = u/2K. A lattice whose half period ratio K'/K is small is turned by Jacobi's
-imaginary transformation, so that the nome is never above exp(-pi), however near to 1 the parameter is.
+The argument is counted in half periods: z = u/2K. For a small ratio of half periods K'/K Jacobi's
+imaginary transformation is applied, so the nome never exceeds exp(-pi), however near to 1 the parameter is.
 
 References
 ----------
@@ -31,7 +31,7 @@ def _theta(z: acb, tau: acb, derivative: int = 0) -> tuple[acb, acb, acb, acb]:
 
 
 def split(z: arb) -> tuple[int, arb]:
-    """Return the integer nearest to a number and what remains of it, in [-1/2, 1/2]."""
+    """Return the integer nearest to a number and the remainder, in [-1/2, 1/2]."""
     nearest = (z.mid() + HALF).mid().floor()
     whole = nearest.unique_fmpz()
     if whole is None:
@@ -40,12 +40,12 @@ def split(z: arb) -> tuple[int, arb]:
 
 
 class EllipticFunctions:
-    """sn, cn and dn of one parameter, at the precision at which it was built.
+    """sn, cn and dn of one parameter, at the precision of its construction.
 
     Parameters
     ----------
     m, m1 : arb
-        The parameter and 1 - m, each enclosed with a small radius relative to itself; m >= 0, m1 > 0.
+        The parameter and 1 - m, each enclosed with a small relative radius; m >= 0, m1 > 0.
     """
 
     def __init__(self, m: arb, m1: arb) -> None:
@@ -65,7 +65,7 @@ class EllipticFunctions:
 
     @cached_property
     def _factors(self) -> tuple[arb, arb, arb]:
-        """Theta functions at 0 that make the quotients sn, cn, dn."""
+        """Constant factors of the quotients sn, cn, dn: theta functions at 0."""
         _, t2, t3, t4 = (theta.real for theta in _theta(acb(0), self._tau))
         return (t3 / t2, t4 / t2, t4 / t3) if self.circular else (t3 / t4, t2 / t4, t2 / t3)
 
@@ -94,7 +94,7 @@ class EllipticFunctions:
         return s * t1.imag * over, c * t4.real * over, d * t3.real * over
 
     def argument(self, sn: arb, cn: arb, dn: arb) -> arb:
-        """Return u in [-2K, 2K] from its three functions; near a quarter period from what is left to it."""
+        """Return u in [-2K, 2K] from its three functions; near a quarter period from the distance to it."""
         if (sn * sn * (1 + self.k1)).mid() <= 1:
             u = sn * carlson_rf(cn * cn, dn * dn, ONE)
             if cn.mid() >= 0:
@@ -105,9 +105,9 @@ class EllipticFunctions:
 
 
 class PhaseOfTheta:
-    """The direction of theta4(z - i eta/2K | 2i K'/K), z real in half periods, in the complex plane.
+    """The argument of theta4(z - i eta/2K | 2i K'/K), z real in half periods.
 
-    It is the only part of a precession that is not proportional to time.
+    This is the part of a precession angle that is not proportional to time.
 
     Parameters
     ----------
@@ -132,18 +132,18 @@ class PhaseOfTheta:
         return _theta(acb(-self._shift, -r * self._turn), self._tau, derivative)[1]
 
     def at(self, r: arb) -> tuple[arb, arb]:
-        """Return cosine and sine of the direction, for r in [-1/2, 1/2]."""
+        """Return cosine and sine of the argument, for r in [-1/2, 1/2]."""
         value = self._value(r)
         over = 1 / abs(value)
         c, s = value.real * over, value.imag * over
         if self._functions.circular:
             return c, s
-        # The Gaussian factor of the transformed theta function turns in proportion to r.
+        # The argument of the Gaussian factor of the transformed theta function is proportional to r.
         y, x = (r * self._slope).sin_cos_pi()
         return c * x - s * y, s * x + c * y
 
     def rate(self) -> arb:
-        """Return d(direction)/dz at z = 0."""
+        """Return d(argument)/dz at z = 0."""
         zero = arb(0)
         logarithmic = self._value(zero, 1) / self._value(zero)
         if self._functions.circular:

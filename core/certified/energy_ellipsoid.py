@@ -8,15 +8,18 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
+from core.bodies.exact import tensor_pairs
+from core.bodies.mass_properties import MassProperties
 from core.certified.adaptive_precision import bits_for, check_digits, each_determined, until_determined
 from core.certified.decimals import DEEPEST, decimal, decimal_of_fraction, decimals, floor_below
 from core.certified.directions import floor_of_directions
 from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
+from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers, nearest
 from core.certified.exact_start import Balls, dot, principal_axes
 from core.certified.free_rotation import CertifiedRotation, Rows
 from core.certified.turning_motion import TurningMotion
 from core.errors import InvalidParameter
+from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.surfaces.polhodes import check_count
 
 
@@ -69,6 +72,12 @@ class CertifiedEllipsoid:
         if twice <= 0:
             raise InvalidParameter("energy", "be greater than 0 J")
         return cls(inertia, twice)
+
+    def drawn_starts(self, count: int, seed: int) -> list[list[float]]:
+        """Return the starts of `core.rotation.surfaces.initial_states`: doubles, whose directions alone are meant."""
+        body = MassProperties(*tensor_pairs(self.inertia.tensor))
+        starts: list[list[float]] = initial_states(body, nearest(self.twice_energy / 2), count, seed).tolist()
+        return starts
 
     @classmethod
     def through(cls, inertia: ExactInertia, angular_velocity: Sequence[Number]) -> CertifiedEllipsoid:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import MISSING, fields
 from typing import Any
 
 from core.bodies import Body
@@ -54,23 +55,23 @@ def exact_body(body: Mapping[str, Any]) -> ExactMass:
 
 def _any_body(body: Mapping[str, Any]) -> ExactMass:
     kind = body.get("kind")
-    fields = {name: value for name, value in body.items() if name != "kind"}
+    given = {name: value for name, value in body.items() if name != "kind"}
     if kind == "principal-moments":
-        return ExactMass(ExactInertia.of_moments(_only(fields, "moments")).tensor, given_by="moments")
+        return ExactMass(ExactInertia.of_moments(_only(given, "moments")).tensor, given_by="moments")
     if kind == "inertia-tensor":
-        return _of_tensor(fields)
+        return _of_tensor(given)
     if kind == "point-masses":
-        positions, about = _only(fields, "positions", "masses", "about"), _about(fields)
-        if "masses" not in fields:
+        positions, about = _only(given, "positions", "masses", "about"), _about(given)
+        if "masses" not in given:
             raise InvalidParameter("masses", "be given")
-        return ExactMass.of_point_masses(fields["masses"], positions, about)
+        return ExactMass.of_point_masses(given["masses"], positions, about)
     if isinstance(kind, str) and kind in UNIFORM:
-        _solid_in_doubles(UNIFORM[kind], fields).refuse_hole()
-        return _solid(UNIFORM[kind], fields)
+        _solid_in_doubles(UNIFORM[kind], given).refuse_hole()
+        return _solid(UNIFORM[kind], given)
     if kind == "composite":
-        parts = _only(fields, "parts", "about")
+        parts = _only(given, "parts", "about")
         # Its own checks, on the nearest doubles, which are what their messages quote.
-        whole = Composite(tuple(_part_in_doubles(part, i) for i, part in enumerate(parts)), _about(fields))
+        whole = Composite(tuple(_part_in_doubles(part, i) for i, part in enumerate(parts)), _about(given))
         if whole.count > MOST_PARTS:
             remedy = "leave out the digits, or give the body by its points or its tensor of inertia"
             raise BudgetExceeded("parts", whole.count, MOST_PARTS, path=("parts",), remedy=remedy)
@@ -97,26 +98,26 @@ def _within(*path: str | int) -> Iterator[None]:
         raise NotApplicable(fault.detail, path=(*path, *fault.path), remedy=fault.remedy) from None
 
 
-def _only(fields: Mapping[str, Any], first: str, *others: str) -> Any:
+def _only(given: Mapping[str, Any], first: str, *others: str) -> Any:
     """Return the field `first`, which must be there; besides it only `others` may be."""
-    for name in fields:
+    for name in given:
         if name not in (first, *others):
             raise InvalidParameter(name, f"be a field of this body: {', '.join((first, *others))}")
-    if first not in fields:
+    if first not in given:
         raise InvalidParameter(first, "be given")
-    return fields[first]
+    return given[first]
 
 
-def _about(fields: Mapping[str, Any]) -> Any:
-    about = fields.get("about", "center-of-mass")
+def _about(given: Mapping[str, Any]) -> Any:
+    about = given.get("about", "center-of-mass")
     if about not in ("center-of-mass", "origin"):
         raise InvalidParameter("about", 'be "center-of-mass" or "origin"')
     return about
 
 
-def _of_tensor(fields: Mapping[str, Any]) -> ExactMass:
-    tensor = symmetric(_only(fields, "tensor", "mass", "center_of_mass"))
-    mass, center = fields.get("mass"), fields.get("center_of_mass")
+def _of_tensor(given: Mapping[str, Any]) -> ExactMass:
+    tensor = symmetric(_only(given, "tensor", "mass", "center_of_mass"))
+    mass, center = given.get("mass"), given.get("center_of_mass")
     if mass is not None:
         mass = exact(mass, "mass")
         if mass <= 0:
@@ -126,10 +127,10 @@ def _of_tensor(fields: Mapping[str, Any]) -> ExactMass:
     return ExactMass(tensor, mass, center, given_by="tensor")
 
 
-def _solid(kind: type[Uniform], fields: Mapping[str, Any]) -> ExactMass:
+def _solid(kind: type[Uniform], given: Mapping[str, Any]) -> ExactMass:
     """Return a solid; one of negative mass or density is a hole."""
-    _solid_in_doubles(kind, fields)
-    solid = kind(**{name: _exactly(value, (name,)) for name, value in fields.items()})
+    _solid_in_doubles(kind, given)
+    solid = kind(**{name: _exactly(value, (name,)) for name, value in given.items()})
     shape = solid.shape()
     if solid.mass is None and shape.pi_power:
         raise NotApplicable(
@@ -142,11 +143,15 @@ def _solid(kind: type[Uniform], fields: Mapping[str, Any]) -> ExactMass:
     return ExactMass((x, y, z), mass, triple(shape.center_of_mass))
 
 
-def _solid_in_doubles(kind: type[Uniform], fields: Mapping[str, Any]) -> Uniform:
-    try:
-        return kind(**{name: _rounded(_exactly(value, (name,))) for name, value in fields.items()})
-    except TypeError as fault:
-        raise InvalidParameter((), f"have the fields of its kind: {fault}") from None
+def _solid_in_doubles(kind: type[Uniform], given: Mapping[str, Any]) -> Uniform:
+    known = {entry.name: entry for entry in fields(kind) if entry.name != "kind"}
+    for name in given:
+        if name not in known:
+            raise InvalidParameter(name, f"be a field of this body: {', '.join(known)}")
+    for name, entry in known.items():
+        if entry.default is MISSING and name not in given:
+            raise InvalidParameter(name, "be given")
+    return kind(**{name: _rounded(_exactly(value, (name,))) for name, value in given.items()})
 
 
 def _part(part: Mapping[str, Any], i: int) -> ExactMass:
@@ -179,13 +184,13 @@ def _part_in_doubles(part: Mapping[str, Any], i: int) -> Part:
 
 def _in_doubles(body: Mapping[str, Any]) -> Any:
     kind = body.get("kind")
-    fields = {name: value for name, value in body.items() if name not in ("kind", "about", "parts")}
+    given = {name: value for name, value in body.items() if name not in ("kind", "about", "parts")}
     if kind == "composite":
         parts = _only(body, "parts", "about", "kind")
         return Composite(tuple(_part_in_doubles(part, i) for i, part in enumerate(parts)), _about(body))
     if isinstance(kind, str) and kind in UNIFORM:
-        return _solid_in_doubles(UNIFORM[kind], fields)
-    plain = {name: _rounded(_exactly(value, (name,))) for name, value in fields.items()}
+        return _solid_in_doubles(UNIFORM[kind], given)
+    plain = {name: _rounded(_exactly(value, (name,))) for name, value in given.items()}
     try:
         if kind == "point-masses":
             positions = [list(point) for point in plain["positions"]]

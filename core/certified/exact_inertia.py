@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from core.bodies.measured import THIN_ROD
 from core.bodies.principal_inertia import Symmetry
 from core.certified.exact_inputs import Number, exact_numbers
 from core.errors import InvalidParameter
@@ -39,8 +40,10 @@ class ExactInertia:
         a, b, c = exact_numbers(moments, ("moments",), 3)
         zero = Fraction(0)
         for i, moment in enumerate((a, b, c)):
-            if moment <= 0:
-                raise InvalidParameter(("moments", i), "be greater than 0 kg m^2")
+            if moment < 0:
+                raise InvalidParameter(("moments", i), "be at least 0 kg m^2")
+        if (a, b, c).count(zero) > 1:
+            raise InvalidParameter("moments", "have at most one moment of 0 kg m^2", remedy=THIN_ROD)
         return cls(((a, zero, zero), (zero, b, zero), (zero, zero, c)))
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Numbers as they were given: a double is the rational number that it stands for, "0.1" is one tenth."""
+"""Exact inputs: a double is the rational number that it represents, "0.1" is one tenth."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from flint import arb, fmpq
 from core.errors import InvalidParameter, Path
 
 LONGEST_NUMERAL = 1100
-"""Characters of a decimal string: a thousand digits, their point and an exponent."""
+"""Largest length of a decimal string: a thousand digits, a point and an exponent."""
 
 LARGEST_EXPONENT = 1000
-"""A power of ten costs memory in proportion to itself, so its exponent is bounded."""
+"""Largest exponent of ten: the memory for the power is proportional to it."""
 
 NUMERAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE]([+-]?[0-9]{1,5}))?"
 """A decimal string, as a regular expression."""
@@ -26,7 +26,7 @@ Number = float | int | str | Fraction
 
 
 def exact(number: Number, path: str | Path) -> Fraction:
-    """Return a double, an integer, a fraction or a decimal string as the rational number that it is.
+    """Return a double, an integer, a fraction or a decimal string as a rational number, without rounding.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def exact_numbers(numbers: Sequence[Number], path: Path, count: int | None = Non
     Raises
     ------
     InvalidParameter
-        For an entry that is no number, or a list that has not `count` of them.
+        If an entry is not a number, or the list does not have `count` entries.
     """
     if isinstance(numbers, str) or not isinstance(numbers, Sequence):
         raise InvalidParameter(path, "be a list")
@@ -60,7 +60,7 @@ def exact_numbers(numbers: Sequence[Number], path: Path, count: int | None = Non
 
 
 def evenly_spaced(start: Fraction, stop: Fraction, count: int) -> tuple[Fraction, ...]:
-    """Return `count` numbers at exactly equal distances, both ends included; a single one is the start."""
+    """Return `count` numbers at exactly equal distances, both ends included; if it is 1, the start."""
     if count == 1:
         return (start,)
     step = (stop - start) / (count - 1)

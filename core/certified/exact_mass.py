@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia in rational numbers: what a body is before it is asked how it turns."""
+"""Mass, centre of mass and inertia of a body in rational numbers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ExactMass:
     about : {"center-of-mass", "origin"}
         The point about which the body turns.
     given_by : str
-        The field to which what is to be said of the inertia points; empty for the body as a whole.
+        Field to which notices about the inertia point; empty for the body as a whole.
     """
 
     inertia: Matrix
@@ -68,7 +68,7 @@ class ExactMass:
 
     @property
     def notices(self) -> tuple[Notice, ...]:
-        """What every answer about the body has to say of it; paths lead from the body."""
+        """Warnings about the body; paths are relative to it."""
         found = []
         if not of_matter(self.inertia):
             detail = (
@@ -78,13 +78,13 @@ class ExactMass:
             found.append(Notice("unphysical-inertia", detail, (self.given_by,) if self.given_by else ()))
         if self.about == "origin" and self.mass is not None and self.center_of_mass is not None:
             square, trace = sum((x * x for x in self.center_of_mass), Fraction(0)), self.of_motion.trace
-            # Places given as doubles miss the origin by their rounding, which is no pin.
+            # The rounding of positions given as doubles is not an offset from the origin.
             if square * self.mass > Fraction(AT_THE_ORIGIN) ** 2 * trace:
                 found.append(not_free(hypot(*map(nearest, self.center_of_mass))))
         return tuple(found)
 
     def placed(self, attitude: Sequence[Fraction], position: Sequence[Fraction]) -> ExactMass:
-        """Return the body turned about its origin by a quaternion [w, x, y, z], then moved; its mass must be known."""
+        """Return the body rotated about its origin by a quaternion, then displaced; the mass must be known."""
         assert self.center_of_mass is not None
         center, inertia = self.center_of_mass, self.inertia
         if any(attitude[1:]):
@@ -95,7 +95,7 @@ class ExactMass:
         return ExactMass(inertia, self.mass, moved)
 
     def taken_away(self) -> ExactMass:
-        """Return the hole that this body leaves."""
+        """Return the hole in the shape of this body."""
         assert self.mass is not None
         return ExactMass(_matrix([[-x for x in row] for row in self.inertia]), -self.mass, self.center_of_mass)
 
@@ -106,7 +106,7 @@ class ExactMass:
         positions: Sequence[Sequence[Number]],
         about: About = "center-of-mass",
     ) -> ExactMass:
-        """Return points held rigidly together.
+        """Return rigidly connected point masses.
 
         Parameters
         ----------
@@ -133,14 +133,15 @@ class ExactMass:
 
     @classmethod
     def together(cls, parts: Sequence[ExactMass], about: About) -> ExactMass:
-        """Return bodies of known mass welded together; holes among them have negative masses.
+        """Return the composite of bodies of known mass; holes have negative masses.
 
         Raises
         ------
         InvalidParameter
-            If the whole does not weigh anything.
+            If the total mass is not positive.
         """
-        # Sums in fmpq: the denominators of many attitudes multiply, and Python's own divisors take the square.
+        # Sums in fmpq: the denominators of many attitudes multiply, and the gcd of Python's Fraction is quadratic in
+        # them.
         known = []
         for part in parts:
             assert part.mass is not None

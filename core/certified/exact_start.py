@@ -9,12 +9,16 @@ from typing import Any, Literal, NamedTuple
 
 from flint import arb, fmpq, fmpq_poly
 
-from core.certified.decimals import Undetermined
+from core.certified.adaptive_precision import bits_for, until_determined, working_bits
+from core.certified.decimals import FEWEST_DIGITS, Undetermined
 from core.certified.exact_inertia import ExactInertia, Vector, cross
 from core.certified.exact_inputs import enclosed
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
 Balls = tuple[arb, arb, arb]
+
+EQUALITY_BITS = 640
+"""A number that may vanish, and cannot be told from zero with so many bits, is taken to vanish."""
 
 
 class PrincipalState(NamedTuple):
@@ -85,6 +89,17 @@ class ExactStart:
         return "periodic" if self.side else "separatrix"
 
     @cached_property
+    def middle_side(self) -> int:
+        """Where the moment of a steady spin lies among the others: -1 between them, 1 outside, 0 equal to one.
+
+        The moment is a root r = L^2/2E of the characteristic cubic (x - r)(x - r1)(x - r2), whose derivative there is
+        (r - r1)(r - r2), a rational number.
+        """
+        r = self.squared_momentum / self.twice_energy
+        slope = 3 * r * r - 2 * r * self.inertia.trace + self.inertia.minors
+        return (slope > 0) - (slope < 0)
+
+    @cached_property
     def order(self) -> tuple[int, int, int]:
         """Body axes in ascending order of moments, where the body axes are principal."""
         i, j, k = sorted(range(3), key=lambda n: self.inertia.tensor[n][n])
@@ -97,6 +112,40 @@ class ExactStart:
         if moments is None:
             return None
         return self.squared_momentum - self.twice_energy * moments[1]
+
+    def tilts_below_45_degrees(self) -> bool:
+        """Return whether the middle axis of a periodic motion comes within 45 degrees of the angular momentum.
+
+        Where it comes nearest w_c vanishes, and with s = L^2/2E
+
+            cos^2 = (1/s - 1/I_d)/(1/I_b - 1/I_d),
+
+        which is more than 1/2 where 2 I_b I_d - s (I_b + I_d) has the sign of I_d - I_b. In the moment of the axis c,
+        the trace and the determinant that is g(I_c)/I_c, g(x) = s x^2 - s tr x + 2 det: rational coefficients decide
+        whether it can vanish although the moments may be irrational.
+        """
+        s, trace, determinant = (
+            self.squared_momentum / self.twice_energy,
+            self.inertia.trace,
+            self.inertia.determinant_at(Fraction(0)),
+        )
+        own = 0 if self.side > 0 else 2
+        rational = self.inertia.rational_moments
+        if rational is not None:
+            return (s * rational[own] * (rational[own] - trace) + 2 * determinant) * self.side > 0
+        cubic = _polynomial(-determinant, self.inertia.minors, -trace, Fraction(1))
+        may_vanish = cubic.gcd(_polynomial(2 * determinant, -s * trace, s)).degree() > 0
+
+        def decided() -> bool:
+            x = self.principal_state().moments[own]
+            value = enclosed(s) * x * (x - enclosed(trace)) + enclosed(2 * determinant)
+            if value > 0 or value < 0:
+                return bool(value * self.side > 0)
+            if may_vanish and working_bits() >= EQUALITY_BITS:
+                return False
+            raise Undetermined
+
+        return until_determined(decided, bits_for(FEWEST_DIGITS))
 
     def principal_state(self) -> PrincipalState:
         """Return the start in principal axes at the current precision.
@@ -177,13 +226,18 @@ class ExactStart:
     def _roots(self) -> Balls:
         inertia = self.inertia
         coefficients = [-inertia.determinant_at(Fraction(0)), inertia.minors, -inertia.trace, Fraction(1)]
-        polynomial = fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
+        polynomial = _polynomial(*coefficients)
         roots: list[Any] = polynomial.complex_roots()
         found = [root.real for root, _ in roots]
         a, b, c = sorted(found, key=lambda root: root.mid())
         if not (a < b < c and a > 0):
             raise Undetermined
         return a, b, c
+
+
+def _polynomial(*coefficients: Fraction) -> Any:
+    """Return a polynomial by its coefficients in ascending order."""
+    return fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
 
 
 def principal_axes(inertia: ExactInertia) -> PrincipalState:

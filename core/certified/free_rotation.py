@@ -16,11 +16,13 @@ from core.certified.exact_inputs import Number, enclosed, exact_numbers
 from core.certified.exact_start import ExactStart, Regime
 from core.certified.turning_motion import QuaternionBalls, TurningMotion, product
 from core.errors import InvalidParameter
+from core.notices import Notice
+from core.rotation.free_rotation import NAME, steady_model
+from core.rotation.stability.classification import UNSTABLE_SPINS, unstable_axis
 from core.systems.system import Model
 
 Rows = list[list[str]]
 IDENTITY = (1, 0, 0, 0)
-NAME = "torque-free rigid body"
 
 
 @dataclass(frozen=True)
@@ -86,12 +88,7 @@ class CertifiedRotation:
         if self.regime == "rest":
             return Model(name, "rest", "the angular velocity is zero", 0)
         if self.regime == "steady":
-            why = {
-                1: "the spin lies along a principal axis",
-                2: "the spin lies along a principal axis or in the plane of two equal moments",
-                3: "the three moments are equal, so every axis is principal",
-            }[equal]
-            return Model(name, "steady rotation", f"{why}: nothing accelerates", 0)
+            return steady_model(equal > 1 and not self.inertia.is_line, equal == 3, self.instability)
         if self.regime == "separatrix":
             why = "L^2 = 2 E I_middle exactly: the motion tends to the middle axis, by hyperbolic functions"
             return Model(name, "separatrix", why, 1)
@@ -99,6 +96,19 @@ class CertifiedRotation:
             why = "two moments are equal: sine and cosine about the axis of the third"
             return Model(name, "regular precession", why, 1)
         return triaxial_model(self.start.side)
+
+    @property
+    def instability(self) -> str | None:
+        """Why a steady spin is unstable; None where it is stable, where nothing turns and where the spin changes."""
+        side = self.start.middle_side if self.regime == "steady" and not self.inertia.is_line else 1
+        if side > 0 or self.inertia.equal_moments == 3:
+            return None
+        return UNSTABLE_SPINS["saddle" if side < 0 else "degenerate"]
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """What an answer about this motion has to say beside its figures; paths lead from the question."""
+        return () if self.instability is None else (unstable_axis(self.instability),)
 
     def angular_velocity(self, times: Sequence[Number], digits: int) -> Rows:
         """Return the angular velocity in body axes, n rows of 3 numerals.
@@ -209,6 +219,36 @@ class CertifiedRotation:
         if self.regime != "periodic" or self.inertia.equal_moments > 1:
             return None
         return self._number(lambda: 1 / _of(self.start).frequency, digits)
+
+    def middle_axis_tilt(self, digits: int) -> tuple[str, str] | None:
+        """Return the least and largest angle between the middle axis and the angular momentum (rad).
+
+        The middle axis points along the positive side of the body axis that it is nearest to. None without such an axis
+        and at rest.
+        """
+        if self.regime == "rest" or self.inertia.equal_moments > 1:
+            return None
+        straight = self._number(arb.pi, digits)
+        if self.regime == "separatrix":
+            return "0", straight
+        if self.regime == "periodic":
+            return (
+                self._number(lambda: _of(self.start).least_tilt, digits),
+                self._number(lambda: arb.pi() - _of(self.start).least_tilt, digits),
+            )
+        if self.start.middle_side > 0:
+            across = self._number(lambda: arb.pi() / 2, digits)
+            return across, across
+        # The first of the largest components; equal ones are a tie between body axes, which either resolves alike.
+        spin = max(self.angular_velocity_at_start, key=abs)
+        return ("0", "0") if spin > 0 else (straight, straight)
+
+    @property
+    def tumbles(self) -> bool:
+        """Whether the middle axis turns over, from within 45 degrees of the angular momentum to 45 of its opposite."""
+        if not self.turns or self.inertia.equal_moments > 1:
+            return False
+        return self.regime == "separatrix" or self.start.tilts_below_45_degrees()
 
     def largest_rate(self, digits: int) -> str:
         """Return the largest norm of the angular velocity in the whole motion (rad/s)."""

@@ -35,6 +35,10 @@ class CertifiedPrecession:
         (rad/s).
     period, flip_interval : str or None
         (s).
+    middle_axis_tilt : tuple of 2 str, or None
+        Least and largest angle between the middle axis and the angular momentum (rad).
+    tumbles : bool
+        Whether the middle axis turns over.
     axis_to_angular_momentum, axis_to_angular_velocity, angular_momentum_to_angular_velocity : str or None
         Symmetric bodies only (rad).
     precession_per_period : str or None
@@ -50,6 +54,8 @@ class CertifiedPrecession:
     space_rate: str | None
     period: str | None
     flip_interval: str | None
+    middle_axis_tilt: tuple[str, str] | None
+    tumbles: bool
     axis_to_angular_momentum: str | None
     axis_to_angular_velocity: str | None
     angular_momentum_to_angular_velocity: str | None
@@ -107,10 +113,12 @@ def certified_precession(rotation: CertifiedRotation, digits: int) -> CertifiedP
         mean_precession_rate=number(mean_rate) if rotation.turns else None,
     )
     axis = until_determined(lambda: decimals(oriented(_axis(rotation)), digits, floor), bits) if has_axis else None
-    absent = {name: _why_absent(rotation, name) for name, figure in found.items() if figure is None}
-    if axis is None:
-        absent["axis"] = _why_absent(rotation, "axis")
-    return CertifiedPrecession(symmetry, rotation.regime, axis, **found, absent=absent)
+    tilt = rotation.middle_axis_tilt(digits)
+    stated = {**found, "axis": axis, "middle_axis_tilt": tilt}
+    absent = {name: _why_absent(rotation, name) for name, figure in stated.items() if figure is None}
+    return CertifiedPrecession(
+        symmetry, rotation.regime, axis, **found, middle_axis_tilt=tilt, tumbles=rotation.tumbles, absent=absent
+    )
 
 
 def _axis(rotation: CertifiedRotation) -> Balls:
@@ -155,6 +163,8 @@ def _why_absent(rotation: CertifiedRotation, name: str) -> str:
         return missing_reasons.NOTHING_TURNS
     if name == "axis":
         return missing_reasons.SPHERE
+    if name == "middle_axis_tilt":
+        return missing_reasons.SPHERE if equal == 3 else missing_reasons.NO_MIDDLE_AXIS
     if name in OF_SYMMETRIC_BODIES and equal != 2:
         return missing_reasons.SPHERE if equal == 3 else missing_reasons.TRIAXIAL
     if name == "order_of_directions":
@@ -206,9 +216,11 @@ class _Symmetric:
         return self.along_squared != 0 and self.across_squared != 0
 
     def body_rate(self, digits: int) -> str | None:
-        """(I3 - I)/I w3: rational where w3 is."""
-        if not self.inclined:
+        """(I3 - I)/I w3: rational where w3 is; none for a spin along the axis, which does not go round it."""
+        if self.across_squared == 0:
             return None
+        if self.along_squared == 0:
+            return "0"
         factor = (self.single - self.equal) / self.equal * self.direction
         root = _rational_root(self.along_squared)
         if root is not None:

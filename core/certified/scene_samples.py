@@ -1,4 +1,4 @@
-"""What moves in a scene at one instant, in balls of the precision that holds now."""
+"""The state of a scene at one time, in balls of the current precision."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Sampler = Callable[[arb], Sample]
 
 
 def sampler(scene: ConstrainedSystem, motion: Motion) -> Sampler:
-    """Return the motion of a scene as a function of time, its values by the names of the scene's columns."""
+    """Return the motion of a scene as a function of time, with values named as the scene's columns."""
     if isinstance(motion, RodMotion):
         return _rod(motion)
     if isinstance(motion, ChainMotion):
@@ -42,7 +42,7 @@ def _rod(motion: RodMotion) -> Sampler:
 
     def at(time: arb) -> Sample:
         sine, cosine, rate, angle = swing(time)
-        # A square as a product: the power of a ball around zero is no number.
+        # A square as a product: the library returns NaN for the power of a ball that contains zero.
         total = c1 * (cosine - sine) * (cosine + sine) + c2 * rate * rate
         difference = 2 * c3 * sine * cosine
         forces = ((total + difference) / 2, (total - difference) / 2)
@@ -128,7 +128,7 @@ def _shafts(motion: ShaftMotion, radii: Balls) -> Sampler:
 
 
 def _within(phase: Phase, elapsed: arb) -> State:
-    """Return the state a time after the start of a phase: in an arc between two jerks, if there are arcs."""
+    """Return the state at a time after the start of a phase; in a sequence of jerks, in the arc between two of them."""
     if phase.sequence is None:
         return phase.start.after(phase.drive, elapsed)
     sequence = phase.sequence
@@ -140,7 +140,7 @@ def _within(phase: Phase, elapsed: arb) -> State:
 
 
 def _arcs(sequence: Sequence, firsts: arb) -> int:
-    """Return how many arcs are over after so many lengths of the first."""
+    """Return the number of arcs completed after a time in units of the first arc's duration."""
     e = sequence.restitution
     count = firsts if sequence.limit is None else (ONE - (1 - e) * firsts).log() / e.log()
     if not count.is_finite():

@@ -1,11 +1,11 @@
 """The constrained scenes to any number of digits.
 
-The set-up of a scene (forces, accelerations, events) is computed in balls anyway; here it runs at as high a precision
-as the digits need, and the trajectory, which otherwise is sampled in doubles, is evaluated in balls too.
+The set-up of a scene (forces, accelerations, events) always uses ball arithmetic. Here it uses the precision that the
+digits need, and the trajectory, which is otherwise sampled in doubles, is evaluated in balls as well.
 
-What a scene takes for zero because its own precision cannot tell it from zero (a line of contact at rest, two events
-at the same instant) is decided with at least 320 bits. A figure that vanishes to twice the digits asked for, relative
-to the terms of which it is the difference, is written ``"0e-60"``.
+A quantity that is zero to within the precision (the velocity of a line of contact at rest, the time between two
+simultaneous events) counts as zero if at least 320 bits do not distinguish it from zero. A result that vanishes to
+twice the requested digits, relative to the terms of the difference that gives it, is written ``"0e-60"``.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from core.scenes.unwinding_shafts import UnwindingShafts
 from core.systems.system import Model
 
 LARGEST = Fraction(10**300)
-"""The scenes check the ranges of their parameters as doubles."""
+"""Largest magnitude of a parameter, so that the scenes can check the range as a double."""
 
 SceneType = TypeVar("SceneType", bound=ConstrainedSystem)
 
 
 @dataclass(frozen=True)
 class CertifiedScene:
-    """Answer to a question about a scene: numerals in the places where the scene's own answer has doubles.
+    """Answer to a question about a scene, with decimal numerals instead of doubles.
 
     Attributes
     ----------
@@ -46,9 +46,9 @@ class CertifiedScene:
     figures : mapping
         By name; nested as in the scene's answer.
     trajectory : mapping of str to list, or None
-        Columns; ``time`` repeats the instants at which there is a motion, as they were given.
+        Columns; ``time`` has the requested times at which the motion exists.
     ended : str or None
-        ``"horizon"`` or the event that ended the motion before it.
+        ``"horizon"``, or the event that ended the motion earlier.
     warnings : tuple of Notice
     """
 
@@ -60,14 +60,14 @@ class CertifiedScene:
 
 
 def exact_scene(kind: type[SceneType], parameters: Mapping[str, Any]) -> SceneType:
-    """Return a scene whose numbers are exact: doubles, or decimal strings, as the rational numbers that they are.
+    """Return a scene whose parameters are rational numbers, given as doubles or decimal strings.
 
-    A parameter that is left out has the value that its default stands for: the factor of a uniform rod is one twelfth.
+    A parameter that is left out has the exact value of its default: the inertia factor of a uniform rod is one twelfth.
 
     Raises
     ------
     InvalidParameter
-        As for the scene itself, and for strings that are no numbers.
+        As for the scene itself, and for strings that are not numbers.
     """
     known = {field.name for field in fields(kind)}
     for name in parameters:
@@ -85,7 +85,7 @@ def certified_scene(
     times: Sequence[Number] | None = None,
     outputs: frozenset[str] | None = None,
 ) -> CertifiedScene:
-    """Compute what is asked for, and nothing else, with so many significant digits.
+    """Compute the requested outputs with so many significant digits.
 
     Parameters
     ----------
@@ -94,18 +94,18 @@ def certified_scene(
     digits : int
         From 16 to 1000.
     times : sequence of n numbers, optional
-        Instants of the trajectory, in any order (s).
+        Times of the trajectory, in any order (s).
     outputs : frozenset of str, optional
-        Names out of the scene's outputs; by default all, the trajectory if there are times.
+        Names of outputs of the scene; by default all, the trajectory only if times are given.
 
     Raises
     ------
     InvalidParameter
-        For unknown outputs, digits outside 16 to 1000, times before the beginning of the motion.
+        For unknown outputs, digits outside 16 to 1000, or times before the beginning of the motion.
     NotApplicable
-        Where the scene has to round its input to say what the motion is: velocities that agree only to rounding.
+        If the motion is determined only after rounding: velocities that agree with a taut string only to rounding.
     BudgetExceeded
-        For more digits than one question may have.
+        If the question would print more digits than allowed.
     """
     check_digits(digits, 8 * len(times or ()))
     instants = None if times is None else exact_numbers(times, ("times",))
@@ -126,7 +126,7 @@ class _Question:
     wanted: frozenset[str]
 
     def answer(self, given: Sequence[Number] | None) -> CertifiedScene:
-        # A scene keeps its constants once they are computed: a copy computes them at the precision that holds now.
+        # A scene caches its constants; a copy computes them again, at the current precision.
         scene: Any = replace(self.scene)
         table: dict[str, Callable[[], Any]] = dict(scene.figures())
         motion, ended, trajectory = None, None, None
@@ -145,7 +145,7 @@ class _Question:
             if "trajectory" in self.wanted and given is not None:
                 trajectory = self._trajectory(sampler(scene, motion), points, motion, given)
         figures = {n: self._written(table[n]()) for n in scene.outputs if n in self.wanted and n in table}
-        model = scene.still() if motion is None else motion.model
+        model = scene.static_model() if motion is None else motion.model
         return CertifiedScene(model, figures, trajectory, ended, scene.notices(self.wanted))
 
     def _trajectory(
@@ -153,10 +153,10 @@ class _Question:
     ) -> Mapping[str, list[Any]]:
         existing = []
         for i, point in enumerate(points):
-            if point < arb(motion.began):
+            if point < arb(motion.valid_from):
                 raise InvalidParameter(
                     ("times", i),
-                    f"be at least {motion.began:.17g} s",
+                    f"be at least {motion.valid_from:.17g} s",
                     remedy="the model does not hold earlier; start from an earlier state",
                 )
             if motion.end is None or not point > motion.end.time:
@@ -168,7 +168,7 @@ class _Question:
         return columns
 
     def _written(self, value: Any) -> Any:
-        """Return a value with every ball in it, however deep, as a numeral."""
+        """Return a value with every ball in it, at any depth, as a numeral."""
         if isinstance(value, arb):
             return self._numeral(value)
         if isinstance(value, Mapping):
@@ -187,7 +187,7 @@ class _Question:
 
 
 def _refuse_rounded(scene: ConstrainedSystem, motion: Any) -> None:
-    """Refuse what a scene takes for zero though exactly it is not."""
+    """Raise for a quantity that the scene takes as zero although it is not exactly zero."""
     if not isinstance(scene, UnwindingShafts):
         return
     slips = [

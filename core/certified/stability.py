@@ -183,13 +183,13 @@ def _flip(inertia: ExactInertia, rate: Fraction, disturbance: tuple[Fraction, ..
     if moments is not None:
         along = CertifiedRotation.of_moments(moments, (small, rate, large))
         interval = along.flip_interval(digits)
-        return CertifiedFlip(given, interval, flip_reason(interval is not None, along.model.why))
+        return CertifiedFlip(given, interval, flip_reason(interval is not None, along.tumbles, along.model.why))
     if (small, rate, large).count(0) >= 2:
         # Along one axis or at rest, whatever the moments are.
-        still = CertifiedRotation.of_moments((1, 2, 3), (small, rate, large))
-        return CertifiedFlip(given, None, flip_reason(False, still.model.why))
+        steady = CertifiedRotation.of_moments((1, 2, 3), (small, rate, large))
+        return CertifiedFlip(given, None, flip_reason(False, False, steady.model.why))
 
-    def evaluate() -> tuple[str, int]:
+    def evaluate() -> tuple[str, int, bool]:
         state = principal_axes(inertia)
         low, _, high = state.moments
         ab, bc, _ = state.gaps
@@ -199,7 +199,9 @@ def _flip(inertia: ExactInertia, rate: Fraction, disturbance: tuple[Fraction, ..
             raise Undetermined
         side = 1 if difference > 0 else -1
         rates = (enclosed(small), enclosed(rate), enclosed(large))
-        return decimal(constants_of(state.moments, state.gaps, rates, side, abs(difference)).half_period, digits), side
+        constants = constants_of(state.moments, state.gaps, rates, side, abs(difference))
+        tumbles = bool(constants.least_tilt(state.moments, side) < arb.pi() / 4)
+        return decimal(constants.half_period, digits), side, tumbles
 
-    interval, side = until_determined(evaluate, bits_for(digits))
-    return CertifiedFlip(given, interval, flip_reason(True, triaxial_model(side).why))
+    interval, side, tumbles = until_determined(evaluate, bits_for(digits))
+    return CertifiedFlip(given, interval, flip_reason(True, tumbles, triaxial_model(side).why))

@@ -51,6 +51,14 @@ class MotionConstants(NamedTuple):
     m: arb
     m1: arb
 
+    def least_tilt(self, moments: Balls, side: int) -> arb:
+        """Return the least angle between the middle axis and the angular momentum, where w_c vanishes (rad).
+
+        tan(least) = I_d A_d k'/(I_b A_b): see `core.rotation.precession.middle_axis`. Parameters as in `constants_of`.
+        """
+        circled = moments[2] if side > 0 else moments[0]
+        return arb.atan2(circled * self.amplitudes[2] * self.m1.sqrt(), moments[1] * self.amplitudes[1])
+
     @property
     def half_period(self) -> arb:
         """2K/p (s), where m1 > 0."""
@@ -104,6 +112,7 @@ class TurningMotion:
         d, c = (2, 0) if self.side > 0 else (0, 2)
         self.circled, self.other = d, c
         constants = constants_of(state.moments, state.gaps, state.rates, self.side, self._difference())
+        self.constants = constants
         self.A_c, self.A_b, self.A_d = constants.amplitudes
         self.p, self.m, self.m1 = constants.p, constants.m, constants.m1
         self.L, self.twice_energy = enclosed(start.squared_momentum).sqrt(), enclosed(start.twice_energy)
@@ -148,6 +157,11 @@ class TurningMotion:
         first = (self.A_c * self.A_c + self.A_d * self.A_d).sqrt()
         second = (self.A_b * self.A_b + self.m1 * self.A_d * self.A_d).sqrt()
         return first if first.mid() >= second.mid() else second
+
+    @property
+    def least_tilt(self) -> arb:
+        """Least angle between the middle axis and the angular momentum, 0 on the separatrix (rad)."""
+        return self.constants.least_tilt(self.moments, self.side)
 
     def phase(self, time: arb) -> arb:
         """Return the phase in half periods of the elliptic functions; on the separatrix, u itself."""

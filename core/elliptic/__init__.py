@@ -1,1 +1,1 @@
-"""Elliptic integrals and Jacobian functions to full precision, compiled: the ground floor of every closed form."""
+"""Elliptic integrals and Jacobian elliptic functions to full precision, compiled."""

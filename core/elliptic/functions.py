@@ -1,7 +1,7 @@
-"""The Jacobian elliptic functions by quotients of theta functions, compiled.
+"""The Jacobian elliptic functions as quotients of theta functions, compiled.
 
-The argument is measured in quarter periods from the nearest one, so that four terms of each theta series suffice, and
-with y = 2 q cos 2z (or 2 q' cosh 2x, see `core.elliptic.lattice`) all four theta functions share two polynomials of
+The argument is measured in quarter periods from the nearest one, so four terms of each theta series suffice. With
+y = 2 q cos 2z (or 2 q' cosh 2x, see `core.elliptic.lattice`) all four theta functions share two polynomials of
 degree three in y:
 
     theta3, theta4 ~ C(+y), C(-y)          theta1, theta2 ~ sin z P(+y), cos z P(-y)
@@ -25,14 +25,14 @@ from core.elliptic.lattice import Lattice, lattice
 from core.errors import AccuracyUnreachable, InvalidParameter
 
 LARGEST_QUARTER = 2.0**50
-"""Beyond this many quarter periods a phase no longer has the digits that its place in the period needs."""
+"""Beyond this many quarter periods the rounding of a phase is no longer small compared with a period."""
 
 
 @kernel()
 def split_phase(
     rate: float, rate_tail: float, time: float, start: float, start_tail: float
 ) -> tuple[float, float, float]:
-    """Return n, r, r_tail with rate time + start = n + r, n the nearest integer and r right to its last bit."""
+    """Return n, r, r_tail with rate time + start = n + r, n the nearest integer and r accurate to its last bit."""
     ph, pl = two_prod(rate, time)
     pl = fma(rate_tail, time, pl)
     sh, sl = two_sum(ph, start)
@@ -40,7 +40,8 @@ def split_phase(
     # Adding and subtracting 1.5 2^52 rounds to the nearest integer without a branch.
     n = (sh + 6755399441055744.0) - 6755399441055744.0
     r, r_tail = two_sum(sh - n, low)
-    # Beyond 2^46 the last place of the sum is no longer small beside one, and the nearest integer may be the next.
+    # Beyond 2^46 the last place of the sum is no longer small compared with one, and the nearest integer may be the
+    # next.
     beyond = (r + 6755399441055744.0) - 6755399441055744.0
     return n + beyond, r - beyond, r_tail
 
@@ -56,7 +57,7 @@ def half_parity(n: float) -> tuple[bool, float]:
 
 @kernel()
 def sin_cos_quarter(r: float, r_tail: float) -> Pair:
-    """Return sin and cos of (pi/2) r for |r| <= 1/2 (a hair more does no harm).
+    """Return sin and cos of (pi/2) r for |r| <= 1/2, or slightly more.
 
     Polynomials in (pi r/2)^2 through the Chebyshev points of the interval, remainders below 2^-55, with the leading
     terms in extended precision.
@@ -77,7 +78,7 @@ def sin_cos_quarter(r: float, r_tail: float) -> Pair:
     p = fma(w, p, 0.041666666666666664)
     half = 0.5 * w
     lead = 1.0 - half
-    # 1 - w/2 loses (1 - lead) - w/2, and w itself fma(zh, zh, -w).
+    # The rounding of 1 - w/2 is (1 - lead) - w/2, and that of w is fma(zh, zh, -w).
     lost = (1.0 - lead) - half - 0.5 * fma(zh, zh, -w)
     cosine = lead + fma(w * w, p, fma(-zh, zl, lost))
     return sine, cosine
@@ -89,7 +90,7 @@ def sinh_cosh(xh: float, xl: float) -> Pair:
 
     x = n ln 2 + r; polynomials in r^2 through the Chebyshev points of the interval, remainders below 2^-56.
     """
-    # The sum with 1.5 2^52 is rounded to a whole number, which then stands in the lowest bits of its pattern.
+    # The sum with 1.5 2^52 is rounded to an integer, which is then in the lowest bits of its pattern.
     shifted = fma(xh, 1.4426950408889634, 6755399441055744.0)
     n = shifted - 6755399441055744.0
     # The first difference is exact: a multiple of 2^-54 below 0.35.
@@ -110,7 +111,7 @@ def sinh_cosh(xh: float, xl: float) -> Pair:
     p = fma(w, p, 0.5000000000000001)
     c = fma(w, p, r * tail)
     k = bits_of(shifted)
-    # 2^n/2 and 2^-n/2; what stands above the lowest twelve bits is shifted out.
+    # 2^n/2 and 2^-n/2; the bits above the lowest twelve are shifted out.
     up = double_from_bits((k + 1022) << 52)
     down = double_from_bits((1022 - k) << 52)
     sn, cn = up - down, up + down
@@ -129,7 +130,7 @@ def theta_parts(circular: bool, nome: float, root_nome: float, s: float, c: floa
     q2 = q * q
     q4 = q2 * q2
     w = y * y
-    # Each series is 1 + (what is small): one rounding of full size.
+    # Each series is 1 + a small term, so there is one rounding of full size.
     p_even = fma(w, fma(-q4 * q4, q2, q4), -fma(q4, q2, q2))
     p_odd = y * fma(-q4 * q4 * q, w, fma(2.0 * q4 * q4, q2 * q, q4 * q - q))
     c_even = fma(w, q2, -2.0 * q4)
@@ -164,7 +165,7 @@ def separatrix_at(xh: float, xl: float) -> tuple[float, float]:
     """Return tanh x and sech x for any x, without overflow."""
     a, b = (xh, xl) if xh >= 0.0 else (-xh, -xl)
     if a > 350.0:
-        # sech^2 is below 1e-303: tanh is 1, and sech follows down to nothing by its exponential.
+        # sech^2 is below 1e-303: tanh is 1, and sech is 2 exp(-a), down to underflow.
         sech = 2.0 * math.exp(-a)
         tanh = 1.0
     else:
@@ -192,8 +193,8 @@ def _jacobi(u: NDArray[np.float64], m: float, m1: float, out: NDArray[np.float64
 def jacobi(u: ArrayLike, m: float, m1: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return sn, cn and dn of `u` for parameter m with complement m1 = 1 - m.
 
-    The smaller of m and m1 is taken as exact. Right to a few units in the last place at any `u`, also near m = 1,
-    because whole quarter periods are removed in double-double and the nearest one is the origin of the series.
+    The smaller of m and m1 is taken as exact. Accurate to a few units in the last place at any `u`, even near m = 1,
+    because whole quarter periods are removed in double-double and the series are centred on the nearest one.
 
     Parameters
     ----------
@@ -210,7 +211,7 @@ def jacobi(u: ArrayLike, m: float, m1: float) -> tuple[NDArray[np.float64], NDAr
     Raises
     ------
     AccuracyUnreachable
-        Where `u` is more than 2^50 quarter periods away, or m1 is below about 1e-570 and not 0.
+        If `u` is more than 2^50 quarter periods, or m1 is below about 1e-570 and not 0.
     """
     check_parameter(m, m1)
     arguments = np.asarray(u, dtype=np.float64)

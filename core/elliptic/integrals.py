@@ -1,7 +1,7 @@
 """Elliptic integrals by the arithmetic-geometric mean and by Carlson's duplication, compiled.
 
-The parameter m and its complement m1 = 1 - m are both arguments everywhere, because near m = 1 the complement carries
-all the information and cannot be had from m.
+All functions take both the parameter m and its complement m1 = 1 - m, because near m = 1 the complement contains all
+the information and cannot be computed from m.
 
 References
 ----------
@@ -41,7 +41,7 @@ def agm_dd(kh: float, kl: float) -> Pair:
         ph, pl = dd_mul(ah, al, gh, gl)
         sh, sl = dd_add(ah, al, gh, gl)
         ah, al = 0.5 * sh, 0.5 * sl
-        # The next difference is dh^2/8a: below 2^-106 the mean is there.
+        # The next difference is dh^2/8a: below 2^-106 the mean has converged.
         if abs(dh) < 1e-16 * ah:
             break
         gh, gl = dd_sqrt(ph, pl)
@@ -52,14 +52,14 @@ def agm_dd(kh: float, kl: float) -> Pair:
 def rf_of_roots(ah: float, al: float, bh: float, bl: float, ch: float, cl: float) -> Pair:
     """Return Carlson's R_F(a^2, b^2, c^2), given the roots a, b, c >= 0, at most one of them 0.
 
-    Taking roots lets arguments be as small as the square of the smallest double. Duplication until the spread is
-    below 5e-5, then the series of degree seven (DLMF 19.36.1).
+    With roots as inputs, the arguments may be as small as the square of the smallest double. Duplication is repeated
+    until the relative spread is below 5e-5; then follows the series of degree seven (DLMF 19.36.1).
     """
     xh, xl = dd_sqr(ah, al)
     yh, yl = dd_sqr(bh, bl)
     zh, zl = dd_sqr(ch, cl)
     for n in range(60):
-        # The roots were given for the first time.
+        # In the first step the roots are inputs.
         if n > 0:
             ah, al = dd_sqrt(xh, xl)
             bh, bl = dd_sqrt(yh, yl)

@@ -19,7 +19,7 @@ from core.elliptic.integrals import agm_dd
 
 
 class Lattice(NamedTuple):
-    """The periods of one modulus, with what evaluation needs of them."""
+    """The periods of one modulus and the constants for evaluation."""
 
     circular: bool
     K: float
@@ -29,7 +29,7 @@ class Lattice(NamedTuple):
     """q if circular, else q'."""
     root_nome: float
     scale: float
-    """What a quarter period is in the argument of the theta functions: pi/2, or pi K/2K'."""
+    """A quarter period in the argument of the theta functions: pi/2, or pi K/2K'."""
     scale_tail: float
     even_sn: Pair
     even_cn: Pair
@@ -37,7 +37,7 @@ class Lattice(NamedTuple):
     odd_sn: Pair
     odd_cn: Pair
     odd_dn: Pair
-    """Constants in front of the quotients near even and odd quarter periods."""
+    """Constant factors of the quotients near even and odd quarter periods."""
 
 
 @kernel()
@@ -46,7 +46,7 @@ def theta_constants(qh: float, ql: float) -> tuple[float, float, float, float, f
     q2h, q2l = dd_sqr(qh, ql)
     q4h, q4l = dd_sqr(q2h, q2l)
     q8 = q4h * q4h
-    # 1 + 2(q^4 + q^16) and 2(q + q^9 + q^25): the parts that keep and that change sign.
+    # 1 + 2(q^4 + q^16) and 2(q + q^9 + q^25): the even and the odd part.
     eh, el = dd_add_d(2.0 * q4h, 2.0 * q4l, 2.0 * q8 * q8)
     eh, el = dd_add_d(eh, el, 1.0)
     oh, ol = dd_add_d(qh, ql, q8 * qh + q8 * q8 * q8 * qh)
@@ -66,13 +66,13 @@ class Periods(NamedTuple):
     """Quarter period."""
     K_tail: float
     scale: float
-    """What a quarter period is in the argument of the theta functions: pi/2, or pi K/2K'."""
+    """A quarter period in the argument of the theta functions: pi/2, or pi K/2K'."""
     scale_tail: float
     mean: float
-    """Arithmetic-geometric mean of 1 and k, so that K' = pi/2 mean; 0 where k is too small to matter."""
+    """Arithmetic-geometric mean of 1 and k, so that K' = pi/2 mean; 0 if k is negligible."""
     mean_tail: float
     complementary_mean: float
-    """The same of 1 and k'."""
+    """Arithmetic-geometric mean of 1 and k'."""
     complementary_mean_tail: float
 
 
@@ -84,7 +84,7 @@ def periods(kh: float, kl: float, ch: float, cl: float) -> Periods:
     Kh, Kl = dd_div(halfpi_h, halfpi_l, gh, gl)
     circular = ch * ch >= 0.5
     if circular and kh < 1e-40:
-        # q = m/16 is below the last bit of everything it is added to.
+        # q = m/16 is negligible in every sum.
         return Periods(True, Kh, Kl, halfpi_h, halfpi_l, 0.0, 0.0, gh, gl)
     ah, al = agm_dd(kh, kl)
     if circular:

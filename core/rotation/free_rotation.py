@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from core.bodies.mass_properties import PrincipalInertia
+from core.bodies.principal_inertia import PrincipalInertia
 from core.double_double import Scaled, dd_div
 from core.elliptic.functions import LARGEST_QUARTER
 from core.errors import AccuracyUnreachable, InvalidParameter
@@ -20,16 +20,21 @@ from core.rotation.closed_form.circulation import (
     STEADY,
     UNDECIDED,
     UNREACHABLE,
+    circulation,
     exact_difference,
+    like_symmetric,
     too_near_the_separatrix,
 )
 from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
 from core.rotation.closed_form.principal_frame import PrincipalFrame, Resolved
 from core.rotation.closed_form.sampling import largest_magnitude, sample_components, turn_into_body
-from core.rotation.uncertainty.input_uncertainty import WHOLE_MOTION, InputUncertainty, lost_after
+from core.rotation.precession.middle_axis import MiddleAxisTilt, middle_axis_tilt
+from core.rotation.stability.classification import unstable_spin
+from core.rotation.uncertainty.input_uncertainty import InputUncertainty, lost_after
 from core.rotation.uncertainty.sensitivities import Sensitivities
 from core.systems.system import Floats, Model
 
+NAME = "torque-free rigid body"
 UNIT_ROUNDOFF = 2.0**-53
 
 EVALUATION_ERROR = 6.0 * UNIT_ROUNDOFF
@@ -46,8 +51,16 @@ TURNED_AXES_ERROR = 3.0 * UNIT_ROUNDOFF
 SET_UP_ROUNDING = 2.0**-103
 """Relative rounding of the constants of motion formed from exact inputs."""
 
-DERIVED_ROUNDING = 2.0**-100
-"""Error of moments and components that were themselves derived, relative to the largest moment and component."""
+UNDERFLOW = 2.0**-1070
+"""What samples, and the tails of moments and components, lose in all where they are below the normal doubles."""
+
+UNMOVED = 2.0**-60
+"""A relative change of the angular velocity that is less than its rounding."""
+
+_BASIS = np.zeros((6, 3, 3))
+for _n, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+    _BASIS[_n, _i, _j] = _BASIS[_n, _j, _i] = 1.0
+_BASIS.setflags(write=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,19 +73,21 @@ class FreeRotation:
         Principal moments and axes of the body; all moments positive.
     angular_velocity : ndarray, shape (3,)
         At t = 0, in body axes (rad/s).
-    moves : callable, optional
-        By how much each of the numbers that describe the body moves its tensor (`tensor_sensitivities`).
-        Without it the principal moments are those numbers.
+    tensor_sensitivities : callable, optional
+        By how much each of the numbers that describe the body changes its tensor, in units of 2^exponent kg m^2
+        (`core.bodies.sensitivities`). Without it the principal moments are those numbers.
     """
 
     inertia: PrincipalInertia
     angular_velocity: Floats
-    moves: Callable[[int], Floats] | None = None
+    tensor_sensitivities: Callable[[int], Floats] | None = None
 
     def __post_init__(self) -> None:
         if self.inertia.moments[0] > 0.0:
             return
-        across = self.inertia.moments[1] > 0.0 and self.resolved.angular_velocity[0] == 0.0
+        (_, b, c), (x, y, z) = self.resolved.moments, self.resolved.angular_velocity
+        # Across the line, and steadily: matter along a line has two equal moments, a triple of numbers need not.
+        across = b > 0.0 and x == 0.0 and (b == c or y == 0.0 or z == 0.0)
         if np.any(self.angular_velocity) and not across:
             raise InvalidParameter(
                 "body",
@@ -99,7 +114,7 @@ class FreeRotation:
         AccuracyUnreachable
             If the start is so near the separatrix, or the figures so far apart, that doubles cannot hold the constants.
         """
-        i, it, w, wt = self.resolved
+        i, it, w, wt = self.resolved.numbers
         motion: Motion = constants_of_motion(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
         if motion.regime == UNDECIDED:
             motion = constants_of_motion(i, it, w, wt, True, exact_difference(self.resolved))
@@ -108,14 +123,10 @@ class FreeRotation:
         return motion
 
     @property
-    def exact_inputs(self) -> bool:
-        """Whether moments and components are the client's own doubles, not derived from them."""
-        return self.frame.aligned and not np.any(self.inertia.moments_tail)
-
-    @property
     def model(self) -> Model:
         """The branch of the solution that holds, and why."""
-        return _model(self.motion, self.resolved)
+        line = not self.inertia.moments[0] > 0.0
+        return _model(self.motion, self.inertia.apart, line, self.instability)
 
     @property
     def period(self) -> float | None:
@@ -127,13 +138,39 @@ class FreeRotation:
 
     @property
     def flip_interval(self) -> float | None:
-        """Time between sign changes of the component along the middle axis, 2K/p (s); None without such an axis."""
-        i, it = self.resolved.moments, self.resolved.moments_tail
-        distinct = (i[0], it[0]) != (i[1], it[1]) and (i[1], it[1]) != (i[2], it[2])
-        return 0.5 * self.period if distinct and self.period is not None else None
+        """Time between sign changes of the component along the middle axis, 2K/p (s); None without such an axis.
+
+        A body that moves as one with two equal moments has none, though what was derived of them differs by rounding.
+        """
+        if self.period is None or not all(self.inertia.apart):
+            return None
+        derived = self.inertia.nearly_equal and not self.inertia.rounding.exact_zeros
+        return None if derived and not self.hangs_on_nearly_equal_moments else 0.5 * self.period
 
     @property
-    def largest_rate(self) -> float:
+    def hangs_on_nearly_equal_moments(self) -> bool:
+        """Whether nearly equal moments differ by enough for this motion to be none of equal ones."""
+        if not self.inertia.nearly_equal or self.motion.regime in (REST, STEADY):
+            return False
+        return not like_symmetric(circulation(*self.resolved.numbers, self.motion.circled))
+
+    @property
+    def middle_axis_tilt(self) -> MiddleAxisTilt | None:
+        """Range of the angle between the middle axis and the angular momentum; None without such an axis, or at rest.
+
+        Whether the middle axis turns over, as it does not about a stable axis though `flip_interval` exists there too.
+        """
+        return middle_axis_tilt(self.resolved, self.inertia)
+
+    @property
+    def instability(self) -> str | None:
+        """Why a steady spin is unstable; None where it is stable, where nothing turns and where the spin changes."""
+        if self.motion.regime != STEADY or not self.inertia.moments[0] > 0.0:
+            return None
+        return unstable_spin(self.inertia.apart, self.resolved.angular_velocity.tolist())
+
+    @property
+    def largest_norm(self) -> float:
         """Largest norm of the angular velocity in the whole motion (rad/s)."""
         m = self.motion
         if m.regime in (REST, STEADY):
@@ -181,65 +218,170 @@ class FreeRotation:
             row, sign = self.frame.rows, self.frame.signs
             m = m.mirrored(sign[c], sign[1], sign[d])
             sample_components(m, times, out[row[c]], out[row[1]], out[row[d]])
-            return out.T
-        sample_components(m, times, out[c], out[1], out[d])
-        turn_into_body(np.ascontiguousarray(self.inertia.axes), out)
+        else:
+            sample_components(m, times, out[c], out[1], out[d])
+            turn_into_body(np.ascontiguousarray(self.inertia.axes), out)
+        if self._underflow > UNMOVED:
+            out[:, np.abs(times) <= self._unmoved_until] = self.angular_velocity[:, None]
         return out.T
 
     def error(self, times: Floats) -> float:
-        """Return a bound of the error of `sample`, relative to the largest norm, inputs taken as exact."""
+        """Return a bound of the error of `sample`, relative to the largest norm of the whole motion, inputs as exact.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            If the rounding of the constants of the motion leaves nothing known of the phase at the farthest time.
+        """
         m, horizon = self.motion, self.horizon(times)
-        if m.regime == REST or (m.regime == STEADY and self.exact_inputs):
-            return 0.0
-        if self.exact_inputs:
-            computed: float = m.computed.at(SET_UP_ROUNDING, horizon)
-            return EVALUATION_ERROR + computed
-        moments, rates = self.grading
-        derived: float = m.inherited.at(DERIVED_ROUNDING * moments, horizon, max(1.0, rates / moments))
-        if m.regime == STEADY:
-            return derived
-        return EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR) + derived
+        if m.regime in (REST, STEADY):
+            # The start itself is answered.
+            computed = 0.0
+        else:
+            computed = EVALUATION_ERROR + (0.0 if self.frame.aligned else TURNED_AXES_ERROR)
+            computed += m.condition_bounds.at(SET_UP_ROUNDING, horizon)
+            computed += UNMOVED if horizon <= self._unmoved_until else self._underflow
+        if self.derivation is not None:
+            computed += self.derivation.angular_velocity(self.derived_rounding, horizon)
+        if not computed < 1.0:
+            raise AccuracyUnreachable(
+                None,
+                2.0,
+                "the phase at the latest times hangs on the rounding of the constants of the motion",
+                path=("times",),
+                remedy="ask for earlier times",
+            )
+        return computed
+
+    @property
+    def _unmoved_until(self) -> float:
+        """Time up to which the angular velocity moves by no more than `UNMOVED` of its norm (s).
+
+        By Euler's equations no faster than by its square times the largest of their coefficients.
+        """
+        a, b, c = self.resolved.moments.tolist()
+        steepest = max((c - b) / a, (c - a) / b, (b - a) / c) * self.largest_norm
+        return UNMOVED / steepest if steepest > 0.0 else math.inf
+
+    @cached_property
+    def _underflow(self) -> float:
+        """What a sample may be wrong by, relative, because a factor of it is below the normal doubles."""
+        m = self.motion
+        if m.regime == SEPARATRIX:
+            return UNDERFLOW / self.largest_norm
+        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'. What
+        # one of them loses is at most the spacing of subnormal doubles.
+        k, spacing = m.weights, 2.0**-1074
+        products = (
+            (m.A_c, k.c_even),
+            (m.A_c, k.c_odd),
+            (m.A_b, k.b_even),
+            (m.A_b, k.b_odd),
+            (m.A_d, k.d_even),
+            (m.A_d, k.d_odd),
+        )
+        most = max(abs(amplitude) / max(spacing, abs(constant)) for amplitude, constant in products)
+        return UNDERFLOW * max(1.0, most) / self.largest_norm
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
-        """Return how far a relative `uncertainty` of every input may move the samples, relative to the largest norm."""
+        """Return a bound of the change of the samples by a relative `uncertainty` of every input.
+
+        Relative to the largest norm of the whole motion; infinite where nothing is known of the phase.
+        """
         horizon = self.horizon(times)
         if uncertainty == 0.0 or self.motion.regime == REST:
             return 0.0
-        if self.sensitivity is None:
-            return WHOLE_MOTION
-        return self.sensitivity.angular_velocity(uncertainty, horizon)
+        if self.input_uncertainty is None:
+            return math.inf
+        return self.input_uncertainty.angular_velocity(uncertainty, horizon)
 
     @cached_property
-    def sensitivity(self) -> InputUncertainty | None:
+    def input_uncertainty(self) -> InputUncertainty | None:
         """What uncertain inputs come to, where the body is not at rest.
 
         None for a line of matter askew: what turns it out of line gives it a third moment, and nothing says how small.
         """
-        i, it, w, _ = self.resolved
-        if i[0] == 0.0 and not self.frame.aligned:
+        if self.resolved.moments[0] == 0.0 and not self.frame.aligned:
             return None
-        exponent, rate = math.frexp(float(i[2]))[1], math.frexp(float(np.abs(w).max()))[1]
+        tensors = None if self.tensor_sensitivities is None else self.tensor_sensitivities(self._exponent)
+        return self._uncertain(tensors, self.angular_velocity)
+
+    @cached_property
+    def derivation(self) -> InputUncertainty | None:
+        """What an error of `derived_rounding` comes to; None where moments and components are exact.
+
+        Where the axes are exact it is that of each moment. Otherwise it is that of each component of the tensor, next
+        to the largest moment, and of the start, next to its norm: moments and axes found together are those of a tensor
+        moved by so much.
+        """
+        exact_zeros = self.inertia.rounding.exact_zeros
+        if (
+            self.motion.regime == REST
+            or self.inertia.rounding.share == 0.0
+            or (self.motion.regime == STEADY and (exact_zeros or self.certainly_steady))
+        ):
+            return None
+        if exact_zeros:
+            # Equal moments are so exactly, and move as one; the start is exact.
+            return self._uncertain(self._each_moment(), np.zeros(3))
+        if self.resolved.moments[0] == 0.0:
+            # A line of matter stays one: nothing that rounds gives it a moment about itself.
+            return self._uncertain(None, self.angular_velocity)
+        largest = math.ldexp(float(self.resolved.moments[2]), -self._exponent)
+        return self._uncertain(largest * _BASIS, np.full(3, math.hypot(*self.angular_velocity.tolist())))
+
+    def _each_moment(self) -> Floats:
+        """Return the tensors, in body axes, that each moment by itself stands for; equal moments stand together."""
+        first, second = self.inertia.apart
+        groups = np.cumsum([0, first, second])
+        moments = np.ldexp(self.resolved.moments, -self._exponent)
+        axes = self.inertia.axes
+        return np.array([(axes * np.where(groups == g, moments, 0.0)) @ axes.T for g in range(groups[2] + 1)])
+
+    @property
+    def certainly_steady(self) -> bool:
+        """Whether the start is certain to lie along a principal axis although the axes themselves are derived."""
+        tensor = self.inertia.tensor
+        return tensor is not None and tensor.turns_steadily(self.angular_velocity)
+
+    @property
+    def derived_rounding(self) -> float:
+        """What derived moments, relative to the largest, and components, relative to the norm, may be wrong by."""
+        (low, _, high), share = self.resolved.moments.tolist(), float(self.inertia.rounding.share)
+        if self.inertia.rounding.exact_zeros:
+            return float(share + UNDERFLOW / low)
+        share += UNDERFLOW / high + UNDERFLOW / float(np.abs(self.angular_velocity).max())
+        return float(share + self.resolved.dropped)
+
+    @property
+    def _exponent(self) -> int:
+        """Binary exponent that brings the largest moment near one."""
+        return math.frexp(float(self.resolved.moments[2]))[1]
+
+    def _uncertain(self, tensors: Floats | None, velocity: Floats) -> InputUncertainty:
+        """Return what uncertain tensors, shape (n, 3, 3), or moments where None, and an uncertain start come to."""
+        i, it, w, _ = self.resolved.numbers
+        exponent, rate = self._exponent, math.frexp(float(np.abs(w).max()))[1]
         rate = max(-1000, min(1000, rate))
         low, high = (math.ldexp(float(i[k + 1] - i[k] + (it[k + 1] - it[k])), -exponent) for k in (0, 1))
-        largest = math.ldexp(self.largest_rate, -rate)
-        components = np.ldexp(w, -rate)
-        moves = Sensitivities.of(
+        largest = math.ldexp(self.largest_norm, -rate)
+        sensitivities = Sensitivities.of(
             np.ldexp(i, -exponent),
             (low, high),
-            components,
-            None if self.moves is None and self.frame.aligned else np.ascontiguousarray(self.inertia.axes),
-            None if self.moves is None else self.moves(exponent),
-            np.ldexp(self.angular_velocity, -rate),
+            np.ldexp(w, -rate),
+            None if tensors is None and self.frame.aligned else np.ascontiguousarray(self.inertia.axes),
+            tensors,
+            np.ldexp(velocity, -rate),
             self.motion,
             largest,
             math.ldexp(1.0, -rate),
         )
-        return InputUncertainty(self.motion, moves, math.ldexp(1.0, rate), largest)
+        return InputUncertainty(self.motion, sensitivities, math.ldexp(1.0, rate), largest)
 
     def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
         """Return the time after which a relative `uncertainty` of every input leaves nothing known of the phase (s).
 
-        It is where `inherited` comes to state the whole motion, found by bisection to a thousandth and never later.
+        It is where `inherited` becomes infinite, found by bisection to a thousandth and never later.
         None if that does not happen at any time that `sample` answers.
         """
         return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, self.longest_exponent)
@@ -252,31 +394,33 @@ class FreeRotation:
             return most
         return min(most, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
 
-    @cached_property
-    def grading(self) -> tuple[float, float]:
-        """The largest moment over the smallest, and the largest component of the start over the smallest, zeros apart.
 
-        By so much an error relative to the largest is larger relative to the smallest.
-        """
-        i, _, w, _ = self.resolved
-        moments, rates = [x for x in i.tolist() if x > 0.0], [abs(x) for x in w.tolist() if x != 0.0]
-        return max(moments) / min(moments), max(rates) / min(rates) if rates else 1.0
+def steady_model(symmetric: bool, spherical: bool, unstable: str | None) -> Model:
+    """Return the model of a constant angular velocity.
+
+    Parameters
+    ----------
+    symmetric, spherical : bool
+        Whether at least two moments are equal, and whether all are.
+    unstable : str or None
+        Why the spin is unstable, if it is.
+    """
+    if unstable is not None:
+        return Model(NAME, "unstable steady rotation", unstable, 0)
+    if spherical:
+        why = "the three moments are equal, so every axis is principal"
+    else:
+        why = f"the spin lies along {'the axis of symmetry' if symmetric else 'a principal axis'}"
+    return Model(NAME, "steady rotation", f"{why}: nothing accelerates", 0)
 
 
-def _model(motion: Motion, resolved: Resolved) -> Model:
-    name = "torque-free rigid body"
-    pairs = list(zip(resolved.moments.tolist(), resolved.moments_tail.tolist(), strict=True))
-    equal = [pairs[0] == pairs[1], pairs[1] == pairs[2]]
+def _model(motion: Motion, apart: tuple[bool, bool], line: bool, unstable: str | None) -> Model:
+    name = NAME
+    equal = [not differ for differ in apart]
     if motion.regime == REST:
         return Model(name, "rest", "the angular velocity is zero", 0)
     if motion.regime == STEADY:
-        if all(equal):
-            why = "the three moments are equal, so every axis is principal"
-        elif any(equal):
-            why = "the spin lies along a principal axis or in the plane of two equal moments"
-        else:
-            why = "the spin lies along a principal axis"
-        return Model(name, "steady rotation", f"{why}: nothing accelerates", 0)
+        return steady_model(any(equal) and not line, all(equal), unstable)
     axis = "largest" if motion.circled == 2 else "smallest"
     if motion.regime == SEPARATRIX:
         return Model(

@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 from core.bodies.mass_properties import MassProperties
 from core.bodies.sensitivities import tensor_sensitivities
 from core.compiled import kernel
+from core.errors import AccuracyUnreachable
 from core.notices import Notice
 from core.rotation.discrete_mechanics import moser_veselov
+from core.rotation.equal_moments import NEARLY_EQUAL
 from core.rotation.free_rotation import FreeRotation
+from core.rotation.stability.classification import unstable_axis
 from core.systems.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
 
 PARTS = 3
@@ -235,10 +238,10 @@ class TorqueFree:
 
     @cached_property
     def _exact(self) -> FreeRotation:
-        # Principal moments that were given as such are their own numbers; that spares the tensors of their moves.
+        # Principal moments that were given as such are their own numbers; that spares their tensors.
         described = self.body.mass is not None or not self._diagonal
-        moves = partial(tensor_sensitivities, self.body) if described else None
-        return FreeRotation(self.body.principal_of_motion, self.angular_velocity, moves)
+        sensitivities = partial(tensor_sensitivities, self.body) if described else None
+        return FreeRotation(self.body.principal_of_motion, self.angular_velocity, sensitivities)
 
     def ranges(self, states: Floats) -> Mapping[str, Range]:
         """Return the ranges of energy and |L|, both times a power of two that brings them near one."""
@@ -277,9 +280,27 @@ class TorqueFree:
         return math.ldexp(mantissa, exponent) if -1021 <= exponent <= 1024 else None
 
     @property
+    def moment_notices(self) -> tuple[Notice, ...]:
+        """What is to be said where the difference of two nearly equal moments decides the motion."""
+        try:
+            hangs = self._exact.hangs_on_nearly_equal_moments
+        except AccuracyUnreachable:
+            hangs = self.body.principal_of_motion.nearly_equal
+        return (NEARLY_EQUAL,) if hangs else ()
+
+    @property
+    def stability_notices(self) -> tuple[Notice, ...]:
+        """The warning about a steady spin that is unstable."""
+        try:
+            why = self._exact.instability
+        except AccuracyUnreachable:
+            return ()
+        return () if why is None else (unstable_axis(why),)
+
+    @property
     def warnings(self) -> tuple[Notice, ...]:
         """What an answer about this motion has to say beside its figures; paths lead from the question."""
-        notices = list(inherited_notices(self.body))
+        notices = [*inherited_notices(self.body), *self.moment_notices, *self.stability_notices]
         for name, value in (("energy", self.energy), ("angular_momentum", self.angular_momentum)):
             if value is None:
                 notices.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import sqrt
 from sys import float_info
-from typing import Literal
+from typing import Annotated, Literal
 
 from core.errors import InvalidParameter
+from core.quantities import Unit
 
 Day = Literal["sidereal", "solar"]
 
@@ -42,12 +43,12 @@ class EarthFigures:
         What explains the difference between the rigid and the observed period.
     """
 
-    axis_ratio: float = 1.00336409
-    asymmetry: float = 0.00328455
-    asymmetry_of_shape: float = 0.00335843
-    rigid_period_sidereal: float = 304.46
-    rigid_period_solar: float = 303.62
-    observed_period_solar: float = 433.0
+    axis_ratio: Annotated[float, Unit("1")] = 1.00336409
+    asymmetry: Annotated[float, Unit("1")] = 0.00328455
+    asymmetry_of_shape: Annotated[float, Unit("1")] = 0.00335843
+    rigid_period_sidereal: Annotated[float, Unit("d")] = 304.46
+    rigid_period_solar: Annotated[float, Unit("d")] = 303.62
+    observed_period_solar: Annotated[float, Unit("d")] = 433.0
     sources: tuple[str, ...] = (
         "axis_ratio: World Geodetic System 1984, a = 6378137 m, 1/f = 298.257223563",
         "asymmetry: H/(1 - H), dynamical ellipticity H = (C - A)/C = 0.0032737949 of the IAU 2000 nutation "

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.notices import Notice
+from core.quantities import Unit
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding, sign
+from core.systems.rounding import Digits, covering, notices_of, rounded
 from core.systems.system import Floats, Model
 from core.systems.trajectory import Accuracy, Work
 from core.work import spend
@@ -26,6 +28,50 @@ WORK_OF_A_SCENE = 100
 """Units of work (`core.work`): the set-up of a scene and of its motion in balls, at one precision."""
 MOTION = ("events", "ended", "trajectory")
 """Outputs that need the motion, in every scene."""
+
+N = TypeVar("N")
+"""Kind of number in which an answer is written: doubles, or decimal strings."""
+Pair = tuple[N, N]
+
+
+@dataclass(frozen=True)
+class SceneEvent(Generic[N]):
+    """Something that happens at an instant.
+
+    Attributes
+    ----------
+    kind : str
+        What happens; an event that ends the motion is also named by `ended`.
+    time : number
+        Measured from the given state.
+    """
+
+    kind: str
+    time: Annotated[N, Unit("s")] | None
+
+
+@dataclass(frozen=True)
+class MechanicalEnergy(Generic[N]):
+    """Energy of the given state.
+
+    Attributes
+    ----------
+    kinetic : number
+        Of translation and rotation.
+    potential : number
+        Zero at the height that the scene measures heights from.
+    total : number
+        Their sum.
+    """
+
+    kinetic: Annotated[N, Unit("J")] | None
+    potential: Annotated[N, Unit("J")] | None
+    total: Annotated[N, Unit("J")] | None
+
+
+def outputs_of(figures: type) -> tuple[str, ...]:
+    """Return the names of everything that can be asked for of a scene with such figures."""
+    return (*(entry.name for entry in fields(figures)), *MOTION)
 
 
 @dataclass(frozen=True)
@@ -98,7 +144,7 @@ class Motion(ABC):
 
     @property
     @abstractmethod
-    def began(self) -> float:
+    def valid_from(self) -> float:
         """Earliest time at which the model holds, minus infinity if it always did (s)."""
 
     @property
@@ -122,17 +168,18 @@ class UnbrokenMotion(Motion):
     ----------
     end : Event or None
     end_of_reversed : callable
-        Returns what would end the motion backwards in time, only called if somebody asks when the model began to hold.
+        Returns what would end the motion backwards in time, only called where `valid_from` is needed.
     """
 
     def __init__(self, end: Event | None, end_of_reversed: Callable[[], Event | None]) -> None:
         self._end, self._end_of_reversed = end, end_of_reversed
 
     @cached_property
-    def began(self) -> float:
+    def valid_from(self) -> float:
         """When the reversed motion would end."""
         first = self._end_of_reversed()
-        return -math.inf if first is None else -float(first.time)
+        # The difference, unlike the negative, of zero has no sign.
+        return -math.inf if first is None else 0.0 - float(first.time)
 
     @property
     def end(self) -> Event | None:
@@ -177,13 +224,30 @@ class SceneAnswer:
     work: Work
     requested_samples: int
 
+    def rounded(self, digits: Digits) -> SceneAnswer:
+        """Return the answer with columns, all but the times, of fewer digits, covered by the error that is stated."""
+        columns, added = {}, 0.0
+        for name, column in (self.trajectory or {}).items():
+            columns[name], more = (column, 0.0) if name == "time" else rounded(column, digits, self.accuracy.error)
+            added = max(added, more)
+        return replace(
+            self,
+            trajectory=None if self.trajectory is None else columns,
+            accuracy=covering(self.accuracy, added),
+            warnings=(*self.warnings, *notices_of(self.accuracy, added)),
+        )
+
 
 @dataclass(frozen=True)
 class ConstrainedSystem(ABC):
     """A scene: parameters, figures that follow from them, and a motion."""
 
     outputs: ClassVar[tuple[str, ...]]
-    """Names of everything that can be asked for."""
+    """Names of everything that can be asked for: the fields of `figures_type`, and `MOTION`."""
+    figures_type: ClassVar[type]
+    """Dataclass, generic in the kind of number, that declares the figures: names, units, meanings."""
+    samples_type: ClassVar[type]
+    """Dataclass that declares the columns of the trajectory likewise, ``time`` first."""
     of_motion: ClassVar[tuple[str, ...]] = ()
     """Those among them, beside `MOTION`, that follow from the motion."""
 
@@ -196,11 +260,11 @@ class ConstrainedSystem(ABC):
         """Return the motion at least up to `horizon` (s)."""
 
     @abstractmethod
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question that needs no motion."""
 
     @property
-    def moves(self) -> bool:
+    def has_motion(self) -> bool:
         """Whether the parameters suffice for a motion; if not, what needs one is left out unless it is asked for."""
         return True
 
@@ -264,7 +328,7 @@ class ConstrainedSystem(ABC):
             columns = motion.sample(existing)
             trajectory = {"time": existing, **columns.values}
         answer = SceneAnswer(
-            model=self.still() if motion is None else motion.model,
+            model=self.static_model() if motion is None else motion.model,
             figures=figures,
             trajectory=trajectory,
             ended=ended,
@@ -300,7 +364,7 @@ class ConstrainedSystem(ABC):
         """
         if outputs is None:
             names = frozenset(self.outputs) - (frozenset() if timed else frozenset({"trajectory"}))
-            return names if timed or self.moves else names - {*MOTION, *self.of_motion}
+            return names if timed or self.has_motion else names - {*MOTION, *self.of_motion}
         for name in sorted(outputs - set(self.outputs)):
             raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {self.outputs}")
         if "trajectory" in outputs and not timed:
@@ -321,10 +385,10 @@ def _events(motion: Motion, horizon: float) -> list[Mapping[str, Any]]:
 
 def _existing(motion: Motion, instants: Floats) -> Floats:
     """Return the instants at which there is a motion; samples past its end are not invented."""
-    if float(np.min(instants, initial=0.0)) < motion.began:
+    if float(np.min(instants, initial=0.0)) < motion.valid_from:
         raise InvalidParameter(
             "times",
-            f"be at least {motion.began:.17g} s",
+            f"be at least {motion.valid_from:.17g} s",
             remedy="the model does not hold earlier; start from an earlier state",
         )
     return instants if motion.end is None else instants[instants <= float(motion.end.time)]

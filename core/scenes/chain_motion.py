@@ -27,14 +27,14 @@ class Slide:
 
     Attributes
     ----------
-    pulls : balls
+    slope_accelerations : balls
         g sin(slope) of the faces.
     position, velocity : ball
         Length of chain on face 1, and its rate.
     """
 
     masses: Balls
-    pulls: Balls
+    slope_accelerations: Balls
     length: Ball
     density: Ball
     position: Ball
@@ -52,13 +52,13 @@ class Slide:
 
     def acceleration_at(self, x: Ball) -> Ball:
         """Return x'' with a length x on face 1."""
-        (m1, m2), (a, b), rho = self.masses, self.pulls, self.density
+        (m1, m2), (a, b), rho = self.masses, self.slope_accelerations, self.density
         return ((m1 + rho * x) * a - (m2 + rho * (self.length - x)) * b) / self.mass
 
     @cached_property
     def square(self) -> Ball:
         """k^2, zero for a massless chain or two level faces."""
-        return self.density * (self.pulls[0] + self.pulls[1]) / self.mass
+        return self.density * (self.slope_accelerations[0] + self.slope_accelerations[1]) / self.mass
 
     @cached_property
     def rate(self) -> Ball:
@@ -72,7 +72,7 @@ class Slide:
 
     def tension(self, x: Ball) -> Ball:
         """Return the tension at the apex with a length x on face 1."""
-        (m1, m2), (a, b), rho = self.masses, self.pulls, self.density
+        (m1, m2), (a, b), rho = self.masses, self.slope_accelerations, self.density
         return (a + b) * (m1 + rho * x) * (m2 + rho * (self.length - x)) / self.mass
 
     def velocity_squared(self, x: Ball) -> Ball:
@@ -82,7 +82,7 @@ class Slide:
 
     def grip(self) -> tuple[Ball, Ball, Ball]:
         """Return T - rho x'^2 as a quadratic in the displacement from the given position: coefficients of 2, 1, 0."""
-        (m1, m2), (a, b), rho, x = self.masses, self.pulls, self.density, self.position
+        (m1, m2), (a, b), rho, x = self.masses, self.slope_accelerations, self.density, self.position
         left, right = m1 + rho * x, m2 + rho * (self.length - x)
         unit = (a + b) / self.mass
         return (
@@ -97,21 +97,22 @@ class Slide:
 
     def mirrored(self) -> Slide:
         """Return the same chain with the faces exchanged: its position is the length on face 2."""
-        (m1, m2), (a, b) = self.masses, self.pulls
+        (m1, m2), (a, b) = self.masses, self.slope_accelerations
         return Slide((m2, m1), (b, a), self.length, self.density, self.length - self.position, -self.velocity)
 
     def time_to(self, x: Ball, way: int) -> Ball:
         """Return the time until the chain is at x with a velocity of the sign `way`, given that it comes there."""
         gone, k = x - self.position, self.rate
+        if sign(gone) == 0 and sign(self.velocity) in (0, way):
+            # It is there already: both quotients below would be 0/0 where it also is at rest.
+            return ZERO
         speed = way * square_root(self.velocity_squared(x))
         # The difference of the velocities, by their squares where it would cancel.
         total = speed + self.velocity
-        if sign(speed) * sign(self.velocity) > 0:
-            gained = gone * (2 * self.acceleration + self.square * gone) / total
-        else:
-            gained = speed - self.velocity
+        turned = sign(speed) * sign(self.velocity) < 0
+        gained = speed - self.velocity if turned else gone * (2 * self.acceleration + self.square * gone) / total
         if sign(k) == 0:
-            return gained / self.acceleration if sign(self.acceleration) and sign(gained) else gone / self.velocity
+            return gained / self.acceleration if turned else 2 * gone / total
         # x' + k (x - x_eq) grows as e^(kt), x' - k (x - x_eq) decays: the larger of the two tells the time.
         growing, decaying = self.acceleration + k * self.velocity, self.acceleration - k * self.velocity
         if abs(growing) > abs(decaying) or sign(decaying) == 0:
@@ -173,11 +174,11 @@ class ChainMotion(UnbrokenMotion):
     @property
     def model(self) -> Model:
         """The branch of the solution."""
+        if sign(self.slide.acceleration) == 0 and sign(self.slide.velocity) == 0:
+            return Model("heavy chain on a wedge", "rest", "the chain balances", 0)
         if sign(self.slide.square) == 0:
             why = "the pull does not depend on the position: no mass in the chain, or level faces"
             return Model("heavy chain on a wedge", "constant acceleration", why, 1)
-        if sign(self.slide.acceleration) == 0 and sign(self.slide.velocity) == 0:
-            return Model("heavy chain on a wedge", "rest", "the chain balances", 0)
         return Model("heavy chain on a wedge", "hyperbolic", "the pull grows in proportion to the deviation", 1)
 
     def sample(self, times: Floats) -> Columns:
@@ -189,13 +190,16 @@ class ChainMotion(UnbrokenMotion):
             y, _, dy, _ = _evaluated(slide.mirrored(), times)
             # Masses are shares of the greatest there may be on a side, so that no product but the last leaves the range
             # of doubles unless the tension does.
-            (m1, m2), chain, length = slide.masses, slide.density * slide.length, float(slide.length)
-            most = (slide.pulls[0] + slide.pulls[1]) * (m1 + chain) * (m2 + chain) / slide.mass
+            (a, b), (m1, m2) = slide.slope_accelerations, slide.masses
+            chain, length = slide.density * slide.length, float(slide.length)
+            most = (a + b) * (m1 + chain) * (m2 + chain) / slide.mass
             greatest, thick, thin = float(most), _share(chain, m1 + chain), _share(chain, m2 + chain)
             left = _share(m1, m1 + chain) + thick * (x / length)
             right = _share(m2, m2 + chain) + thin * (y / length)
             tension = greatest * (left * right)
-            shift = np.abs(thick * (dx / length) * right) + np.abs(thin * (dy / length) * left) + SMALLEST
+            # What the products lose below the normal range; a side without mass is exactly without tension.
+            loses = (left != 0.0) & (right != 0.0)
+            shift = np.abs(thick * (dx / length) * right) + np.abs(thin * (dy / length) * left) + SMALLEST * loses
             values = finite({"position": x, "velocity": v, "apex_tension": tension})
             errors = {
                 "position": dx,

@@ -5,17 +5,83 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Generic, Literal
 
 from core.errors import InvalidParameter
-from core.quantities import Acceleration, Length, LengthOrZero, Quantity, Slope, Velocity, check
-from core.scenes.answer import ConstrainedSystem, Motion
+from core.quantities import Acceleration, Length, LengthOrZero, Quantity, Slope, Unit, Velocity, check
+from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, outputs_of
 from core.scenes.chain_motion import ChainMotion, Slide
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.systems.system import Model
 
 EndMass = Annotated[float, Quantity("kg", at_least=0)]
 LinearDensity = Annotated[float, Quantity("kg m^-1", at_least=0)]
+
+
+@dataclass(frozen=True)
+class LiftOff(Generic[N]):
+    """Whether the chain leaves the apex.
+
+    Attributes
+    ----------
+    occurs : bool
+        Whether it does, in the motion from the given state.
+    time : number or None
+        When; null if it does not.
+    """
+
+    occurs: bool
+    time: Annotated[N, Unit("s")] | None
+
+
+@dataclass(frozen=True)
+class ChainFigures(Generic[N]):
+    """What a chain on a wedge answers.
+
+    Attributes
+    ----------
+    acceleration : number
+        Of mass 1 down its face, in the given state.
+    apex_tension : number
+        Tension of the chain at the apex, in the given state.
+    growth_rate : number
+        Rate at which a displacement from equilibrium grows; zero for a massless string.
+    equilibrium : number or None
+        Length of chain on face 1 in equilibrium; null where there is none.
+    energy : energies
+        Of the given state, heights from the apex.
+    lift_off : LiftOff
+        Whether and when the chain leaves the apex.
+    """
+
+    acceleration: Annotated[N, Unit("m s^-2")] | None
+    apex_tension: Annotated[N, Unit("N")] | None
+    growth_rate: Annotated[N, Unit("s^-1")] | None
+    equilibrium: Annotated[N, Unit("m")] | None
+    energy: MechanicalEnergy[N]
+    lift_off: LiftOff[N]
+
+
+@dataclass(frozen=True)
+class ChainSamples(Generic[N]):
+    """Samples of a chain's motion: one entry for each time.
+
+    Attributes
+    ----------
+    time : array
+        Measured from the given state, up to the end of the motion.
+    position : array
+        Length of chain on face 1.
+    velocity : array
+        Of mass 1 down its face.
+    apex_tension : array
+        Tension at the apex; left out where doubles are too coarse for it.
+    """
+
+    time: Annotated[list[N], Unit("s")]
+    position: Annotated[list[N], Unit("m")]
+    velocity: Annotated[list[N], Unit("m s^-1")]
+    apex_tension: Annotated[list[N], Unit("N")] | None = None
 
 
 @dataclass(frozen=True)
@@ -29,7 +95,7 @@ class ChainOnWedge(ConstrainedSystem):
     slopes : tuple of float
         Angles of the faces below the horizontal (rad).
     gravity : float
-        (m/s^2).
+        Acceleration of free fall (m/s^2).
     length : float
         Of the whole chain (m).
     linear_density : float
@@ -49,17 +115,9 @@ class ChainOnWedge(ConstrainedSystem):
     velocity: Velocity = 0.0
     kind: Literal["chain-on-wedge"] = "chain-on-wedge"
 
-    outputs: ClassVar[tuple[str, ...]] = (
-        "acceleration",
-        "apex_tension",
-        "growth_rate",
-        "equilibrium",
-        "energy",
-        "lift_off",
-        "events",
-        "ended",
-        "trajectory",
-    )
+    figures_type: ClassVar[type] = ChainFigures
+    samples_type: ClassVar[type] = ChainSamples
+    outputs: ClassVar[tuple[str, ...]] = outputs_of(ChainFigures)
     of_motion: ClassVar[tuple[str, ...]] = ("lift_off",)
 
     def __post_init__(self) -> None:
@@ -93,7 +151,7 @@ class ChainOnWedge(ConstrainedSystem):
 
         return {"lift_off": lift_off}
 
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question about one instant."""
         return Model("heavy chain on a wedge", "one instant", "no motion was asked for", 0)
 
@@ -111,7 +169,7 @@ class ChainOnWedge(ConstrainedSystem):
 
     def _energy(self) -> Mapping[str, Ball]:
         """Return the energies of the given state, heights from the apex."""
-        slide, (m1, m2), (a, b) = self._slide, self._slide.masses, self._slide.pulls
+        slide, (m1, m2), (a, b) = self._slide, self._slide.masses, self._slide.slope_accelerations
         x, y = slide.position, slide.length - slide.position
         kinetic = slide.mass * slide.velocity**2 / 2
         potential = -(m1 + slide.density * x / 2) * a * x - (m2 + slide.density * y / 2) * b * y

@@ -47,8 +47,8 @@ class Friction:
 def with_friction(friction: Friction, constants: Constants, state: State) -> Drive:
     """Return what drives the shafts on rough slopes."""
     static, kinetic = exact_pair(friction.static), exact_pair(friction.kinetic)
-    holds = (static[0] * constants.loads[0], static[1] * constants.loads[1])
-    drags = (kinetic[0] * constants.loads[0], kinetic[1] * constants.loads[1])
+    holds = (static[0] * constants.normal_forces[0], static[1] * constants.normal_forces[1])
+    drags = (kinetic[0] * constants.normal_forces[0], kinetic[1] * constants.normal_forces[1])
     if state.tight and sign(state.opening) == 0:
         drive = _taut(constants, state, holds, drags)
         if drive.tension is None or sign(drive.tension) >= 0:
@@ -58,7 +58,7 @@ def with_friction(friction: Friction, constants: Constants, state: State) -> Dri
 
 
 def _taut(constants: Constants, state: State, holds: Balls, drags: Balls) -> Drive:
-    (e1, e2), (a, b) = constants.effective, constants.pulls
+    (e1, e2), (a, b) = constants.effective, constants.slope_accelerations
     excess = e1 * a - e2 * b
     way = sign(state.slips[0])
     if way == 0:
@@ -75,7 +75,7 @@ def _taut(constants: Constants, state: State, holds: Balls, drags: Balls) -> Dri
 
 def _sticking(constants: Constants, holds: Balls) -> Drive:
     """Both shafts roll; T + f_i = mu_i A_i holds and nothing fixes T itself, if it has any room."""
-    (e1, e2), (a, b), (c1, c2) = constants.effective, constants.pulls, constants.factors
+    (e1, e2), (a, b), (c1, c2) = constants.effective, constants.slope_accelerations, constants.factors
     rolling = (a / (1 + c1), b / (1 + c2))
     low = ZERO
     for bound in (e1 * a - holds[0], e2 * b - holds[1]):
@@ -98,7 +98,7 @@ def _alone(constants: Constants, state: State, holds: Balls, drags: Balls, i: in
     mass, factor, pull, effective = (
         constants.masses[i],
         constants.factors[i],
-        constants.pulls[i],
+        constants.slope_accelerations[i],
         constants.effective[i],
     )
     way = sign(state.slips[i])

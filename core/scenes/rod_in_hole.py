@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Generic, Literal
 
 from core.balls import precision
 from core.errors import InvalidParameter
-from core.quantities import Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, check
-from core.scenes.answer import ConstrainedSystem, Motion
+from core.quantities import RADIANS, Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, Unit, check
+from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, Pair, outputs_of
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
 from core.scenes.pendulum import Pendulum
 from core.scenes.rod_motion import Rod, RodMotion, contact_limits
@@ -24,6 +24,78 @@ RIM_ROUNDING = 2.0**-50
 
 
 @dataclass(frozen=True)
+class Contact(Generic[N]):
+    """Contact of the rod's ends with the wall.
+
+    Attributes
+    ----------
+    kept : bool
+        Whether both ends stay on the wall.
+    limit_angle : number
+        Largest angle from which a rod released at rest stays in contact.
+    full_turn_rate : number
+        Least rate at the bottom with which the rod goes round a whole cylinder in contact.
+    """
+
+    kept: bool
+    limit_angle: Annotated[N, Unit("rad")] | None
+    full_turn_rate: Annotated[N, Unit("rad s^-1")] | None
+
+
+@dataclass(frozen=True)
+class RodFigures(Generic[N]):
+    """What a rod in a hole answers.
+
+    Attributes
+    ----------
+    angular_velocity_at_horizontal : number or None
+        Magnitude when the rod is horizontal at the bottom; null if it does not get there.
+    equivalent_length : number
+        Length of the simple pendulum that swings alike.
+    period : number or None
+        Of the motion; null if it ends or never repeats.
+    release_angle : number
+        Angle at t = 0.
+    forces_at_release : pair of numbers
+        Of the wall on the ends A and B at t = 0, towards the axis.
+    energy : energies
+        Of the given state, heights from the axis.
+    contact : Contact
+        Whether both ends stay on the wall, and the limits of doing so.
+    """
+
+    angular_velocity_at_horizontal: Annotated[N, Unit("rad s^-1")] | None
+    equivalent_length: Annotated[N, Unit("m")] | None
+    period: Annotated[N, Unit("s")] | None
+    release_angle: Annotated[N, Unit("rad")] | None
+    forces_at_release: Annotated[Pair[N | None], Unit("N")]
+    energy: MechanicalEnergy[N]
+    contact: Contact[N]
+
+
+@dataclass(frozen=True)
+class RodSamples(Generic[N]):
+    """Samples of a rod's motion: one entry for each time.
+
+    Attributes
+    ----------
+    time : array
+        Measured from the given state, up to the end of the motion.
+    angle : array
+        From the downward vertical, positive if end B is higher.
+    angular_velocity : array
+        Positive if end B rises.
+    forces : array of pairs
+        Of the wall on the ends A and B, towards the axis; left out where doubles are too coarse for them.
+    """
+
+    time: Annotated[list[N], Unit("s")]
+    angle: Annotated[list[N], Unit("rad")]
+    angular_velocity: Annotated[list[N], Unit("rad s^-1")]
+    forces: Annotated[list[Pair[N]], Unit("N")] | None = None
+
+
+@dataclass(frozen=True)
 class RodInHole(ConstrainedSystem):
     """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall.
 
@@ -32,16 +104,18 @@ class RodInHole(ConstrainedSystem):
 
     Attributes
     ----------
-    hole_radius, length : float
-        The rod is shorter than the diameter (m).
+    hole_radius : float
+        Radius of the hole (m).
+    length : float
+        Of the rod, less than the diameter of the hole (m).
     mass : float
-        (kg).
+        Of the rod (kg).
     gravity : float
-        (m/s^2).
+        Acceleration of free fall (m/s^2).
     angle : float, optional
-        By default end A is at the left rim, which is a negative angle (rad).
+        At t = 0. By default end A is at the left rim, which is a negative angle (rad).
     angular_velocity : float
-        (rad/s).
+        At t = 0, positive if end B rises (rad/s).
     inertia_factor : float
         Moment about the centre over mass times length squared: 1/12 for a uniform rod, 1/4 with all mass at the ends.
     hole : {"half-cylinder", "cylinder"}
@@ -58,18 +132,9 @@ class RodInHole(ConstrainedSystem):
     hole: Literal["half-cylinder", "cylinder"] = "half-cylinder"
     kind: Literal["rod-in-hole"] = "rod-in-hole"
 
-    outputs: ClassVar[tuple[str, ...]] = (
-        "angular_velocity_at_horizontal",
-        "equivalent_length",
-        "period",
-        "release_angle",
-        "forces_at_release",
-        "energy",
-        "contact",
-        "events",
-        "ended",
-        "trajectory",
-    )
+    figures_type: ClassVar[type] = RodFigures
+    samples_type: ClassVar[type] = RodSamples
+    outputs: ClassVar[tuple[str, ...]] = outputs_of(RodFigures)
     of_motion: ClassVar[tuple[str, ...]] = ("angular_velocity_at_horizontal", "period", "contact")
 
     def __post_init__(self) -> None:
@@ -85,7 +150,7 @@ class RodInHole(ConstrainedSystem):
                     raise InvalidParameter(
                         "angle",
                         f"lie within {float(rim):.17g} rad of the vertical, where an end reaches the rim",
-                        remedy="or let the hole be a whole cylinder",
+                        remedy=f"let the hole be a whole cylinder; {RADIANS}",
                     )
 
     def figures(self) -> Mapping[str, Callable[[], Any]]:
@@ -110,7 +175,7 @@ class RodInHole(ConstrainedSystem):
             "contact": lambda: self._contact(motion),
         }
 
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question about one instant."""
         return Model("rod in a cylindrical hole", "one instant", "no motion was asked for", 0)
 

@@ -102,8 +102,21 @@ class Phases:
     cut: Ball = ZERO
 
 
-class _Follower:
-    """Follows one motion; holds the state at the last event."""
+class EventTracker:
+    """Follows one motion from event to event.
+
+    Parameters
+    ----------
+    constants : Constants
+    restitution : ball
+        Coefficient of restitution of a jerk of the string.
+    limits : tuple of Limit
+        What may end the motion.
+    law : callable
+        Returns what drives the shafts in a state.
+    slip : bool
+        Whether friction acts, so that jerks that die out end in a state of contact.
+    """
 
     def __init__(
         self, constants: Constants, restitution: Ball, limits: tuple[Limit, ...], law: Law, slip: bool
@@ -114,6 +127,13 @@ class _Follower:
         self.fastest, self.last, self.cut = ZERO, ZERO, ZERO
 
     def follow(self, state: State, horizon: float) -> Phases:
+        """Return the phases from a state until the motion ends or the horizon (s) has passed.
+
+        Raises
+        ------
+        BudgetExceeded
+            For more than `MOST_PHASES` phases.
+        """
         while True:
             if len(self.phases) >= MOST_PHASES:
                 raise BudgetExceeded(
@@ -129,7 +149,7 @@ class _Follower:
                 closing = -state.opening
                 restitution = self._restitution(closing)
                 impulse, loss, jerks = self._impulse(closing, restitution), self._loss(closing, restitution), 1
-                state = state.kicked(self.constants, closing, restitution)
+                state = state.after_impulse(self.constants, closing, restitution)
                 self.events.append(Event("jerk", state.time))
             drive = self.law(self.constants, state)
             if (
@@ -238,7 +258,7 @@ class _Follower:
                 if not moment > length:
                     time = smaller(time, moment)
             if time is None and self.slip:
-                ended = arc.after(drive, length).kicked(self.constants, arc.opening, self.restitution)
+                ended = arc.after(drive, length).after_impulse(self.constants, arc.opening, self.restitution)
                 if tuple(sign(u) for u in ended.slips) != before:
                     return length
             return time
@@ -297,7 +317,7 @@ def follow(
     BudgetExceeded
         If sticking and slipping alternate too often before the horizon.
     """
-    return _Follower(constants, exact(restitution), limits, law, slip).follow(state, horizon)
+    return EventTracker(constants, exact(restitution), limits, law, slip).follow(state, horizon)
 
 
 def settled(opening: Ball, terms: Ball) -> Ball:

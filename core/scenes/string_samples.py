@@ -59,7 +59,7 @@ class ShaftMotion(Motion):
         return Model("two unwinding shafts on one string", ", ".join(kinds), why, max(FREEDOM[kind] for kind in kinds))
 
     @property
-    def began(self) -> float:
+    def valid_from(self) -> float:
         """Jerks and friction do not run backwards, so the motion begins with the given state."""
         return 0.0
 

@@ -25,17 +25,17 @@ class Constants:
     ----------
     masses, radii, factors : balls
         M_i, R_i, c_i.
-    pulls : balls
+    slope_accelerations : balls
         g sin(slope): acceleration of a point sliding freely.
-    loads : balls
+    normal_forces : balls
         Normal forces M_i g cos(slope).
     """
 
     masses: Balls
     radii: Balls
     factors: Balls
-    pulls: Balls
-    loads: Balls
+    slope_accelerations: Balls
+    normal_forces: Balls
 
     @property
     def effective(self) -> Balls:
@@ -139,7 +139,7 @@ class State:
             moved(self.slips, u, none),
         )
 
-    def kicked(self, constants: Constants, closing: Ball, restitution: Ball) -> State:
+    def after_impulse(self, constants: Constants, closing: Ball, restitution: Ball) -> State:
         """Return the state after the jerk of a string that closed at the velocity `closing` > 0.
 
         The impulse is (1 + e) closing mu_1 mu_2/(mu_1 + mu_2); contacts transmit none, as normal forces stay finite.
@@ -158,7 +158,7 @@ class State:
 
 def frictionless(constants: Constants, state: State) -> Drive:
     """Return what drives the shafts on smooth slopes: both slide freely, or the string pulls them as one machine."""
-    a, b = constants.pulls
+    a, b = constants.slope_accelerations
     if not (state.tight and sign(state.opening) == 0):
         return Drive("slack", ZERO, (a, b), (ZERO, ZERO))
     closing = a + b

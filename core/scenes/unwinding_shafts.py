@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Generic, Literal
 
 from core.errors import InvalidParameter, NotApplicable
 from core.notices import Notice
@@ -18,10 +18,11 @@ from core.quantities import (
     Mass,
     Quantity,
     Slope,
+    Unit,
     Velocity,
     check,
 )
-from core.scenes.answer import ConstrainedSystem, Motion
+from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, Pair, outputs_of
 from core.scenes.bounces import as_answered
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.scenes.friction import Friction, with_friction
@@ -34,17 +35,113 @@ Restitution = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
 
 @dataclass(frozen=True)
+class ShaftPhase(Generic[N]):
+    """A time in which the accelerations are constant but for jerks.
+
+    Attributes
+    ----------
+    kind : {"taut", "slack", "stick"}
+        State of the string, or both shafts sticking.
+    start, end : number
+        Measured from the given state; the end is null if nothing ends the phase.
+    impulse : number or None
+        Of its jerks along the string; null for infinitely many that do not accumulate.
+    jerks : int or None
+        How many, the one that began it included; null for infinitely many.
+    dissipated : number
+        Energy that its jerks cost.
+    """
+
+    kind: Literal["taut", "slack", "stick"]
+    start: Annotated[N, Unit("s")] | None
+    end: Annotated[N, Unit("s")] | None
+    impulse: Annotated[N, Unit("N s")] | None
+    jerks: int | None
+    dissipated: Annotated[N, Unit("J")] | None
+
+
+@dataclass(frozen=True)
+class ShaftFigures(Generic[N]):
+    """What two unwinding shafts answer; forces and accelerations are those right after t = 0.
+
+    Attributes
+    ----------
+    tension : number or None
+        Of the string; null where nothing determines it.
+    tension_range : pair of numbers or None
+        Least and largest tension that sticking shafts admit; null where the tension is determined.
+    accelerations : pair of numbers
+        Of the shafts down their slopes.
+    angular_accelerations : pair of numbers or None
+        Of the shafts, positive if the string unwinds; null where nothing determines them.
+    string_acceleration : number or None
+        Of the string towards shaft 1; null while it is slack.
+    reduced_masses : pair of numbers
+        Mass with which each shaft resists the tension.
+    normal_forces : pair of numbers
+        Of the slopes on the shafts.
+    friction_forces : pair of numbers or None
+        Of the slopes on the shafts, up the slope; null without friction.
+    energy : energies
+        Of the given state, heights from the apex.
+    phases : list of ShaftPhase
+        Of the motion, in order.
+    """
+
+    tension: Annotated[N, Unit("N")] | None
+    tension_range: Annotated[Pair[N | None], Unit("N")] | None
+    accelerations: Annotated[Pair[N | None], Unit("m s^-2")]
+    angular_accelerations: Annotated[Pair[N | None], Unit("rad s^-2")] | None
+    string_acceleration: Annotated[N, Unit("m s^-2")] | None
+    reduced_masses: Annotated[Pair[N | None], Unit("kg")]
+    normal_forces: Annotated[Pair[N | None], Unit("N")]
+    friction_forces: Annotated[Pair[N | None], Unit("N")] | None
+    energy: MechanicalEnergy[N]
+    phases: list[ShaftPhase[N]]
+
+
+@dataclass(frozen=True)
+class ShaftSamples(Generic[N]):
+    """Samples of the shafts' motion: one entry for each time.
+
+    Attributes
+    ----------
+    time : array
+        Measured from the given state, up to the end of the motion.
+    positions : array of pairs
+        Distances from the apex, down the slopes.
+    velocities : array of pairs
+        Down the slopes.
+    spins : array of pairs
+        Rates of rotation, positive if the string unwinds.
+    unwound : array of pairs
+        Length of string unwound from each shaft since t = 0.
+    tension : array
+        Of the string; left out where nothing determines it.
+    """
+
+    time: Annotated[list[N], Unit("s")]
+    positions: Annotated[list[Pair[N]], Unit("m")]
+    velocities: Annotated[list[Pair[N]], Unit("m s^-1")]
+    spins: Annotated[list[Pair[N]], Unit("rad s^-1")]
+    unwound: Annotated[list[Pair[N]], Unit("m")]
+    tension: Annotated[list[N], Unit("N")] | None = None
+
+
+@dataclass(frozen=True)
 class UnwindingShafts(ConstrainedSystem):
     """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound.
 
     Attributes
     ----------
-    masses, radii : tuple of float
-        Of the shafts (kg, m).
+    masses : tuple of float
+        Of the shafts (kg).
+    radii : tuple of float
+        Of the shafts, at which the string is wound (m).
     slopes : tuple of float
         Angles of the faces below the horizontal (rad).
     gravity : float
-        (m/s^2).
+        Acceleration of free fall (m/s^2).
     inertia_factors : tuple of float
         Moment about the axis over mass times radius squared: 1/2 solid, 1 a thin tube.
     positions : tuple of float, optional
@@ -77,21 +174,9 @@ class UnwindingShafts(ConstrainedSystem):
     friction: Friction | None = None
     kind: Literal["unwinding-shafts"] = "unwinding-shafts"
 
-    outputs: ClassVar[tuple[str, ...]] = (
-        "tension",
-        "tension_range",
-        "accelerations",
-        "angular_accelerations",
-        "string_acceleration",
-        "reduced_masses",
-        "normal_forces",
-        "friction_forces",
-        "energy",
-        "phases",
-        "events",
-        "ended",
-        "trajectory",
-    )
+    figures_type: ClassVar[type] = ShaftFigures
+    samples_type: ClassVar[type] = ShaftSamples
+    outputs: ClassVar[tuple[str, ...]] = outputs_of(ShaftFigures)
     of_motion: ClassVar[tuple[str, ...]] = ("phases",)
 
     def __post_init__(self) -> None:
@@ -116,13 +201,13 @@ class UnwindingShafts(ConstrainedSystem):
             "angular_accelerations": self._angular_accelerations,
             "string_acceleration": self._string_acceleration,
             "reduced_masses": lambda: self._constants.effective,
-            "normal_forces": lambda: self._constants.loads,
+            "normal_forces": lambda: self._constants.normal_forces,
             "friction_forces": lambda: None if self.friction is None else self._drive.friction,
             "energy": self._energy,
         }
 
     @property
-    def moves(self) -> bool:
+    def has_motion(self) -> bool:
         """Whether positions are given and the spins determined."""
         return self.positions is not None and any(self.inertia_factors)
 
@@ -169,7 +254,7 @@ class UnwindingShafts(ConstrainedSystem):
             ]
         }
 
-    def still(self) -> Model:
+    def static_model(self) -> Model:
         """Return the model of a question about one instant."""
         return Model("two unwinding shafts on one string", "one instant", "no motion was asked for", 0)
 
@@ -237,10 +322,10 @@ class UnwindingShafts(ConstrainedSystem):
     def _drive(self) -> Drive:
         state = self._given
         if sign(state.opening) < 0 and self._constants.determinate:
-            state = state.kicked(self._constants, -state.opening, exact(self.restitution))
+            state = state.after_impulse(self._constants, -state.opening, exact(self.restitution))
         if not self._constants.determinate:
             # No inertia takes part in the pull on the string, so there is none; how the string moves stays open.
-            return Drive("taut", ZERO, self._constants.pulls, (ZERO, ZERO))
+            return Drive("taut", ZERO, self._constants.slope_accelerations, (ZERO, ZERO))
         return self._law(self._constants, state)
 
     def _angular_accelerations(self) -> tuple[Ball, Ball] | None:
@@ -262,7 +347,7 @@ class UnwindingShafts(ConstrainedSystem):
         for i in (0, 1):
             mass, factor = self._constants.masses[i], self._constants.factors[i]
             kinetic = kinetic + mass * (state.velocities[i] ** 2 + factor * state.rates[i] ** 2) / 2
-            potential = potential - mass * self._constants.pulls[i] * positions[i]
+            potential = potential - mass * self._constants.slope_accelerations[i] * positions[i]
         return {"kinetic": kinetic, "potential": potential, "total": kinetic + potential}
 
     def _limits(self) -> tuple[Limit, ...]:

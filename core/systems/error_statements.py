@@ -1,4 +1,9 @@
-"""How wrong a computed motion is: against a reference, against a finer run of the same method, and by its drifts."""
+"""How wrong a computed motion is: against a reference, against a finer run of the same method, and by its drifts.
+
+Every error is relative to the largest norm of the state in the whole motion, which a closed form knows. Where there is
+none, it is relative to the largest norm that the motion is known to have among the start and the samples, which is not
+larger: an error is never stated as smaller than it is relative to the whole motion.
+"""
 
 from __future__ import annotations
 
@@ -23,6 +28,8 @@ error, so a factor 2 is owed, and so is it where a sixteenth of the tolerance do
 2 is for methods that converge less evenly than their order says.
 """
 
+LARGEST = float(np.finfo(np.float64).max)
+
 FARTHEST = 2.0**1020
 """No error is stated that is as large as this: what `Errors.beyond` adds to it might not be a double."""
 
@@ -40,12 +47,12 @@ class Errors(NamedTuple):
     Attributes
     ----------
     largest : float
-        Largest norm of any row's error, relative to the largest norm of the motion.
+        Largest norm of any row's error, relative to the largest norm of the whole motion.
     final : float
         The same at the time farthest from the start.
     components : tuple of float
-        Largest error of each component, relative to the largest magnitude that this component takes; to the largest
-        norm where that magnitude is zero, or so small that the quotient leaves the range of doubles.
+        Largest error of each component, relative to the largest magnitude that its samples take; to the largest norm
+        where that magnitude is zero, or so small that the quotient leaves the range of doubles.
     """
 
     largest: float
@@ -75,48 +82,50 @@ def _norm_of_far(state: Floats, exact: Floats, inverse: float) -> float:
     return most * math.sqrt(norm) if most < math.inf else most
 
 
-@kernel(types.float64(_rows, _rows, types.float64, _row, _row, _row))
+@kernel(types.void(_rows, _rows, types.float64, _row, _row, _row))
 def _differences(
     states: Floats, reference: Floats, unit: float, errors: Floats, wrong: Floats, magnitudes: Floats
-) -> float:
-    """Fill in the norm of every row's error and the extremes of every column; return the largest norm of `reference`.
+) -> None:
+    """Fill in the norm of every row's error and the extremes of every column.
 
     All in units of `unit`, a power of two that keeps the squares in range and rounds nothing.
     """
-    largest, inverse = 0.0, 1.0 / unit
+    inverse = 1.0 / unit
     for i in range(states.shape[0]):
-        norm, error = 0.0, 0.0
+        error = 0.0
         for k in range(states.shape[1]):
             exact = reference[i, k] * inverse
             difference = states[i, k] * inverse - exact
-            norm += exact * exact
             error += difference * difference
             magnitudes[k] = max(magnitudes[k], abs(exact))
             wrong[k] = max(wrong[k], abs(difference))
-        largest = max(largest, norm)
         errors[i] = math.sqrt(error)
         if error == math.inf:
             errors[i] = _norm_of_far(states[i], reference[i], inverse)
-    return math.sqrt(largest)
 
 
-def measured(states: Floats, reference: Floats, times: Floats) -> Errors:
+def measured(states: Floats, reference: Floats, times: Floats, largest_norm: float) -> Errors:
     """Return the errors of `states` against `reference`, both of shape (n, k) at `times` of shape (n,).
 
-    A motion that is at rest has no scale of its own; its errors are then relative to the largest of `states`.
+    Parameters
+    ----------
+    largest_norm : float
+        Of the whole motion. A motion that is at rest has no scale of its own; its errors are then relative to the
+        largest component of `states`.
 
     Raises
     ------
     NotApplicable
         If the states are so far from the reference that a double cannot say how far; the path leads from the method.
     """
-    largest = _magnitude(reference) or _magnitude(states)
-    if largest == 0.0:
+    scale = min(largest_norm, LARGEST) or max(float(states.max()), -float(states.min()))
+    if scale == 0.0:
         return Errors(0.0, 0.0, (0.0,) * states.shape[1])
-    unit = math.ldexp(1.0, max(math.frexp(largest)[1] - 1, -1022))
+    unit = math.ldexp(1.0, max(math.frexp(scale)[1] - 1, -1022))
     errors = np.empty(len(states))
     wrong, magnitudes = np.zeros(states.shape[1]), np.zeros(states.shape[1])
-    norm = _differences(states, reference, unit, errors, wrong, magnitudes) or largest / unit
+    _differences(states, reference, unit, errors, wrong, magnitudes)
+    norm = scale / unit
     if not errors.max() / norm < FARTHEST:
         raise _out_of_range()
     magnitudes[magnitudes == 0.0] = norm
@@ -135,8 +144,13 @@ def _out_of_range() -> NotApplicable:
     )
 
 
-def _magnitude(rows: Floats) -> float:
-    return max(float(rows.max()), -float(rows.min()))
+def known_norm(states: Floats, start: Floats) -> float:
+    """Return the largest norm among states, shape (n, k), and the start, shape (k,); infinite beyond the doubles."""
+    largest = max(float(np.abs(states).max()), float(np.abs(start).max()))
+    unit = math.ldexp(1.0, max(math.frexp(largest)[1] - 1, -1022))
+    norms = np.sqrt(((states / unit) ** 2).sum(axis=1))
+    # The square of the start may be nothing beside that of a run that blows up.
+    return unit * max(float(norms.max()), math.hypot(*(start / unit).tolist()))
 
 
 def drifts(system: System, states: Floats) -> dict[str, float]:
@@ -161,7 +175,8 @@ class Estimate(NamedTuple):
     Attributes
     ----------
     errors : Errors
-        Not smaller than the true ones as long as the method converges from one run to the other.
+        An estimate: not smaller than the true ones as long as the method converges from one run to the other, which
+        nothing shows (docs/accuracy.md has how often it fails).
     finer : AbstractMethod or None
         The method that made the finer run; None if there was none finer and a coarser one had to serve.
     integration : Integration
@@ -174,7 +189,13 @@ class Estimate(NamedTuple):
 
 
 def estimated(
-    method: AbstractMethod, system: System, times: Floats, run: Integration, budget: Budget, spent: int
+    method: AbstractMethod,
+    system: System,
+    times: Floats,
+    run: Integration,
+    budget: Budget,
+    spent: int,
+    largest_norm: float | None = None,
 ) -> Estimate:
     """Return the error of a run as a finer run of the same method shows it.
 
@@ -189,6 +210,8 @@ def estimated(
         For all that is done to answer the question.
     spent : int
         Evaluations that were spent so far.
+    largest_norm : float, optional
+        Of the whole motion; if omitted, that of the start and of the finer run's samples, as far as it is certain.
 
     Raises
     ------
@@ -208,31 +231,27 @@ def estimated(
         raise BudgetExceeded(
             fault.what, spent + fault.needed, budget.evaluations, path=fault.path, remedy=fault.remedy
         ) from None
-    difference = measured(run.states, other.states, times)
-    scale = _certain_scale(system, other.states, difference)
+    scale = known_norm(other.states, system.initial_state) if largest_norm is None else largest_norm
+    difference = measured(run.states, other.states, times, scale)
+    factor = SAFETY if largest_norm is not None else SAFETY * _uncertainty_of(scale, system.initial_state, difference)
     errors = Errors(
-        SAFETY * scale * difference.largest + ROUNDOFF,
-        SAFETY * scale * difference.final + ROUNDOFF,
-        tuple(SAFETY * scale * component + ROUNDOFF for component in difference.components),
+        factor * difference.largest + ROUNDOFF,
+        factor * difference.final + ROUNDOFF,
+        tuple(factor * component + ROUNDOFF for component in difference.components),
     )
     if not max(errors.largest, *errors.components) < math.inf:
         raise _out_of_range()
     return Estimate(errors, finer, other)
 
 
-def _certain_scale(system: System, states: Floats, difference: Errors) -> float:
-    """Return by how much the motion's largest norm may be smaller than that of `states`, as a factor of at least 1.
+def _uncertainty_of(scale: float, start: Floats, difference: Errors) -> float:
+    """Return by how much the largest norm may be smaller than that of a run, as a factor of at least 1.
 
     A run that blows up has a norm that the motion never had, and errors relative to it would look small. The motion's
     largest norm is certain only as far as the error leaves it, and to be no smaller than the norm at the start.
     """
-    unit = float(np.abs(states).max()) or 1.0
-    norms = np.sqrt(((states / unit) ** 2).sum(axis=1))
-    # The square of the start may be nothing beside that of a run that blows up, and the start is all that is certain.
-    start = math.hypot(*(system.initial_state / unit).tolist())
-    largest = max(float(norms.max()), start)
-    left = max(largest * (1 - difference.largest), start)
-    return largest / left if left > 0.0 else 1.0
+    left = max(1 - difference.largest, known_norm(start[None, :], start) / scale if scale > 0.0 else 1.0)
+    return 1.0 / left if left > 0.0 else 1.0
 
 
 def rest_of(budget: Budget, spent: int) -> Budget:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -14,7 +15,7 @@ from core.notices import Notice
 from core.quantities import Tolerance, Uncertainty, check_value
 from core.systems.accuracy import run_to_accuracy
 from core.systems.budget import Budget
-from core.systems.error_statements import drifts, estimated, measured
+from core.systems.error_statements import drifts, estimated, known_norm, measured
 from core.systems.methods import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod, Integration
 from core.systems.system import ClosedForm, Floats, System
@@ -51,7 +52,7 @@ def solve(
     times : array_like, shape (n,)
         Measured from the initial state, of either sign, in any order, repeated or not (s).
     accuracy : float
-        Largest error of any sample that is tolerated, relative to the largest norm of the motion.
+        Largest error of any sample that is tolerated, relative to the largest norm of the whole motion.
     method : AbstractMethod, optional
     budget : Budget, optional
         The default of `Budget` if omitted. What is spent on stating the error counts too.
@@ -62,7 +63,7 @@ def solve(
     -------
     Trajectory
         With ``accuracy.how`` one of ``"closed form"`` (a proven bound), ``"measured against closed form"`` (to which
-        the closed form's own bound is added) and ``"finer run"`` (an estimate with a factor of safety).
+        the closed form's own bound is added) and ``"estimate (finer run)"`` (with a factor of safety, and no bound).
 
     Raises
     ------
@@ -90,7 +91,7 @@ def solve(
         # A closed form that cannot be evaluated this far cannot judge either, and leaves it to the finer run.
         with suppress(AccuracyUnreachable):
             return _compared_with_closed_form(system, exact, method, run, instants, accuracy, input_uncertainty)
-    return _compared_with_finer_run(system, method, run, instants, accuracy, budget)
+    return _compared_with_finer_run(system, exact, method, run, instants, accuracy, budget)
 
 
 def checked_times(times: ArrayLike, budget: Budget) -> Floats:
@@ -129,21 +130,16 @@ def _evaluated(
     states = exact.sample(times)
     if not np.isfinite(states).all():
         raise NotApplicable("the motion leaves the range of double precision", remedy="choose other units")
+    inherited, notices = _inherited(exact, times, input_uncertainty)
     return Trajectory(
         times,
         states,
         exact.model,
         ClosedFormEvaluation().kind,
-        Accuracy(
-            accuracy,
-            error,
-            "closed form",
-            error,
-            exact.inherited(times, input_uncertainty),
-            drifts(system, states),
-        ),
+        Accuracy(accuracy, error, "closed form", error, inherited, drifts(system, states), _finite(exact.largest_norm)),
         Work(times.size),
         exact.period,
+        warnings=notices,
     )
 
 
@@ -158,14 +154,16 @@ def _compared_with_closed_form(
 ) -> Trajectory:
     reference, own = exact.sample(times), exact.error(times)
     with _inside("method"):
-        found = measured(run.states, reference, times).beyond(own)
+        found = measured(run.states, reference, times, exact.largest_norm).beyond(own)
+    inherited, notices = _inherited(exact, times, input_uncertainty)
     stated = Accuracy(
         accuracy,
         found.largest,
         "measured against closed form",
         found.final,
-        exact.inherited(times, input_uncertainty),
+        inherited,
         drifts(system, run.states),
+        _finite(exact.largest_norm),
     )
     return Trajectory(
         times,
@@ -175,22 +173,31 @@ def _compared_with_closed_form(
         stated,
         run.work,
         exact.period,
-        warnings=_warnings(stated, method, times),
+        warnings=_warnings(stated, method) + notices,
     )
 
 
 def _compared_with_finer_run(
-    system: System, method: AbstractMethod, run: Integration, times: Floats, accuracy: float, budget: Budget
+    system: System,
+    exact: ClosedForm | None,
+    method: AbstractMethod,
+    run: Integration,
+    times: Floats,
+    accuracy: float,
+    budget: Budget,
 ) -> Trajectory:
+    # A closed form that is out of reach at these times still knows the norm of the whole motion.
+    norm = None if exact is None else exact.largest_norm
     with _inside("method"):
-        estimate = estimated(method, system, times, run, budget, run.work.evaluations)
+        estimate = estimated(method, system, times, run, budget, run.work.evaluations, norm)
     errors, spent = estimate.errors, estimate.integration.work.evaluations
     uncertain: tuple[Notice, ...] = ()
     if errors.largest > UNCONVERGED:
         # Two runs as far apart as the motion is wide show nothing of a third; a run that does converge has to judge.
         try:
             judge = run_to_accuracy(system, times, JUDGE, budget, run.work.evaluations + spent)
-            found = measured(run.states, judge.states, times)
+            scale = known_norm(judge.states, system.initial_state) if norm is None else norm
+            found = measured(run.states, judge.states, times, scale)
         except MechanicsError as fault:
             detail = f"the error is so large that it is only known to be of this order: {fault.detail}"
             uncertain = (Notice("error-uncertain", detail, ("method",)),)
@@ -200,9 +207,11 @@ def _compared_with_finer_run(
                 final=found.final * (1 + JUDGE) + judge.errors.largest,
             )
             spent += judge.work.evaluations + judge.work.evaluations_for_error
-    stated = Accuracy(accuracy, errors.largest, "finer run", errors.final, None, drifts(system, run.states))
+    stated = Accuracy(
+        accuracy, errors.largest, "estimate (finer run)", errors.final, None, drifts(system, run.states), _finite(norm)
+    )
     work = replace(run.work, evaluations_for_error=spent)
-    warnings = _warnings(stated, method, times) + uncertain
+    warnings = _warnings(stated, method) + uncertain
     return Trajectory(times, run.states, system.model, method.kind, stated, work, warnings=warnings)
 
 
@@ -216,26 +225,36 @@ def _refined(system: System, times: Floats, accuracy: float, budget: Budget) -> 
     except BudgetExceeded as fault:
         remedy = "ask for earlier times or for less accuracy"
         raise BudgetExceeded(fault.what, fault.needed, fault.limit, path=("times",), remedy=remedy) from fault
-    stated = Accuracy(accuracy, run.errors.largest, "finer run", run.errors.final, None, drifts(system, run.states))
+    stated = Accuracy(
+        accuracy, run.errors.largest, "estimate (finer run)", run.errors.final, None, drifts(system, run.states)
+    )
     return Trajectory(times, run.states, system.model, run.method.kind, stated, run.work)
 
 
-def _warnings(stated: Accuracy, method: AbstractMethod, times: Floats) -> tuple[Notice, ...]:
-    notices = []
-    if not stated.error <= stated.requested:
-        detail = (
-            f"the error of {method.kind} with this setting is {stated.error:.3g}, where {stated.requested:.3g} was "
-            "asked for; leave out the method to have one chosen that reaches it"
-        )
-        notices.append(Notice("accuracy-not-reached", detail, ("method",)))
-    step = getattr(method, "step", None)
-    if step is not None:
-        longest = float(np.diff(np.sort(np.append(times, 0.0))).max())
-        # A step ends at every sample; one that is longer than every interval is never taken.
-        if 0.0 < longest < 0.999 * step:
-            detail = f"samples are at most {longest:.6g} s apart, so no step was longer than that; ask for fewer times"
-            notices.append(Notice("step-shortened", detail, ("method", "step")))
-    return tuple(notices)
+def _inherited(exact: ClosedForm, times: Floats, uncertainty: float) -> tuple[float | None, tuple[Notice, ...]]:
+    """Return the error propagated from the inputs, None with a notice where nothing bounds it."""
+    inherited = exact.inherited(times, uncertainty)
+    if inherited < math.inf:
+        return inherited, ()
+    detail = (
+        f"a relative uncertainty of {uncertainty:.3g} of every input leaves nothing known of the phase at the latest "
+        "times, and inherited is null; energy and angular momentum are known all the same; ask for earlier times"
+    )
+    return None, (Notice("phase-lost", detail, ("times",)),)
+
+
+def _finite(norm: float | None) -> float | None:
+    return norm if norm is not None and norm < math.inf else None
+
+
+def _warnings(stated: Accuracy, method: AbstractMethod) -> tuple[Notice, ...]:
+    if stated.error <= stated.requested:
+        return ()
+    detail = (
+        f"the error of {method.kind} with this setting is {stated.error:.3g}, where {stated.requested:.3g} was "
+        "asked for; leave out the method to have one chosen that reaches it"
+    )
+    return (Notice("accuracy-not-reached", detail, ("method",)),)
 
 
 @contextmanager

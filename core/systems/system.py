@@ -37,7 +37,7 @@ class Splitting:
     parts : int
         Number of parts.
     flow : compiled function of signature `PART_FLOW`
-        Sensitivities the state along one part, numbered from 0, for a duration that may be negative.
+        Moves the state along one part, numbered from 0, for a duration that may be negative.
     """
 
     parts: int
@@ -110,17 +110,29 @@ class ClosedForm(Protocol):
     def period(self) -> float | None:
         """Period of the state, or None when it has none (s)."""
 
+    @property
+    def largest_norm(self) -> float:
+        """Largest norm of the state in the whole motion, which errors are relative to."""
+
     def sample(self, times: Floats) -> Floats:
         """Return the states, shape (n, k), at `times`, shape (n,), in any order."""
 
     def error(self, times: Floats) -> float:
-        """Return a bound of the numerical error of `sample`, relative to the largest norm, inputs taken as exact.
+        """Return a bound of the numerical error of `sample`, relative to `largest_norm`, inputs taken as exact.
 
         It is that of the time farthest from the start, and holds for all.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            If nothing is known of the states there.
         """
 
     def inherited(self, times: Floats, uncertainty: float) -> float:
-        """Return how far the states may move, relative to the largest norm, if inputs are known to `uncertainty`."""
+        """Return a bound of the change of the states, relative to `largest_norm`, by inputs known to `uncertainty`.
+
+        Infinite where nothing is known of the phase.
+        """
 
 
 class System(Protocol):

@@ -7,27 +7,36 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from core.notices import Notice
+from core.quantities import Duration
 from core.systems.system import Floats, Model
 
-How = Literal["closed form", "measured against closed form", "finer run"]
+How = Literal["closed form", "measured against closed form", "estimate (finer run)"]
+"""What a statement of error rests on: a bound, a difference with a bound added, an estimate that may be too small."""
 
 
 @dataclass(frozen=True)
 class Accuracy:
-    """How right an answer is; every figure is relative to the largest norm of the motion.
+    """How right an answer is; every error is relative to the largest norm of the state in the whole motion.
+
+    Not of the samples: the whole motion's norm does not depend on the times asked for, and closed forms, methods and
+    inherited errors share it. Where there is no closed form it is the largest norm known, of the start and the samples.
 
     Attributes
     ----------
     requested : float
         Largest error of any sample that the client tolerates.
     error : float
-        Largest numerical error of any sample, inputs taken as exact; never smaller than the true one.
+        Largest numerical error of any sample, inputs taken as exact; never smaller than the true one, unless it is an
+        estimate.
     final_error : float or None
         The same at the time farthest from the start.
     how : str
         What the figure rests on.
     inherited : float or None
-        What half an ulp in every input (or the stated input uncertainty) would move.
+        Error propagated from the input uncertainty, half an ulp of every input unless stated: a bound of the change of
+        any sample. None where nothing is known of the phase, or nothing of how inputs act.
+    largest_norm : float or None
+        The norm that errors are relative to, in the unit of the state; None where every column has a scale of its own.
     drifts : mapping of str to float
         Largest relative change of each conserved quantity. A drift is not an error: it can be 1e-15 while the phase
         is wrong altogether.
@@ -39,6 +48,7 @@ class Accuracy:
     final_error: float | None = None
     inherited: float | None = None
     drifts: Mapping[str, float] = field(default_factory=dict)
+    largest_norm: float | None = None
 
 
 @dataclass(frozen=True)
@@ -52,9 +62,11 @@ class Work:
     evaluations : int
         Of the equation of motion, or of the flows of its parts.
     steps, rejected_steps : int
-        Taken by the method, and tried in vain beside them.
+        Taken by the method, and tried in vain beside them. Of a method with a fixed step, those of its grid.
     evaluations_for_error : int
         Spent on stating the error, beside those that made the samples.
+    step : float or None
+        Length of the steps from t = 0 (s), None for methods that choose them and for closed forms.
     """
 
     samples: int
@@ -62,6 +74,7 @@ class Work:
     steps: int = 0
     rejected_steps: int = 0
     evaluations_for_error: int = 0
+    step: Duration | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Any
 
+from service.execution import PRELOAD
 from service.execution.messages import decoded, encoded
 from service.execution.speed import SpeedCorrection
 from service.execution.worker import Failed, Task, answer, price, serve, terms_of
@@ -78,9 +79,8 @@ class Compute:
         self.terms = terms_of(settings, table)
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self.size = settings.compute_workers or max(1, cores // settings.workers)
-        preload = "service.execution.forkserver_preload"
-        self.reader = Processes(1, serve, (self.terms, price, READER_NICE), preload, self._lost)
-        self.processes = Processes(self.size, serve, (self.terms, answer, COMPUTE_NICE), preload, self._lost)
+        self.reader = Processes(1, serve, (self.terms, price, READER_NICE), PRELOAD, self._lost)
+        self.processes = Processes(self.size, serve, (self.terms, answer, COMPUTE_NICE), PRELOAD, self._lost)
         self.speed: defaultdict[str, SpeedCorrection] = defaultdict(SpeedCorrection)
         self._held = 0
         self._up = self._stopping = False
@@ -99,6 +99,11 @@ class Compute:
     def any_ready(self) -> bool:
         """Whether there are processes that work or wait for work."""
         return self.reader.any_ready and self.processes.any_ready
+
+    @property
+    def held(self) -> int:
+        """Memory of the answers that clients are reading (bytes)."""
+        return self._held
 
     @contextlib.contextmanager
     def holding(self, memory: int) -> Iterator[None]:

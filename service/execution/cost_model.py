@@ -9,9 +9,10 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache, cached_property
 from importlib import resources
-from math import ceil, exp, hypot, inf, log, sqrt
+from math import exp, floor, hypot, inf, log, sqrt
 from sys import float_info
 from typing import Any, Protocol, runtime_checkable
 
@@ -21,6 +22,9 @@ Counts = Mapping[str, float]
 
 UNCOUNTABLE = 1e18
 """What is more than this is counted as this: infinite counts, times nothing, would leave a question without a price."""
+
+ROUNDED_TIME = 4 * 2.0**-52
+"""By how much of itself a time may miss a grid point of a fixed step and count as that."""
 
 
 @dataclass(frozen=True)
@@ -180,21 +184,37 @@ def effort(method: Any, times: Any, speed: float, samples: float, members: int =
 
 
 def steps(times: Any, step: float) -> float:
-    """Return the steps of at most `step` from the start to every time, on either side."""
+    """Return the steps of a length from the start to either side, and one more for each time between two of them."""
     if isinstance(times, list):
-        ordered = sorted(set(times))
-        ahead, behind = [t for t in ordered if t > 0.0], [-t for t in reversed(ordered) if t < 0.0]
-        gaps = [b - a for side in (ahead, behind) for a, b in zip([0.0, *side], side, strict=False)]
-        return min(UNCOUNTABLE, sum(_whole(gap / step) for gap in gaps))
-    gap: float = abs(times.stop - times.start) / max(1, times.count - 1)
+        distinct = set(times)
+        whole = sum(_whole(reach / step) for reach in (max(0.0, *distinct), -min(0.0, *distinct)))
+        return min(UNCOUNTABLE, whole + sum(_between(abs(t) / step) for t in distinct))
     ends = _ends(times)
-    outside: float = 0.0 if min(ends) <= 0.0 <= max(ends) else min(map(abs, ends))
-    intervals: int = times.count - 1
-    return min(UNCOUNTABLE, intervals * _whole(gap / step) + (_whole(outside / step) if outside else 0.0))
+    whole = _whole(max(0.0, *ends) / step) + _whole(-min(0.0, *ends) / step)
+    gap: float = abs(ends[-1] - ends[0]) / max(1, times.count - 1)
+    return min(UNCOUNTABLE, whole + _points_between(gap / step, abs(times.start) / step, times.count))
 
 
 def _whole(number: float) -> float:
-    return float(ceil(number)) if number < 1e15 else min(number, UNCOUNTABLE)
+    """Return how many whole steps a number of them has, up to the rounding of a quotient of times."""
+    return float(floor(number * (1.0 + ROUNDED_TIME))) if number < 1e15 else min(number, UNCOUNTABLE)
+
+
+def _between(number: float) -> bool:
+    """Tell whether a number of steps is not whole."""
+    return number < 1e15 and abs(number - round(number)) > ROUNDED_TIME * number
+
+
+def _points_between(gap: float, offset: float, count: int) -> float:
+    """Return how many of equally spaced times lie between steps, for a spacing and a first time in steps."""
+    first = _between(offset)
+    if gap == 0.0 or not gap < 1e15:
+        return float(first)
+    nearest = Fraction(gap).limit_denominator(count)
+    period = nearest.denominator
+    if abs(gap - nearest) > ROUNDED_TIME * gap or _between(offset * period):
+        return float(count) if first else count - 1.0
+    return float(count - (count // period if first else 1 + (count - 1) // period))
 
 
 def extent(times: Any) -> float:

@@ -33,7 +33,7 @@ class RequestHandler:
     def __init__(self, routes: Iterable[PostRoute], budget: Budget, limits: Limits) -> None:
         self._routes = tuple(routes)
         self._budget = budget
-        self._readers = {route.path: Reader(route.question, limits).read for route in self._routes}
+        self._readers = {route.path: Reader(route.question, limits, route.elsewhere).read for route in self._routes}
 
     def read(self, route: PostRoute, body: bytes, *, npz: bool = False) -> Any:
         """Return the question that a body asks; see `Reader.read`."""

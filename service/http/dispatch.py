@@ -1,14 +1,12 @@
-"""The request path: a pure ASGI application that serves the route table.
-
-FastAPI documents the same table and can serve it too, through `Dispatcher.serve`; going through its own machinery would
-cost several times what a small question costs.
-"""
+"""The handlers of the route table: from a request to its response, as ASGI applications."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine, Hashable, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from core.errors import MechanicsError
 from service import VERSION
@@ -16,15 +14,15 @@ from service.execution.admission import Compute, Sender
 from service.execution.executor import Executor
 from service.execution.request_handler import RequestHandler
 from service.execution.response_cache import ResponseCache
-from service.http.cors import Cors
 from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.keys import Keys
-from service.http.limits import ClientGone, Receive, negotiated, read_body, require_acceptable, require_readable
-from service.http.request_context import VARY, RequestContext, Scope, Send
+from service.http.limits import Bodies, ClientGone, negotiated, require_acceptable, require_readable
+from service.http.request_context import VARY, RequestContext
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem, Refusal, problem_of
+from service.requests.suggestions import nearest_path
 from service.responses import npz as archive
 from service.responses.json_stream import Document
 from service.routing import GetRoute, PostRoute, Route
@@ -45,6 +43,13 @@ class Dispatcher:
         Answers questions in this process.
     compute : Compute
         Answers questions in others.
+    keys : Keys, optional
+        Without, no key is required.
+
+    Attributes
+    ----------
+    handlers : mapping
+        By method and path, an ASGI application for HTTP requests; HEAD is served where GET is.
     """
 
     def __init__(
@@ -55,116 +60,113 @@ class Dispatcher:
         compute: Compute,
         metrics: Metrics,
         settings: Settings,
+        keys: Keys | None = None,
     ) -> None:
-        self._routes: dict[tuple[str, str], Route] = {(route.method, route.path): route for route in routes}
-        self._compute, self._metrics, self._settings = compute, metrics, settings
-        self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)
-        self._cors = Cors(settings.cors_origins) or None
+        self._compute, self._metrics, self._settings, self._keys = compute, metrics, settings, keys
         self._executor = Executor(answering, compute, metrics, settings)
-        self._kept = ResponseCache(settings.cached_answers, settings.cached_bytes)
+        self._cache = ResponseCache(settings.cached_answers)
         self._records = Records(metrics, settings.log_requests)
+        self.bodies = Bodies(
+            settings.max_body_bytes, settings.max_held_bytes, settings.body_seconds, lambda: compute.held
+        )
+        handlers: dict[tuple[str, str], ASGIApp] = {}
+        for route in routes:
+            handlers[route.method, route.path] = handler = partial(self._serve, route)
+            if route.method == "GET":
+                handlers["HEAD", route.path] = handler
+        self.handlers: Mapping[tuple[str, str], ASGIApp] = handlers
 
-    def __call__(self, scope: Scope, receive: Receive, send: Send) -> Coroutine[Any, Any, None]:
-        """Serve one HTTP request, when awaited."""
-        method = scope["method"]
-        route = self._routes.get(("GET" if method == "HEAD" else method, scope["path"]))
-        if route is None:
-            return self._unrouted(scope, receive, send)
-        return self.serve(route, scope, receive, send)
-
-    async def serve(self, route: Route, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve one HTTP request that has been routed."""
-        exchange = RequestContext(self._records, self._cors, route.operation_id, scope, receive, send)
+    async def _serve(self, route: Route, scope: Scope, receive: Receive, send: Send) -> None:
+        context = RequestContext(self._records, route.operation_id, scope, receive, send)
         try:
             if isinstance(route, PostRoute):
-                await self._question(route, exchange)
+                await self._question(route, context)
             else:
-                await self._page(route, exchange)
+                await self._page(route, context)
         except Refusal as refusal:
-            await exchange.problem(refusal.problem)
+            await context.problem(refusal.problem)
         except MechanicsError as error:
-            await exchange.problem(problem_of(error))
+            await context.problem(problem_of(error))
         except ClientGone:
-            exchange.close(499)
+            context.close(499)
         except asyncio.CancelledError:
             # The server is being stopped and will not wait any longer.
-            if not exchange.started:
+            if not context.started:
                 detail = "the service is being stopped"
-                await exchange.problem(Problem(REGISTRY["shutting-down"], detail, headers=(("Retry-After", "1"),)))
+                await context.problem(Problem(REGISTRY["shutting-down"], detail, headers=(("Retry-After", "1"),)))
         except Exception:
-            if exchange.started:
+            if context.started:
                 # The answer is cut short, which the transfer coding shows the client.
-                LOG.exception("failed in the middle of an answer", extra={"request_id": exchange.id})
+                LOG.exception("failed in the middle of an answer", extra={"request_id": context.id})
                 raise
-            LOG.exception("failed", extra={"request_id": exchange.id, "operation": route.operation_id})
+            LOG.exception("failed", extra={"request_id": context.id, "operation": route.operation_id})
             detail = "the service failed; the failure is logged under this id"
-            await exchange.problem(Problem(REGISTRY["internal-error"], detail, extra={"id": exchange.id}))
+            await context.problem(
+                Problem(
+                    REGISTRY["internal-error"],
+                    detail,
+                    extra={"id": context.id, "instance": f"urn:polhode:request:{context.id}"},
+                )
+            )
 
-    async def _question(self, route: PostRoute, exchange: RequestContext) -> None:
-        settings, headers = self._settings, exchange.headers
+    async def _question(self, route: PostRoute, context: RequestContext) -> None:
+        headers = context.headers
         if self._keys is not None:
-            exchange.key = self._keys.admit(headers)
+            context.key = self._keys.admit(headers, context.address)
         npz = require_readable(headers)
         media = None
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":
             media = negotiated(accept, (*route.representations, archive.MEDIA_TYPE))
-        body = await read_body(exchange.receive, headers, settings.max_body_bytes)
-        whole = self._kept.get(route.path, body) if media is None else None
-        if whole is not None:
+        body = await self.bodies.read(context.receive, headers)
+        answer = self._cache.get(route.path, body) if media is None else None
+        if answer is not None:
             self._metrics.cache_hits.inc()
         else:
-            sender = Sender(self._client_of(exchange), exchange.key, exchange.gone)
+            client = context.address if context.key is None else context.key.name
+            sender = Sender(client, context.key, context.gone)
             document = await self._executor.answer(route, body, npz, media, sender)
             if media == archive.MEDIA_TYPE:
-                await self._stream(document, _etag_of_answer(route, body, media), exchange, _NPZ)
+                await self._stream(document, _etag_of_answer(route, body, media), context, _NPZ)
                 return
             if media is not None:
-                await exchange.represented(document.whole(), media.encode())
+                await context.represented(document.whole(), media.encode())
                 return
             if document.large:
-                await self._stream(document, _etag_of_answer(route, body), exchange)
+                await self._stream(document, _etag_of_answer(route, body), context)
                 return
-            whole = Representation(document.whole())
-            self._kept.put(route.path, body, whole)
-        await exchange.answer(whole)
-
-    def _client_of(self, exchange: RequestContext) -> Hashable:
-        """Return by what clients are told apart: their keys, or their addresses."""
-        if exchange.key is not None:
-            return exchange.key.name
-        address = exchange.scope.get("client")
-        return address and address[0]
+            answer = Representation(document.whole())
+            self._cache.put(route.path, body, answer)
+        await context.answer(answer)
 
     async def _stream(
-        self, document: Document, etag: bytes, exchange: RequestContext, headers: Sequence[Header] = (JSON,)
+        self, document: Document, etag: bytes, context: RequestContext, headers: Sequence[Header] = (JSON,)
     ) -> None:
         self._metrics.samples.inc(document.numbers)
         with self._compute.holding(document.memory):
-            await exchange.stream(document.pieces(), etag, self._settings.stalled_seconds, headers)
+            await context.stream(document.pieces(), etag, self._settings.stalled_seconds, headers)
 
-    async def _page(self, route: GetRoute, exchange: RequestContext) -> None:
+    async def _page(self, route: GetRoute, context: RequestContext) -> None:
         reply = route.content()
-        if b"accept" in exchange.headers:
-            require_acceptable(exchange.headers[b"accept"], reply.media_type.split(b";", 1)[0])
-        await exchange.page(reply.body, reply.media_type, reply.status)
+        if b"accept" in context.headers:
+            require_acceptable(context.headers[b"accept"], reply.media_type.split(b";", 1)[0])
+        await context.page(reply.body, reply.media_type, reply.status)
 
-    async def _unrouted(self, scope: Scope, receive: Receive, send: Send) -> None:
-        exchange = RequestContext(self._records, self._cors, "none", scope, receive, send)
-        methods = [method for method, path in self._routes if path == scope["path"]]
-        preflight = self._cors.preflight(scope["method"], exchange.headers) if self._cors and methods else None
-        if preflight is not None:
-            await exchange.empty(preflight)
-            return
+    async def unrouted(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse a request that no handler is there for."""
+        context = RequestContext(self._records, "none", scope, receive, send)
+        path = scope["path"].removeprefix(scope.get("root_path", ""))
+        methods = [method for method, known in self.handlers if known == path]
         if methods:
-            allowed = ", ".join(methods + (["HEAD"] if "GET" in methods else []))
+            allowed = ", ".join(methods)
             detail = f"this path answers {allowed}"
             problem = Problem(REGISTRY["method-not-allowed"], detail, headers=(("Allow", allowed),))
         else:
-            problem = Problem(
-                REGISTRY["not-found"], "there is nothing at this path; GET /openapi.json lists every path"
-            )
-        await exchange.problem(problem)
+            near = nearest_path(path, dict.fromkeys(known for _, known in self.handlers))
+            meant = f"did you mean {near}? " if near else ""
+            detail = f"there is nothing at this path; {meant}GET /openapi.json lists every path"
+            problem = Problem(REGISTRY["not-found"], detail)
+        await context.problem(problem)
 
 
 def _etag_of_answer(route: PostRoute, body: bytes, media: str = "application/json") -> bytes:

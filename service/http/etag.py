@@ -1,4 +1,4 @@
-"""What is sent of an answer: its text, its validator, and the headers that no two requests for it differ in."""
+"""An answer as JSON in one piece, with its validator and the headers that depend on nothing else."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ Header = tuple[bytes, bytes]
 
 JSON: Header = (b"content-type", b"application/json")
 NOSNIFF: Header = (b"x-content-type-options", b"nosniff")
-
-_SECTION = b"content-type: application/json\r\ncontent-length: %d\r\netag: %b\r\nx-content-type-options: nosniff\r\n"
 
 
 class Representation:
@@ -21,21 +19,16 @@ class Representation:
         The answer.
     etag : bytes
         Strong validator: a hash of the text, which holds the version.
-    section : bytes
-        The headers that belong to the text, as they stand in a response.
+    headers : tuple of Header
+        Those that belong to the text.
     """
 
-    __slots__ = ("etag", "section", "text")
+    __slots__ = ("etag", "headers", "text")
 
     def __init__(self, text: bytes) -> None:
         self.text = text
         self.etag = etag = etag_of(text)
-        self.section = _SECTION % (len(text), etag)
-
-    @property
-    def headers(self) -> list[Header]:
-        """The headers of `section`, one by one, without those that every response has."""
-        return [JSON, (b"content-length", b"%d" % len(self.text)), (b"etag", self.etag)]
+        self.headers = (JSON, (b"content-length", b"%d" % len(text)), (b"etag", etag), NOSNIFF)
 
 
 def etag_of(first: bytes, *more: bytes) -> bytes:

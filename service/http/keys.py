@@ -1,24 +1,27 @@
-"""Who may ask: keys that are kept as hashes in a file, each with its own rate and its own work.
+"""API keys: hashes in a file, each key with its own rate of requests and of computation.
 
 Each line of the file is ``name hash rate work``: SHA-256 of the key in hexadecimal, requests per second and seconds of
-predicted computation per minute, where ``-`` sets no limit. Lines that are empty or begin with ``#`` do not count. Keys
-are made by ``python -m service --new-key``; they are random and long, so that a plain hash cannot be searched. The file
-is read again when it has changed: keys come, go and change while the service runs. Each server process has its own
-share of the limits.
+computation per minute, where ``-`` sets no limit. Empty lines and lines that begin with ``#`` are ignored. Keys are
+made by ``python -m service --new-key``; they are random and long, so that a plain hash cannot be searched. The file is
+read again when it has changed: keys come, go and change while the service runs. A file that is incomplete (a malformed
+line, none at all, no line feed at the end) is reported and not used. Each server process has its own share of the
+limits.
 """
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
-import hmac
 import os
 import re
 import secrets
 import stat
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from math import ceil, inf
 from pathlib import Path
 from time import monotonic
+
+from cachetools import LRUCache
 
 from service.observability.logs import LOG
 from service.problems import Refusal
@@ -26,10 +29,18 @@ from service.problems import Refusal
 BURST = 10.0
 """Seconds of its rate, and minute's tenths of its work, that a key may use at once."""
 
-LOOK_AFTER = 1.0
+LOOK_EVERY = 1.0
 """Seconds between two looks at the file."""
 
+WRONG_KEYS_PER_SECOND = 1.0
+"""Rate of requests with unknown keys that an address may send; after ten of them at once."""
+
+ADDRESSES = 10_000
+"""Number of addresses that are remembered for that."""
+
 _LINE = re.compile(r"([\w.-]{1,64})\s+([0-9a-f]{64})\s+(-|\d+(?:\.\d+)?)\s+(-|\d+(?:\.\d+)?)")
+
+Stamp = tuple[int, int, int]
 
 
 class Allowance:
@@ -43,11 +54,13 @@ class Allowance:
         What can be saved up.
     """
 
+    __slots__ = ("_left", "_most", "_rate", "_seen")
+
     def __init__(self, rate: float, most: float) -> None:
         self._rate, self._most, self._left, self._seen = rate, most, most, monotonic()
 
     def take(self, amount: float) -> float:
-        """Take an amount and return 0, or the seconds until it may be asked for again; a debt is let run up once."""
+        """Take an amount and return 0, or the seconds until it may be taken; a debt is let run up once."""
         if self._rate == inf:
             return 0.0
         now = monotonic()
@@ -67,31 +80,35 @@ class Allowance:
 
 
 class Key:
-    """One key's name, hash and what is left of its limits."""
+    """One key's name, and what is left of its limits."""
 
-    def __init__(self, name: str, digest: bytes, rate: float, work: float, share: int) -> None:
-        self.name, self.digest, self.limits = name, digest, (rate, work)
+    __slots__ = ("_requests", "_work", "limits", "name")
+
+    def __init__(self, name: str, rate: float, work: float, share: int) -> None:
+        self.name, self.limits = name, (rate, work)
         rate, work = rate / share, work / 60.0 / share
         self._requests = Allowance(rate, max(1.0, rate * BURST) if rate else 0.0)
         self._work = Allowance(work, work * 6.0 * BURST)
 
     def request(self) -> None:
         """Count a request, or refuse it."""
-        self._take(self._requests, 1.0, "requests")
+        if self.limits[0] != inf:
+            _take(self._requests, 1.0, "the quota of requests of this key is used up")
 
     def work(self, seconds: float) -> None:
-        """Count predicted computation (s), or refuse it."""
-        self._take(self._work, seconds, "work")
+        """Count computation (s), or refuse it."""
+        if self.limits[1] != inf:
+            _take(self._work, seconds, "the quota of work of this key is used up")
 
     def charge(self, seconds: float) -> None:
         """Count computation (s) that was done, or give back what was counted too much."""
         self._work.charge(seconds)
 
-    def _take(self, allowance: Allowance, amount: float, what: str) -> None:
-        wait = allowance.take(amount)
-        if wait > 0.0:
-            detail = f"the quota of {what} of this key is used up"
-            raise Refusal("quota-exceeded", detail, headers=(("Retry-After", str(max(1, ceil(wait)))),))
+
+def _take(allowance: Allowance, amount: float, detail: str) -> None:
+    wait = allowance.take(amount)
+    if wait > 0.0:
+        raise Refusal("quota-exceeded", detail, headers=(("Retry-After", str(max(1, ceil(wait)))),))
 
 
 class Keys:
@@ -106,73 +123,89 @@ class Keys:
     Raises
     ------
     ValueError
-        For a file that cannot be understood; a later one is logged, and the keys before it stay.
+        For a file that cannot be used; a later one is logged, and the keys before it stay.
     """
 
     def __init__(self, path: Path, share: int = 1) -> None:
         self._path, self._share = path, share
+        self._keys: Mapping[bytes, Key] = {}
         self._stamp = self._stamped()
-        self._keys = self._read({})
-        self._looked = monotonic()
+        self._keys = self._read()
+        self._wrong: LRUCache[str, Allowance] = LRUCache(ADDRESSES)
 
-    def admit(self, headers: Mapping[bytes, bytes]) -> Key:
-        """Return the key of a request after counting it.
+    def __len__(self) -> int:
+        return len(self._keys)
+
+    def admit(self, headers: Mapping[bytes, bytes], address: str = "") -> Key:
+        """Return the key of a request from an address after counting it.
 
         Raises
         ------
         Refusal
-            401 without a known key, 429 beyond its rate.
+            401 without a known key, 429 beyond its rate, or after too many unknown keys from the address.
         """
-        self._look()
         scheme, _, given = headers.get(b"authorization", b"").partition(b" ")
-        digest = hashlib.sha256(given.strip()).digest()
-        found = None
-        # Every key is compared, in constant time, so that the time of an answer tells nothing of any.
-        for key in self._keys:
-            if hmac.compare_digest(key.digest, digest):
-                found = key
-        if found is None or scheme.lower() != b"bearer":
-            detail = "send a known key as Authorization: Bearer"
-            raise Refusal("unauthorized", detail, headers=(("WWW-Authenticate", "Bearer"),))
-        found.request()
-        return found
+        # What is looked up is a hash of what was sent: how long that takes tells nothing about any key.
+        key = self._keys.get(hashlib.sha256(given.strip()).digest())
+        if key is None or scheme.lower() != b"bearer":
+            self._refuse(address)
+        else:
+            key.request()
+            return key
+        detail = "send a known key as Authorization: Bearer"
+        raise Refusal("unauthorized", detail, headers=(("WWW-Authenticate", "Bearer"),))
 
-    def _look(self) -> None:
-        now = monotonic()
-        if now - self._looked < LOOK_AFTER:
-            return
-        self._looked = now
+    def _refuse(self, address: str) -> None:
+        allowance = self._wrong.get(address)
+        if allowance is None:
+            allowance = self._wrong[address] = Allowance(WRONG_KEYS_PER_SECOND, BURST)
+        _take(allowance, 1.0, "too many requests with unknown keys came from this address")
+
+    async def follow(self) -> None:
+        """Read the file again whenever it has changed, until cancelled; the reading is done in another thread."""
+        while True:
+            await asyncio.sleep(LOOK_EVERY)
+            await asyncio.to_thread(self.refresh)
+
+    def refresh(self) -> None:
+        """Read the file again if it has changed; what cannot be used is logged, once for each change."""
         try:
             stamp = self._stamped()
-            if stamp != self._stamp:
-                self._keys = self._read({key.digest: key for key in self._keys})
-                self._stamp = stamp
-                LOG.info("keys were read again", extra={"keys": len(self._keys)})
-        except (OSError, ValueError):
-            LOG.exception("the file of keys cannot be read; the keys before stay")
+            if stamp == self._stamp:
+                return
+            self._stamp = stamp
+            self._keys = self._read()
+            LOG.info("keys were read again", extra={"keys": len(self._keys)})
+        except (OSError, ValueError) as error:
+            LOG.error("the file of keys cannot be used, the keys before it stay: %s", error)
 
-    def _stamped(self) -> tuple[int, int, int]:
+    def _stamped(self) -> Stamp:
         state = os.stat(self._path)
         if not stat.S_ISREG(state.st_mode):
-            # Reading a pipe would wait for its writer, and everybody with it.
+            # Reading a pipe would wait for its writer.
             raise ValueError(f"{self._path} is no file")
         return state.st_mtime_ns, state.st_size, state.st_ino
 
-    def _read(self, known: Mapping[bytes, Key]) -> Sequence[Key]:
-        """Return the keys of the file; those whose limits are unchanged keep what is left of them."""
-        keys = []
-        for number, line in enumerate(self._path.read_text(encoding="utf-8").splitlines(), 1):
+    def _read(self) -> Mapping[bytes, Key]:
+        """Return the keys of the file by their hashes; those whose limits are unchanged keep what is left of them."""
+        keys: dict[bytes, Key] = {}
+        text = self._path.read_text(encoding="utf-8")
+        if not text.endswith("\n"):
+            raise ValueError(f"{self._path} does not end with a line feed; it may be incomplete")
+        for number, line in enumerate(text.splitlines(), 1):
             if not line.strip() or line.lstrip().startswith("#"):
                 continue
             parts = _LINE.fullmatch(line.strip())
             if parts is None:
                 raise ValueError(f"line {number} of {self._path} is not: name hash rate work")
             rate, work = (inf if limit == "-" else float(limit) for limit in parts.group(3, 4))
-            key = Key(parts[1], bytes.fromhex(parts[2]), rate, work, self._share)
-            before = known.get(key.digest)
-            same = before is not None and (before.name, before.limits) == (key.name, key.limits)
-            keys.append(before if same and before is not None else key)
-        return tuple(keys)
+            digest = bytes.fromhex(parts[2])
+            before = self._keys.get(digest)
+            same = before is not None and (before.name, before.limits) == (parts[1], (rate, work))
+            keys[digest] = before if same and before is not None else Key(parts[1], rate, work, self._share)
+        if not keys:
+            raise ValueError(f"{self._path} has no keys")
+        return keys
 
 
 def new_key(name: str) -> tuple[str, str]:

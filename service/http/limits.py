@@ -1,9 +1,11 @@
-"""Limits on a request before its body is read as a document: media types and size."""
+"""Limits on a request before its body is read as a document: media types, transfer coding, size and time."""
 
 from __future__ import annotations
 
+import asyncio
 import re
 from collections.abc import Awaitable, Callable, Iterable, Mapping, MutableMapping
+from time import monotonic
 from typing import Any
 
 from service.problems import Refusal
@@ -11,15 +13,15 @@ from service.problems import Refusal
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Headers = Mapping[bytes, bytes]
 
+LONGEST_ACCEPT = 1_024
+"""Bytes of an Accept header that is read."""
+
 _WEIGHT = re.compile(r"0(\.\d{0,3})?|1(\.0{0,3})?")
+_CLOSE = ("Connection", "close")
 
 
 class ClientGone(Exception):
     """The client closed the connection; there is nobody to answer."""
-
-
-MOST_ACCEPT_BYTES = 1024
-"""Of an Accept header: each of its entries is looked at."""
 
 
 def require_readable(headers: Headers) -> bool:
@@ -32,12 +34,14 @@ def require_readable(headers: Headers) -> bool:
             raise Refusal("unsupported-media-type", detail)
     if headers.get(b"content-encoding", b"identity").lower() != b"identity":
         raise Refusal("unsupported-media-type", "compressed bodies are not read; send the body as it is")
+    if headers.get(b"transfer-encoding", b"chunked").lower() != b"chunked":
+        raise Refusal("unsupported-transfer-coding", "chunked is the only transfer coding", headers=(_CLOSE,))
     return declared == b"application/x-npz"
 
 
 def require_acceptable(accept: bytes, offered: bytes = b"application/json") -> None:
     """Refuse a request whose Accept header admits none of what is offered."""
-    accept = accept.lower()
+    accept = _short(accept).lower()
     family = offered.split(b"/", 1)[0] + b"/*"
     if accept and not (b"*/*" in accept or offered in accept or family in accept):
         raise Refusal("not-acceptable", f"this answer is {offered.decode()}")
@@ -49,11 +53,9 @@ def negotiated(accept: bytes, others: Iterable[str]) -> str | None:
     Raises
     ------
     Refusal
-        406 if it admits none.
+        406 if it admits none, or is too long.
     """
-    if len(accept) > MOST_ACCEPT_BYTES:
-        raise Refusal("not-acceptable", f"the Accept header has more than {MOST_ACCEPT_BYTES} bytes")
-    weights = dict(_weighted(entry) for entry in accept.decode("latin-1").lower().split(",") if entry.strip())
+    weights = dict(_weighted(entry) for entry in _short(accept).decode("latin-1").lower().split(",") if entry.strip())
 
     def weight(media: str) -> float:
         ranges = (media, media.split("/", 1)[0] + "/*", "*/*")
@@ -66,46 +68,113 @@ def negotiated(accept: bytes, others: Iterable[str]) -> str | None:
     return None if best == offered[0] else best
 
 
+def _short(accept: bytes) -> bytes:
+    if len(accept) > LONGEST_ACCEPT:
+        raise Refusal("not-acceptable", f"the Accept header has more than {LONGEST_ACCEPT} bytes")
+    return accept
+
+
 def _weighted(entry: str) -> tuple[str, float]:
     media, *parameters = (part.strip() for part in entry.split(";"))
     given = next((part[2:] for part in parameters if part.startswith("q=")), "1")
     return media, float(given) if _WEIGHT.fullmatch(given) else 0.0
 
 
-async def read_body(receive: Receive, headers: Headers, limit: int) -> bytes:
-    """Return the request's body, never holding more than `limit` bytes of it.
+class Bodies:
+    """Reads request bodies, and bounds what all that are under way take together, and for how long.
 
-    Raises
-    ------
-    Refusal
-        413 for a longer body. Up to four times the limit is read and dropped first, so that a client which writes
-        before it reads gets to see the answer.
-    ClientGone
-        The connection was closed before the body was complete.
+    Parameters
+    ----------
+    limit : int
+        Bytes of one body.
+    held_limit : int
+        Bytes of all unfinished bodies, and of what `others` counts, above which no more is read.
+    seconds : float
+        Time in which a body must have arrived; enforced while `watch` runs.
+    others : callable
+        Returns how many bytes are held otherwise.
     """
-    declared = headers.get(b"content-length", b"")
-    if declared.isdigit() and int(declared) > limit:
-        if b"expect" not in headers and int(declared) <= 4 * limit:
-            await _drop(receive, 4 * limit)
-        raise _too_large(limit)
-    message = await receive()
-    body: bytes = message.get("body", b"")
-    if message["type"] == "http.request" and not message.get("more_body") and len(body) <= limit:
-        return body
-    parts, size = [body], len(body)
-    while True:
-        if message["type"] != "http.request":
-            raise ClientGone
-        if size > limit:
-            parts.clear()
-            if message.get("more_body"):
-                await _drop(receive, 4 * limit - size)
-            raise _too_large(limit)
-        if not message.get("more_body"):
-            return b"".join(parts)
-        message = await receive()
-        parts.append(message.get("body", b""))
-        size += len(parts[-1])
+
+    def __init__(self, limit: int, held_limit: int, seconds: float, others: Callable[[], int] = lambda: 0) -> None:
+        self._limit, self._held_limit, self._seconds, self._others = limit, held_limit, seconds, others
+        # One look at all of them now and then costs less than a timer for each.
+        self._since: dict[asyncio.Task[Any] | None, float] = {}
+        self._late: set[asyncio.Task[Any] | None] = set()
+        self.held = 0
+
+    async def read(self, receive: Receive, headers: Headers) -> bytes:
+        """Return a request's body.
+
+        Raises
+        ------
+        Refusal
+            413 for a body that is too long, 408 for one that is too slow, 429 where too much is held. Of a body that is
+            too long up to four times the limit is read and dropped first, so that a client which writes before it reads
+            gets to see the answer.
+        ClientGone
+            The connection was closed before the body was complete.
+        """
+        task = asyncio.current_task()
+        self._since[task] = monotonic()
+        try:
+            declared = headers.get(b"content-length", b"")
+            if declared.isdigit() and int(declared) > self._limit:
+                if b"expect" not in headers and int(declared) <= 4 * self._limit:
+                    await _drop(receive, 4 * self._limit)
+                raise self._too_large()
+            message = await receive()
+            body: bytes = message.get("body", b"")
+            if message["type"] == "http.request" and not message.get("more_body") and len(body) <= self._limit:
+                return body
+            return await self._rest(message, receive)
+        except asyncio.CancelledError:
+            if task is None or task not in self._late:
+                raise
+            task.uncancel()
+            detail = f"the body did not arrive within {self._seconds:g} s, the limit body_seconds"
+            raise Refusal("body-too-slow", detail, headers=(_CLOSE,), extra={"limit": self._seconds}) from None
+        finally:
+            del self._since[task]
+            self._late.discard(task)
+
+    async def watch(self) -> None:
+        """Refuse bodies that have been under way for too long, until cancelled."""
+        while True:
+            await asyncio.sleep(min(1.0, self._seconds))
+            overdue = monotonic() - self._seconds
+            for task, since in list(self._since.items()):
+                if since < overdue and task is not None:
+                    self._late.add(task)
+                    task.cancel()
+
+    async def _rest(self, message: MutableMapping[str, Any], receive: Receive) -> bytes:
+        parts: list[bytes] = []
+        size = 0
+        try:
+            while True:
+                if message["type"] != "http.request":
+                    raise ClientGone
+                parts.append(message.get("body", b""))
+                size += len(parts[-1])
+                self.held += len(parts[-1])
+                if size > self._limit:
+                    parts.clear()
+                    if message.get("more_body"):
+                        await _drop(receive, 4 * self._limit - size)
+                    raise self._too_large()
+                if self.held + self._others() > self._held_limit:
+                    detail = f"requests and answers take more than {self._held_limit} bytes, the limit max_held_bytes"
+                    wait = {"retry_after_seconds": 1.0}
+                    raise Refusal("too-busy", detail, headers=(("Retry-After", "1"), _CLOSE), extra=wait)
+                if not message.get("more_body"):
+                    return b"".join(parts)
+                message = await receive()
+        finally:
+            self.held -= size
+
+    def _too_large(self) -> Refusal:
+        detail = f"the body has more than {self._limit} bytes, the limit max_body_bytes"
+        return Refusal("body-too-large", detail, headers=(_CLOSE,), extra={"limit": self._limit})
 
 
 async def _drop(receive: Receive, most: int) -> None:
@@ -116,8 +185,3 @@ async def _drop(receive: Receive, most: int) -> None:
         most -= len(message.get("body", b""))
         if not message.get("more_body"):
             return
-
-
-def _too_large(limit: int) -> Refusal:
-    detail = f"the body has more than {limit} bytes, the limit max_body_bytes"
-    return Refusal("body-too-large", detail, headers=(("Connection", "close"),), extra={"limit": limit})

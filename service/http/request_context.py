@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable, Iterable, MutableMapping, Sequence
+from collections.abc import Iterable, Sequence
 from time import perf_counter
-from typing import Any
 
-from service.http.cors import Cors
+from starlette.types import Receive, Scope, Send
+
 from service.http.etag import NOSNIFF, Header, Representation, etag_of
 from service.http.keys import Key
-from service.http.limits import ClientGone, Receive
+from service.http.limits import ClientGone
 from service.observability.request_records import Records
 from service.problems import MEDIA_TYPE, Problem
 
-Scope = MutableMapping[str, Any]
-Message = MutableMapping[str, Any]
-Send = Callable[[Message], Awaitable[None]]
-
-PIECES = "polhode.pieces"
-"""Name of the extension of a server whose value is a `WritePiece`."""
-
 SHORT = 1_024
 """Bytes below which a piece of a stream is not worth being sent by itself."""
-
-
-WritePiece = Callable[[Sequence[bytes | memoryview]], Awaitable[bool]]
-"""Sends a piece of a response that is under way and has no stated length, without joining its parts, or declines."""
 
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
 VARY: Header = (b"vary", b"accept")
@@ -48,8 +37,6 @@ class RequestContext:
     ----------
     records : Records
         Where the request is recorded.
-    cors : Cors
-        Which origins are told that they may read the response.
     operation : str
         Under which the request is counted.
     scope, receive, send
@@ -57,11 +44,9 @@ class RequestContext:
     """
 
     __slots__ = (
-        "_also",
         "_records",
         "_send",
         "_since",
-        "_write_piece",
         "headers",
         "identity",
         "key",
@@ -71,24 +56,25 @@ class RequestContext:
         "started",
     )
 
-    def __init__(
-        self, records: Records, cors: Cors | None, operation: str, scope: Scope, receive: Receive, send: Send
-    ) -> None:
+    def __init__(self, records: Records, operation: str, scope: Scope, receive: Receive, send: Send) -> None:
         self._since = perf_counter()
         self._records, self.operation, self.scope = records, operation, scope
         self.receive, self._send = receive, send
         self.headers: dict[bytes, bytes] = dict(scope["headers"])
         self.started = False
         self.key: Key | None = None
-        self._also = cors.headers(self.headers) if cors else ()
-        extensions = scope.get("extensions")
-        self._write_piece: WritePiece | None = extensions.get(PIECES) if extensions else None
         self.identity = records.id_of(self.headers.get(b"x-request-id"))
 
     @property
     def id(self) -> str:
         """The request's id."""
         return self.identity.decode()
+
+    @property
+    def address(self) -> str:
+        """The client's network address; empty where the server does not say."""
+        client = self.scope.get("client")
+        return client[0] if client else ""
 
     async def gone(self) -> None:
         """Return when the client has closed the connection; the body must have been read."""
@@ -98,13 +84,13 @@ class RequestContext:
     async def answer(self, answer: Representation) -> None:
         """Send an answer in one piece, or that the client has it already."""
         if self._has(answer.etag):
-            await self._respond(304, b"", [(b"etag", answer.etag)])
+            await self._respond(304, b"", [(b"etag", answer.etag), NOSNIFF])
         else:
-            await self._respond(200, answer.text, answer.headers)
+            await self._respond(200, answer.text, [*answer.headers])
 
     async def page(self, body: bytes, media_type: bytes, status: int) -> None:
         """Send a document in one piece, or that the client has it already."""
-        headers: list[Header] = [_REVALIDATE]
+        headers: list[Header] = [_REVALIDATE, NOSNIFF]
         if media_type.startswith(b"text/html"):
             headers += _PAGE_HEADERS
         if status == 200:
@@ -119,22 +105,18 @@ class RequestContext:
     async def represented(self, body: bytes, media_type: bytes) -> None:
         """Send an answer that is not JSON, or that the client has it already."""
         etag = etag_of(body)
-        headers: list[Header] = [(b"etag", etag), VARY]
+        headers: list[Header] = [(b"etag", etag), VARY, NOSNIFF]
         if self._has(etag):
             await self._respond(304, b"", headers)
             return
         headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
         await self._respond(200, body, headers)
 
-    async def empty(self, headers: Sequence[Header]) -> None:
-        """Send nothing but headers."""
-        await self._respond(204, b"", list(headers))
-
     async def problem(self, problem: Problem) -> None:
         """Send a problem document."""
         self._records.problem(problem.type.code)
-        body = problem.body()
-        headers = [_PROBLEM, (b"content-length", b"%d" % len(body))]
+        body = problem.body(self.id)
+        headers = [_PROBLEM, (b"content-length", b"%d" % len(body)), NOSNIFF]
         headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
         await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)
 
@@ -150,9 +132,9 @@ class RequestContext:
         """
         if self._has(etag):
             kept = [header for header in headers if header[0] != b"content-type"]
-            await self._respond(304, b"", [*kept, (b"etag", etag)])
+            await self._respond(304, b"", [*kept, (b"etag", etag), NOSNIFF])
             return
-        await self._start(200, [*headers, (b"etag", etag)])
+        await self._start(200, [*headers, (b"etag", etag), NOSNIFF])
         leaving = asyncio.ensure_future(self.gone())
         gathered: list[bytes | memoryview] = []
         try:
@@ -164,7 +146,7 @@ class RequestContext:
                 if len(piece) < SHORT:
                     continue
                 async with asyncio.timeout(patience):
-                    await self._send_piece(gathered)
+                    await self._send({"type": "http.response.body", "body": b"".join(gathered), "more_body": True})
                 gathered = []
                 await asyncio.sleep(0)
         except TimeoutError:
@@ -186,10 +168,6 @@ class RequestContext:
         # The comparison is weak (RFC 9110, 13.1.2): a proxy that compresses an answer marks its validator as weak.
         return known == b"*" or etag in [tag.strip().removeprefix(b"W/") for tag in known.split(b",")]
 
-    async def _send_piece(self, parts: Sequence[bytes | memoryview]) -> None:
-        if self._write_piece is None or not await self._write_piece(parts):
-            await self._send({"type": "http.response.body", "body": b"".join(parts), "more_body": True})
-
     async def _respond(self, status: int, body: bytes, headers: list[Header]) -> None:
         await self._start(status, headers)
         await self._send({"type": "http.response.body", "body": body})
@@ -197,11 +175,7 @@ class RequestContext:
 
     async def _start(self, status: int, headers: list[Header]) -> None:
         milliseconds = 1e3 * (perf_counter() - self._since)
-        headers += (
-            NOSNIFF,
-            (b"x-request-id", self.identity),
-            (b"server-timing", b"total;dur=%.3f" % milliseconds),
-        )
-        headers += self._also
+        headers.append((b"x-request-id", self.identity))
+        headers.append((b"server-timing", b"total;dur=%.3f" % milliseconds))
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": headers})

@@ -1,4 +1,4 @@
-"""Log lines as JSON objects, one per line."""
+"""Log lines: JSON objects, one per line, or plain text where a person reads them."""
 
 from __future__ import annotations
 
@@ -43,8 +43,25 @@ def _writable(value: Any) -> Any:
         return str(value).encode(errors="backslashreplace").decode()
 
 
+class TextLines(logging.Formatter):
+    """Formats a record for a terminal: the time, the message, what else is known about it."""
+
+    def __init__(self) -> None:
+        super().__init__("%(asctime)s %(message)s", "%H:%M:%S")
+
+    def formatMessage(self, record: logging.LogRecord) -> str:
+        """Return the line, without a traceback."""
+        level = f"{record.levelname.lower()}: " if record.levelno >= logging.WARNING else ""
+        more = "".join(f" {name}={value}" for name, value in vars(record).items() if name not in _OWN)
+        return f"{record.asctime} {level}{record.message}{more}"
+
+
 def configure(level: str) -> None:
-    """Send all logging of this process to standard error as JSON lines."""
+    """Send all logging of this process to standard error: as text to a terminal, otherwise as JSON lines."""
     handler = logging.StreamHandler(sys.stderr)
-    handler.setFormatter(JsonLines())
+    terminal = sys.stderr.isatty()
+    handler.setFormatter(TextLines() if terminal else JsonLines())
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
+    if terminal:
+        # What the server says about its own start and stop, the service says in fewer words.
+        logging.getLogger("uvicorn.error").setLevel(logging.WARNING)

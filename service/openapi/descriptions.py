@@ -37,33 +37,21 @@ def inherited_of(cls: type) -> dict[str, str]:
 
 
 def describe(schemas: Mapping[str, Any], classes: Iterable[type]) -> None:
-    """Give fields without a description that of their docstring, or their unit; take the lists out of descriptions.
+    """Give fields without a description that of their docstring; take the lists out of descriptions.
 
     Parameters
     ----------
     schemas : mapping
         Components of an OpenAPI document, by name; changed in place.
     classes : iterable of type
-        Those whose names schemas bear, alone or followed by what is made of them.
+        Those whose names schemas bear.
     """
     known = {cls.__name__: inherited_of(cls) for cls in classes}
     for title, schema in schemas.items():
-        own = known.get(title.removesuffix("InNumerals"), {}) | attributes_of(schema.get("description", ""))
+        own = known.get(title, {}) | attributes_of(schema.get("description", ""))
         if "description" in schema:
             schema["description"] = _SECTION.sub("", inspect.cleandoc(schema["description"])).strip()
         for name, field in schema.get("properties", {}).items():
-            words = own.get(name) or _unit(field)
+            words = own.get(name)
             if words and "description" not in field:
                 field["description"] = words
-
-
-def _unit(field: Any) -> str | None:
-    """Return the unit of a number, or of those in an array or a union."""
-    if isinstance(field, Mapping):
-        unit = field.get("x-unit")
-        if unit is not None:
-            return None if unit == "1" else f"({unit})."
-        return next((found for entry in field.values() if (found := _unit(entry))), None)
-    if isinstance(field, list):
-        return next((found for entry in field if (found := _unit(entry))), None)
-    return None

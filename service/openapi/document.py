@@ -1,18 +1,21 @@
-"""The OpenAPI document, made by FastAPI from the route table, and FastAPI's own way of serving the same table."""
+"""The OpenAPI document, made by FastAPI from the route table."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from http import HTTPStatus
 from typing import Annotated, Any
 
 from fastapi import Body, FastAPI, Request
 from fastapi.routing import APIRoute
 from starlette.responses import JSONResponse, Response
+from starlette.types import ASGIApp
 
 from core import bodies
 from core.quantities import members_of
 from service import VERSION
+from service.openapi import components
 from service.openapi.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
 from service.responses import npz as archive
@@ -26,14 +29,17 @@ SI units, radians. Vectors are [x, y, z], matrices are written row by row, quate
 space. Body axes are the axes in which the body was defined. Times are measured from the given state. Arrays of samples
 are rows. Every number is a finite double; a derived figure outside the range of doubles is null, with a warning.
 
-Questions with `digits` (16 to 1000) are answered in ball arithmetic: every number of the answer is a decimal string
-whose digits are proven, and numbers of the question may be decimal strings too ("0.1" is one tenth, 0.1 a double).
+`/v1/certified/...` answers the closed-form questions to any number of `digits` (16 to 1000): every number of the answer
+is a decimal string whose digits are proven, and numbers of the question may be decimal strings too ("0.1" is one tenth,
+0.1 a double).
 
 Answers are JSON, or a numpy archive to `Accept: application/x-npz`: the same names, and the rest
 as JSON in metadata.json.
 
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.
 """
+
+_PROBLEMS_OF_QUESTIONS = (400, 401, 406, 408, 413, 415, 422, 429, 500, 501, 503)
 
 PACKED = {
     "type": "string",
@@ -43,80 +49,96 @@ PACKED = {
 }
 """A request that is a numpy archive."""
 
-Serve = Callable[[Route, Any, Any, Any], Coroutine[Any, Any, None]]
 
-_PROBLEMS_OF_QUESTIONS = (400, 401, 406, 413, 415, 422, 429, 500, 503)
+ABOUT: Mapping[str, Any] = {
+    "title": "Polhode",
+    "version": VERSION,
+    "description": DESCRIPTION,
+    "openapi_url": None,
+    "docs_url": None,
+    "redoc_url": None,
+    "redirect_slashes": False,
+    "separate_input_output_schemas": False,
+}
+"""What FastAPI is told about the application as a whole."""
 
 
 class _Dispatched(Response):
     """A response that lets the dispatcher answer."""
 
-    def __init__(self, serve: Serve, route: Route) -> None:
+    def __init__(self, handler: ASGIApp) -> None:
         super().__init__()
-        self._serve, self._route = serve, route
+        self._handler = handler
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        await self._serve(self._route, scope, receive, send)
+        await self._handler(scope, receive, send)
 
 
-def documented(routes: Sequence[Route], serve: Serve, lifespan: Any = None) -> FastAPI:
-    """Return a FastAPI application that documents the routes and serves them through the dispatcher."""
-    app = FastAPI(
-        title="Polhode",
-        version=VERSION,
-        description=DESCRIPTION,
-        openapi_url=None,
-        docs_url=None,
-        redoc_url=None,
-        lifespan=lifespan,
-        separate_input_output_schemas=False,
-    )
+def document_routes(
+    app: FastAPI, routes: Sequence[Route], handlers: Mapping[tuple[str, str], ASGIApp], unrouted: ASGIApp
+) -> None:
+    """Give FastAPI the routes, their handlers by method and path, and what answers where none of them fits."""
     for route in routes:
-        app.router.routes.append(_Route(route, serve))
-    return app
+        app.router.routes.append(_Route(route, handlers[route.method, route.path]))
+
+    async def refuse(request: Request, error: Exception) -> Response:
+        return _Dispatched(unrouted)
+
+    app.add_exception_handler(404, refuse)
+    app.add_exception_handler(405, refuse)
 
 
 def openapi(app: FastAPI) -> dict[str, Any]:
     """Return the OpenAPI document."""
     document = app.openapi()
+    document["info"] |= {
+        "license": {"name": "Apache License 2.0", "identifier": "Apache-2.0"},
+        "contact": {"name": "The Polhode project"},
+    }
+    document["servers"] = [
+        {"url": "/", "description": "The service that serves this document."},
+        {"url": "http://127.0.0.1:8000", "description": "`python -m service` on this machine."},
+    ]
     problem = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
     document["components"]["schemas"] |= problem.pop("$defs") | {"ProblemDocument": problem}
     document["components"]["securitySchemes"] = {
         "key": {"type": "http", "scheme": "bearer", "description": "Needed where the service has a file of keys."}
     }
+    document["components"]["responses"] = {
+        _response_name(status): _problem(status) for status in sorted({entry.status for entry in REGISTRY.values()})
+    }
     for verbs in document["paths"].values():
         if "post" in verbs:
             verbs["post"]["security"] = [{}, {"key": []}]
             verbs["post"]["requestBody"]["content"][archive.MEDIA_TYPE] = {"schema": PACKED}
-    for reference in _told_apart(document):
-        _require_tag(document["components"]["schemas"][reference.rsplit("/", 1)[1]])
+        for operation in verbs.values():
+            for status in operation["responses"]:
+                if int(status) >= 400:
+                    reference = f"#/components/responses/{_response_name(int(status))}"
+                    operation["responses"][status] = {"$ref": reference}
+    document = components.named(document)
     describe(document["components"]["schemas"], members_of(bodies.Body))
+    components.require_tags(document)
+    components.tidied(document)
+    components.write_in_place(document)
     return document
 
 
-def _told_apart(node: Any) -> set[str]:
-    """Return the references to all members of unions that are told apart by a field."""
-    if isinstance(node, list):
-        return set().union(*map(_told_apart, node))
-    if not isinstance(node, dict):
-        return set()
-    own = node.get("discriminator", {}).get("mapping", {}) if "oneOf" in node else {}
-    return set(own.values()).union(*map(_told_apart, node.values()))
+def _response_name(status: int) -> str:
+    return HTTPStatus(status).phrase.title().replace(" ", "").replace("-", "")
 
 
-def _require_tag(schema: dict[str, Any]) -> None:
-    """Mark the field by which the members of a union are told apart as required, which on the wire it is."""
-    kind = schema.get("properties", {}).get("kind", {})
-    if "const" in kind and "kind" not in schema.get("required", []):
-        kind.pop("default", None)
-        schema["required"] = [*schema.get("required", []), "kind"]
+def _problem(status: int) -> dict[str, Any]:
+    codes = [entry.code for entry in REGISTRY.values() if entry.status == status]
+    reference = {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
+    return {"description": f"Problem: {', '.join(codes)}.", "content": {MEDIA_TYPE: reference}}
 
 
 class _Route(APIRoute):
     """One route of the table, as FastAPI sees it."""
 
-    def __init__(self, route: Route, serve: Serve) -> None:
-        self._route, self._serve_it = route, serve
+    def __init__(self, route: Route, handler: ASGIApp) -> None:
+        self._handler = handler
         super().__init__(
             route.path,
             _endpoint(route),
@@ -135,7 +157,7 @@ class _Route(APIRoute):
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         async def handler(request: Request) -> Response:
-            return _Dispatched(self._serve_it, self._route)
+            return _Dispatched(self._handler)
 
         return handler
 
@@ -168,7 +190,9 @@ def _endpoint(route: Route) -> Callable[..., Any]:
 def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
     """Return how an answer is documented that is not JSON; the Accept header chooses."""
     if not isinstance(route, PostRoute):
-        return {}
+        if route.example is None:
+            return {}
+        return {200: {"content": {route.media_type: {"example": route.example()}}}}
     content: dict[str, Any] = {media: {"schema": {"type": "string"}} for media in route.representations}
     content[archive.MEDIA_TYPE] = {
         "schema": {
@@ -182,12 +206,5 @@ def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
 
 
 def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:
-    reference = {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
-    responses: dict[int | str, dict[str, Any]] = {}
-    for status in statuses:
-        codes = [entry.code for entry in REGISTRY.values() if entry.status == status]
-        responses[status] = {
-            "description": f"Problem: {', '.join(codes)}.",
-            "content": {MEDIA_TYPE: reference},
-        }
-    return responses
+    """Return the statuses of problems; what they are is written once, among the components."""
+    return {status: {"description": ""} for status in statuses}

@@ -61,7 +61,7 @@ function tell(answer) {
   entry("model", answer.model.name);
   entry("regime", answer.model.regime);
   entry("period", answer.period ? answer.period.toPrecision(10) + " s" : "none");
-  if (answer.flip_interval) entry("flips every", answer.flip_interval.toPrecision(10) + " s");
+  if (answer.tumbles && answer.flip_interval) entry("flips every", answer.flip_interval.toPrecision(10) + " s");
   entry("error", answer.accuracy.error.toExponential(1) + ", " + answer.accuracy.how);
   for (const warning of answer.warnings) entry("warning", warning.detail, "bad");
 }

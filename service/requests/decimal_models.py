@@ -11,11 +11,10 @@ from dataclasses import MISSING, dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
 from types import UnionType
-from typing import Annotated, Any, ForwardRef, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ForwardRef, Literal, Union, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, Field, create_model
 
-from core.bodies import Body
 from core.bodies.composite import Composite, Count, Part
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS
@@ -23,7 +22,7 @@ from core.certified.exact_bodies import UNIFORM, exact_body
 from core.certified.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, exact, exact_numbers
 from core.certified.exact_mass import ExactMass
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
-from core.quantities import Quantity, TaggedBy, members_of
+from core.quantities import Quantity, TaggedBy
 from core.rows import Rows
 from service.schemas import ObjectOrArray, Request
 
@@ -32,14 +31,9 @@ DigitCount = Annotated[
     Field(
         ge=FEWEST_DIGITS,
         le=MOST_DIGITS,
-        description="Significant digits of every number of the answer, computed in ball arithmetic and written as "
-        "decimal strings. Numbers of the question are exact: doubles, or decimal strings.",
+        description="Significant digits of every number of the answer. Numbers of the question are taken as exact.",
     ),
 ]
-
-
-ANY_BODY = "AnyBodyInNumerals"
-"""Name by which the form of a part refers to the forms of all bodies, of which it is itself a piece."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +56,9 @@ class Numeral:
         }
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        text = {"type": "string", "format": "decimal", "maxLength": LONGEST_NUMERAL, "pattern": f"^(?:{NUMERAL})$"}
-        return {"anyOf": [{"type": "number", **self.quantity.limits}, text], "x-unit": self.quantity.unit}
+        unit = {"x-unit": self.quantity.unit}
+        # A pattern, which would be repeated for each number, has generators make a class of each.
+        return {"anyOf": [{"type": "number"} | unit, {"type": "string"} | unit]}
 
 
 @dataclass(frozen=True)
@@ -87,7 +82,7 @@ def in_numerals(hint: Any) -> Any:
     if origin is Annotated:
         for mark in parts[1:]:
             if isinstance(mark, TaggedBy):
-                return ForwardRef(ANY_BODY)
+                return ForwardRef("DecimalBody")
             if isinstance(mark, Count):
                 bounds = Field(min_length=mark.at_least, max_length=mark.at_most)
                 return _annotated(list.__class_getitem__(decimal_model_for(get_args(parts[0])[0])), bounds)
@@ -121,11 +116,10 @@ def fields_in_numerals(cls: Any) -> dict[str, Any]:
 
 @cache
 def decimal_model_for(cls: type[Any]) -> type[Request]:
-    """Return the form of a dataclass of core."""
-    own = fields_in_numerals(cls)
-    if "kind" in own:
-        own["kind"] = (own["kind"][0], ...)
-    made: type[Request] = create_model(f"{cls.__name__}InNumerals", __base__=Request, __doc__=cls.__doc__, **own)
+    """Return the form of a dataclass of core that is no member of a union."""
+    made: type[Request] = create_model(
+        f"Decimal{cls.__name__}", __base__=Request, __doc__=cls.__doc__, **fields_in_numerals(cls)
+    )
     return made
 
 
@@ -134,38 +128,45 @@ def explicit_fields(form: BaseModel, *left_out: str) -> Mapping[str, Any]:
     return form.model_dump(exclude_unset=True, exclude=set(left_out))
 
 
-def _bodies() -> Any:
-    """Return the union of the forms of bodies that can be summed exactly: all but meshes."""
-    members = (PrincipalMoments, InertiaTensor, PointMasses, *UNIFORM.values(), Composite)
-    forms = tuple(decimal_model_for(member) for member in members_of(Body) if member in members)
-    union = _annotated(Union.__getitem__(forms), Field(discriminator="kind"))
-    # A composite holds parts and a part any body, composites among them.
-    decimal_model_for(Part).model_rebuild(_types_namespace={ANY_BODY: union})
-    decimal_model_for(Composite).model_rebuild()
-    return union
+def _decimal_body() -> Any:
+    """Return the form of every body that can be summed exactly: the fields of all kinds; core checks those of each."""
+    members: tuple[Any, ...] = (PrincipalMoments, InertiaTensor, PointMasses, *UNIFORM.values(), Composite)
+    kinds: dict[str, list[str]] = {}
+    hints: dict[str, Any] = {}
+    for member in members:
+        for name, (hint, _) in fields_in_numerals(member).items():
+            kinds.setdefault(name, []).append(member.kind)
+            hints.setdefault(name, hint)
+    del hints["kind"]
+    own: dict[str, Any] = {
+        name: (hint, Field(default=None, description=f"For {', '.join(kinds[name])}.")) for name, hint in hints.items()
+    }
+    of_kinds = Literal.__getitem__(tuple(kinds["kind"]))
+    text = """A body whose numbers may be decimal strings, with the fields of the ordinary body of its kind."""
+    kind: Any = (of_kinds, Field(description="As of ordinary bodies; meshes are summed in fixed precision."))
+    return create_model("DecimalBody", __base__=Request, __doc__=text, kind=kind, **own)
 
 
-BodyInNumerals: Any = _bodies()
-RateInNumerals = Annotated[float | str, Numeral(Quantity("rad s^-1"))]
-AngularVelocityInNumerals = tuple[RateInNumerals, RateInNumerals, RateInNumerals]
+DecimalBody: Any = _decimal_body()
+for _form in (decimal_model_for(Part), DecimalBody):
+    _form.model_rebuild(_types_namespace={"DecimalBody": DecimalBody})
+DecimalRate = Annotated[float | str, Numeral(Quantity("rad s^-1"))]
+DecimalAngularVelocity = tuple[DecimalRate, DecimalRate, DecimalRate]
 _Pure = Annotated[float | str, Numeral(Quantity("1"))]
-QuaternionInNumerals = tuple[_Pure, _Pure, _Pure, _Pure]
-EnergyInNumerals = Annotated[float | str, Numeral(Quantity("J", above=0))]
-TimeInNumerals = Annotated[float | str, Numeral(Quantity("s"))]
+DecimalQuaternion = tuple[_Pure, _Pure, _Pure, _Pure]
+DecimalEnergy = Annotated[float | str, Numeral(Quantity("J", above=0))]
+DecimalTime = Annotated[float | str, Numeral(Quantity("s"))]
 
 
-class SpanInNumerals(Request):
+class DecimalSpan(Request):
     """Times at exactly equal distances, both ends included."""
 
-    start: TimeInNumerals
-    stop: TimeInNumerals
-    count: int = Field(ge=1, le=10**9)
+    start: DecimalTime = Field(description="First time.")
+    stop: DecimalTime = Field(description="Last time.")
+    count: int = Field(ge=1, le=10**9, description="Number of times.")
 
 
-TimesInNumerals = Annotated[
-    SpanInNumerals | Annotated[list[TimeInNumerals], Field(min_length=1)],
-    ObjectOrArray(),
-]
+DecimalTimes = Annotated[DecimalSpan | Annotated[list[DecimalTime], Field(min_length=1)], ObjectOrArray()]
 """Times from the given state, of either sign, in any order."""
 
 
@@ -175,16 +176,23 @@ def body_of(body: BaseModel) -> ExactMass:
         return exact_body(explicit_fields(body))
     except InvalidParameter as fault:
         raise fault.inside("body") from None
-    except NotApplicable as fault:
-        raise NotApplicable(fault.detail, path=("body", *fault.path), remedy=fault.remedy) from None
-    except BudgetExceeded as fault:
+    except (NotApplicable, BudgetExceeded) as fault:
         fault.path = ("body", *fault.path)
         raise
 
 
-def instants(times: SpanInNumerals | list[float | str]) -> tuple[Fraction, ...]:
+def instants(times: DecimalSpan | list[float | str]) -> tuple[Fraction, ...]:
     """Return the times of a question as the rational numbers that they are."""
     if isinstance(times, list):
         return exact_numbers(times, ("times",))
-    start, stop = exact(times.start, ("times", "start")), exact(times.stop, ("times", "stop"))
-    return evenly_spaced(start, stop, times.count)
+    return evenly_spaced(*_ends(times), times.count)
+
+
+def ends(times: DecimalSpan | list[float | str]) -> tuple[Fraction, Fraction]:
+    """Return the earliest and the latest of the times."""
+    found = instants(times) if isinstance(times, list) else _ends(times)
+    return min(found), max(found)
+
+
+def _ends(times: DecimalSpan) -> tuple[Fraction, Fraction]:
+    return exact(times.start, ("times", "start")), exact(times.stop, ("times", "stop"))

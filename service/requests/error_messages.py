@@ -7,14 +7,16 @@ client sent. Which names and kinds there would have been is read off its schema.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from difflib import get_close_matches
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Any
 
 from core.errors import InvalidParameter
-from service.problems import MOST_FAULTS, Fault, code_of, pointer_of
+from core.quantities import RADIANS
+from service.problems import KNOWN, MOST_FAULTS, Fault, code_of, pointer_of
 from service.requests.document_limits import LONGEST_KEY_SHOWN
+from service.requests.suggestions import FORCES, STEPS, count_in_place_of_step, nearest, plain
 
 Step = str | int
 Names = tuple[str, ...]
@@ -22,8 +24,8 @@ Names = tuple[str, ...]
 OBJECT, ARRAY = "<object>", "<array>"
 """Labels of the members of a union of an object and an array; a fault in the member not meant is dropped."""
 
-ALIKE = 0.78
-"""Share of its letters that a name must have in common with another to be taken for a slip of it."""
+LOOKED_AT = 3 * MOST_FAULTS
+"""Findings among which the most useful ones are looked for."""
 
 _RULES: Mapping[str, str] = {
     "missing": "is required",
@@ -56,16 +58,21 @@ _RULES: Mapping[str, str] = {
     "string_too_long": "must have at most {max_length} characters",
 }
 _REMEDIES: Mapping[str, str] = {
-    "float_type": "write a JSON number: no quotes, no true, false or null",
+    "float_type": "write a JSON number: no quotes, no true, false or null; /v1/certified takes decimal strings",
     "int_type": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
     "int_from_float": 'write a JSON integer: 10, not 10.0, 1e1 or "10"',
     "finite_number": "NaN, infinities and numbers beyond 1.8e308 are not read",
     "neither": "give numbers in an array, or start, stop and count in an object",
 }
-_KNOWN = "known here: "
 _TYPES = ("model_type", "model_attributes_type", "dataclass_type", "list_type", "tuple_type")
 _OBJECTS = ("model_type", "model_attributes_type", "dataclass_type", "dict_type")
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+_BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+_MISSING, _NOT_KNOWN = "is required", "is not known here"
+_MEANT = "did you mean "
+_SPAN = frozenset({"start", "stop", "count"})
+_NOT_FREE = f"{_NOT_KNOWN}: only torque-free motion is answered"
+_FREE_ONLY = "leave it out; motion under forces is answered for the scenes that GET /v1/scenes lists"
 
 
 @dataclass(frozen=True)
@@ -81,49 +88,59 @@ class Layout:
     lengths : mapping of str to int
         For each name of a field that holds an array of fixed length, that length.
     elsewhere : mapping of str to str
-        Keys of the document that only another question has, and tags of members that only it admits, each with the key
-        that makes it this one.
+        Keys of the document that only another route's question has, each with what would mend it.
+    units : mapping of str to str
+        For each name of a field that holds quantities of one SI unit, that unit.
     """
 
     tags: Mapping[str, Names]
     names: Mapping[str, Names]
     lengths: Mapping[str, int]
-    elsewhere: Mapping[str, str] = field(default_factory=dict)
+    elsewhere: Mapping[str, str]
+    units: Mapping[str, str]
 
     @classmethod
-    def of(cls, schema: Any) -> Layout:
+    def of(cls, schema: Any, elsewhere: Mapping[str, str]) -> Layout:
         """Return the layout that a schema describes."""
         walk = _Walk(schema)
         return cls(
             {name: tuple(found) for name, found in walk.tags.items()},
             {name: tuple(found) for name, found in walk.names.items()},
             walk.lengths,
+            elsewhere,
+            {name: next(iter(units)) for name, units in walk.units.items() if len(units) == 1},
         )
 
-    def told_from(self, key: str, other: Layout) -> Layout:
-        """Return this layout of questions that have a key, told from those that do not."""
-        keys = set(other.names.get("", ())) - set(self.names.get("", ()))
-        tags = {tag for name, tags in other.tags.items() if name in self.tags for tag in tags} - set(
-            tag for tags in self.tags.values() for tag in tags
-        )
-        return replace(self, elsewhere=dict.fromkeys(keys | tags, key))
+    @property
+    def of_free_rotation(self) -> bool:
+        """Whether the documents ask about a body that turns freely."""
+        names = self.names.get("", ())
+        return "body" in names and not {"angular_velocity", "angular_velocities", "disturbance"}.isdisjoint(names)
 
-    def faults(self, found: Sequence[Any]) -> tuple[list[Fault], set[str]]:
-        """Return the validator's findings as faults, no more than a problem lists, and the codes that they have."""
-        faults: list[Fault] = []
-        codes = set()
-        for entry in _of_the_member_meant(_lengths_once(found)):
+    def faults(self, found: Sequence[Any], document: Callable[[], Any]) -> tuple[list[Fault], set[str]]:
+        """Return the validator's findings as faults, no more than a problem lists, and the codes that they have.
+
+        The most useful come first: those that say what was meant, then values that are wrong, then what is missing.
+
+        Parameters
+        ----------
+        found : sequence
+            The validator's.
+        document : callable
+            Returns what the client sent, for the faults whose remedy depends on a value.
+        """
+        told: list[tuple[Fault, str]] = []
+        for entry in islice(_of_the_member_meant(_lengths_once(found)), LOOKED_AT):
             steps, owner = self._steps(entry["loc"])
             cause = entry.get("ctx", {}).get("error")
             if isinstance(cause, InvalidParameter):
-                faults.append(Fault(pointer_of((*steps, *cause.path)), f"must {cause.rule}", cause.remedy))
-                codes.add(code_of(cause))
+                rule = f"must {cause.rule}"
+                remedy = cause.remedy or (_REMEDIES["float_type"] if rule == _RULES["float_type"] else None)
+                told.append((Fault(pointer_of((*steps, *cause.path)), rule, remedy), code_of(cause)))
             else:
-                faults.append(self._fault(entry, steps, owner))
-                codes.add("invalid-parameter")
-            if len(faults) == MOST_FAULTS:
-                break
-        return _lists_once(faults), codes
+                told.append((self._fault(entry, steps, owner, document), "invalid-parameter"))
+        told = sorted(told, key=lambda one: _rank(one[0]))[:MOST_FAULTS]
+        return _lists_once([fault for fault, _ in told]), {code for _, code in told}
 
     def _steps(self, location: Sequence[Step]) -> tuple[tuple[Step, ...], str]:
         """Return a location without the names of members of unions, and by what the object around its end is known."""
@@ -142,10 +159,10 @@ class Layout:
             steps.append(step)
         return tuple(steps), owners[-2]
 
-    def _fault(self, entry: Any, steps: tuple[Step, ...], owner: str) -> Fault:
+    def _fault(self, entry: Any, steps: tuple[Step, ...], owner: str, document: Callable[[], Any]) -> Fault:
         kind, context = entry["type"], entry.get("ctx", {})
         if kind in _UNKNOWN:
-            return self._unknown(steps, owner)
+            return self._unknown(steps, owner, document)
         if kind == "short":
             return Fault(pointer_of(steps), f"must have {context['needs']} entries, not {context['has']}")
         if kind == "too_long":
@@ -160,13 +177,18 @@ class Layout:
         # A rule of our own is worded where it is stated; other messages of the validator quote no input.
         detail = rule.format_map(context) if rule else str(entry["msg"]).removeprefix("Value error, ")
         named = steps[-1] if steps and isinstance(steps[-1], str) else ""
+        if kind in _BOUNDS:
+            unit = self.units.get(next((step for step in reversed(steps) if isinstance(step, str)), ""), "1")
+            detail = detail if unit == "1" else f"{detail} {unit}"
+            return Fault(pointer_of(steps), detail, RADIANS if unit == "rad" else None)
+        if kind == "literal_error":
+            value = _value_at(document(), steps)
+            near = nearest(value, re.findall("'([^']*)'", str(context["expected"]))) if isinstance(value, str) else None
+            return Fault(pointer_of(steps), detail, near and f"{_MEANT}'{near}'?")
         if kind == "union_tag_invalid":
             tag, discriminator = str(context["tag"]), str(context["discriminator"]).strip("'")
-            near = _nearest(tag, self.tags.get(named, ()))
-            remedy = near and f"did you mean '{near}'?"
-            if tag in self.elsewhere:
-                remedy = f"'{tag}' does not go with {self.elsewhere[tag]}; leave {self.elsewhere[tag]} out for it"
-            return Fault(pointer_of((*steps, discriminator)), detail, remedy)
+            near = nearest(tag, self.tags.get(named, ()))
+            return Fault(pointer_of((*steps, discriminator)), detail, near and f"{_MEANT}'{near}'?")
         if kind == "union_tag_not_found":
             return Fault(pointer_of(steps), detail, f"its values here: {', '.join(self.tags.get(named, ()))}")
         if kind in _OBJECTS and named in self.tags:
@@ -178,19 +200,24 @@ class Layout:
             detail = f"{detail} of {self.lengths[named]} entries"
         return Fault(pointer_of(steps), detail, _REMEDIES.get(kind))
 
-    def _unknown(self, steps: tuple[Step, ...], owner: str) -> Fault:
+    def _unknown(self, steps: tuple[Step, ...], owner: str, document: Callable[[], Any]) -> Fault:
         key, names = str(steps[-1]), self.names.get(owner, ())
         if len(key) > LONGEST_KEY_SHOWN:
             return Fault(pointer_of(steps[:-1]), "has a key that is not known here", _known(names))
         if len(steps) == 1 and key in self.elsewhere:
-            given = self.elsewhere[key]
-            return Fault(pointer_of(steps), f"does not go with {given}", f"leave out either {key} or {given}")
-        near = _nearest(key, names)
-        return Fault(pointer_of(steps), "is not known here", f"did you mean {near}?" if near else _known(names))
+            return Fault(pointer_of(steps), _NOT_KNOWN, self.elsewhere[key])
+        if len(steps) == 1 and self.of_free_rotation and plain(key) in FORCES:
+            return Fault(pointer_of(steps), _NOT_FREE, _FREE_ONLY)
+        if _SPAN.issuperset(names) and plain(key) in STEPS:
+            span = _value_at(document(), steps[:-1])
+            remedy = count_in_place_of_step(span, _value_at(span, steps[-1:]))
+            return Fault(pointer_of(steps), _NOT_KNOWN, remedy)
+        near = nearest(key, names)
+        return Fault(pointer_of(steps), _NOT_KNOWN, f"{_MEANT}{near}?" if near else _known(names))
 
 
 def _known(names: Names) -> str | None:
-    return f"{_KNOWN}{', '.join(names)}" if names else None
+    return f"{KNOWN}{', '.join(names)}" if names else None
 
 
 def _lists_once(faults: Sequence[Fault]) -> list[Fault]:
@@ -198,18 +225,31 @@ def _lists_once(faults: Sequence[Fault]) -> list[Fault]:
     told: set[str | None] = set()
     found = []
     for fault in faults:
-        repeated = fault.remedy in told and str(fault.remedy).startswith(_KNOWN)
+        repeated = fault.remedy in told and str(fault.remedy).startswith(KNOWN)
         told.add(fault.remedy)
         found.append(replace(fault, remedy=None) if repeated else fault)
     return found
 
 
-def _nearest(given: str, names: Names) -> str | None:
-    """Return the name that a client probably meant, whatever its case and hyphens."""
-    plain = {re.sub("[^a-z0-9]", "", name): name for name in names}
-    written = re.sub("[^a-z0-9]", "", given[: 2 * LONGEST_KEY_SHOWN].lower())
-    found = get_close_matches(written, plain, 1, ALIKE)
-    return plain[found[0]] if found else None
+def _rank(fault: Fault) -> int:
+    """Return where a fault stands among others: the lower, the sooner it helps."""
+    if fault.detail.startswith(_NOT_KNOWN):
+        return 3 if (fault.remedy or KNOWN).startswith(KNOWN) else 0
+    if fault.detail == _MISSING:
+        return 2
+    return 0 if (fault.remedy or "").startswith(_MEANT) else 1
+
+
+def _value_at(document: Any, steps: Sequence[Step]) -> Any:
+    """Return what stands at a place of a document, None if nothing does."""
+    for step in steps:
+        if isinstance(document, dict):
+            document = document.get(step)
+        elif isinstance(document, list) and isinstance(step, int) and step < len(document):
+            document = document[step]
+        else:
+            return None
+    return document
 
 
 class _Walk:
@@ -219,6 +259,7 @@ class _Walk:
         self.tags: dict[str, dict[str, None]] = {}
         self.names: dict[str, dict[str, None]] = {}
         self.lengths: dict[str, int] = {}
+        self.units: dict[str, set[str]] = {}
         self._definitions: dict[str, Any] = {}
         self._followed: set[tuple[str, str]] = set()
         self._gather(schema)
@@ -242,6 +283,8 @@ class _Walk:
         if not isinstance(node, Mapping):
             return
         kind = node.get("type")
+        if kind in ("float", "int"):
+            self.units.setdefault(owner, set()).add(node.get("metadata", {}).get("unit", "1"))
         if kind == "definition-ref":
             reference = node["schema_ref"]
             if (reference, owner) not in self._followed and reference in self._definitions:

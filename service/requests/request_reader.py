@@ -6,16 +6,16 @@ A reader validates JSON bytes in one step, without an intermediate Python docume
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from functools import cached_property, partial
-from typing import Any, Generic, TypeVar, get_args
+from functools import cache, cached_property, partial
+from typing import Any, Generic, TypeVar
 
+import orjson
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import SchemaValidator
 
-from service.problems import Fault, Refusal
+from service.problems import Refusal, headline
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 from service.requests.error_messages import Layout
 from service.requests.npz_body import Arrays, taking_arrays, unpacked
@@ -24,51 +24,6 @@ Q = TypeVar("Q")
 
 LARGE = 65_536
 """Bytes of a document from which on objects are made by the ten thousand."""
-WITHOUT, WITH = "<without>", "<with>"
-"""Labels of the two questions that a `DiscriminatedByKey` tells apart."""
-
-
-@dataclass(frozen=True)
-class DiscriminatedByKey:
-    """Mark of a union of two questions: the second is meant where the document has a key, otherwise the first.
-
-    Attributes
-    ----------
-    key : str
-        Name of a plain ASCII key of the document itself.
-    beside : mapping of str to str
-        Fields of the first question that the second has not, and why they cannot go with the key.
-    remedies : mapping of str to str
-        What would mend a fault: by the rule broken in a document without the key; under the key itself, what to give.
-    """
-
-    key: str
-    beside: Mapping[str, str] = field(default_factory=dict, hash=False)
-    remedies: Mapping[str, str] = field(default_factory=dict, hash=False)
-
-    def __get_pydantic_core_schema__(self, union: Any, handler: Any) -> dict[str, Any]:
-        without, having = (handler.generate_schema(member) for member in get_args(union))
-        return {"type": "tagged-union", "discriminator": self._label, "choices": {WITHOUT: without, WITH: having}}
-
-    def _label(self, document: Any) -> str:
-        return WITH if isinstance(document, dict) and self.key in document else WITHOUT
-
-    def advised(self, fault: Fault, having: bool) -> Fault:
-        """Return a fault of a document that has the key, or has not, with what would mend it."""
-        name = fault.pointer.removeprefix("/")
-        if having and name in self.beside and fault.detail == f"does not go with {self.key}":
-            return Fault(fault.pointer, f"{fault.detail}: {self.beside[name]}", fault.remedy)
-        remedy = self.remedies.get(fault.detail if not having else self.key if name == self.key else "")
-        return Fault(fault.pointer, fault.detail, remedy) if remedy else fault
-
-    def may_be_in(self, body: bytes) -> bool:
-        """Return whether the key may be in a document, which most show at once that it is not."""
-        # It might also be written with escapes.
-        return self.key.encode() in body or b"\\" in body
-
-
-class _Absent(Exception):
-    """A document has not the key by which a question is told from another."""
 
 
 class Reader(Generic[Q]):
@@ -77,34 +32,19 @@ class Reader(Generic[Q]):
     Parameters
     ----------
     question : type
-        A pydantic model, which may hold dataclasses of core; or a union of two that a `DiscriminatedByKey` tells apart.
+        A pydantic model, which may hold dataclasses of core.
     limits : Limits
         On the document.
-    advised : callable
-        Returns a fault with what would mend it.
+    elsewhere : mapping of str to str, optional
+        Fields of another route, each with the remedy for who sends it to this one.
     """
 
-    def __init__(
-        self, question: type[Q], limits: Limits, advised: Callable[[Fault], Fault] = lambda fault: fault
-    ) -> None:
+    def __init__(self, question: type[Q], limits: Limits, elsewhere: Mapping[str, str] | None = None) -> None:
         self._schema = TypeAdapter(question).core_schema
         schema = _failing_fast(self._schema)
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
-        self._layout = Layout.of(schema)
-        marks = [mark for mark in getattr(question, "__metadata__", ()) if isinstance(mark, DiscriminatedByKey)]
-        self._key = ""
-        # The discriminator of the union would have the whole document built to look for a key.
-        self._told_apart: tuple[DiscriminatedByKey, Reader[Q], Reader[Q]] | None = None
-        for mark in marks:
-            without, having = [
-                Reader(member, limits, partial(mark.advised, having=having))
-                for having, member in zip((False, True), get_args(get_args(question)[0]), strict=True)
-            ]
-            having._layout = having._layout.told_from(mark.key, without._layout)
-            having._key = mark.key
-            self._told_apart = mark, without, having
-        self._advised = advised
+        self._layout = Layout.of(schema, elsewhere or {})
         self._limits = limits
 
     @cached_property
@@ -132,15 +72,6 @@ class Reader(Generic[Q]):
             return self._read(body)
 
     def _read(self, document: bytes, arrays: Arrays | None = None) -> Q:
-        apart = self._told_apart
-        if apart is not None:
-            mark, without, having = apart
-            if mark.may_be_in(document):
-                try:
-                    return having._read(document, arrays)
-                except _Absent:
-                    pass
-            return without._read(document, arrays)
         try:
             enforce_document_limits(document, self._limits)
             if arrays is None:
@@ -150,24 +81,24 @@ class Reader(Generic[Q]):
             require_distinct_keys(document)
             return question
         except ValidationError as error:
-            raise self._refusal(error) from None
+            raise self._refusal(error, document) from None
 
-    def _refusal(self, error: ValidationError) -> Refusal:
+    def _refusal(self, error: ValidationError, document: bytes) -> Refusal:
         found = error.errors(include_url=False, include_input=False)
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
             return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
-        if self._key and any(
-            # What is no object has no key either.
-            not fault["loc"] or (fault["type"] == "missing" and fault["loc"] == (self._key,))
-            for fault in found
-        ):
-            raise _Absent
-        found_faults, codes = self._layout.faults(found)
-        faults = [self._advised(fault) for fault in found_faults]
+        faults, codes = self._layout.faults(found, cache(partial(_parsed, document)))
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"
-        more = f", and {len(faults) - 1} more" if len(faults) > 1 else ""
-        return Refusal(code, f"{faults[0].sentence}{more}", faults=faults)
+        return Refusal(code, headline(faults), faults=faults)
+
+
+def _parsed(document: bytes) -> Any:
+    """Return what a document holds, None where this parser takes numbers more strictly than the validator's."""
+    try:
+        return orjson.loads(document)
+    except ValueError:
+        return None
 
 
 @contextmanager
@@ -189,6 +120,8 @@ def _failing_fast(schema: Any) -> Any:
     """
     if isinstance(schema, Mapping):
         walked = {key: _failing_fast(value) for key, value in schema.items() if key != "metadata"}
+        if "unit" in schema.get("metadata", {}):
+            walked["metadata"] = {"unit": schema["metadata"]["unit"]}
         free = schema.get("type") == "tuple" and "variadic_item_index" in schema
         return walked | {"fail_fast": True} if free or schema.get("type") == "list" else walked
     if isinstance(schema, (list, tuple)):
@@ -196,4 +129,4 @@ def _failing_fast(schema: Any) -> Any:
     return schema
 
 
-__all__ = ["DiscriminatedByKey", "Limits", "Reader"]
+__all__ = ["Limits", "Reader"]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from service.routes.bodies import BODIES
-from service.routes.certified.questions import with_digits
-from service.routes.certified.rotation import PRECESSION_IN_DIGITS, STABILITY_IN_DIGITS, TRAJECTORY_IN_DIGITS
-from service.routes.certified.scenes import scenes_in_digits
-from service.routes.certified.surfaces import ELLIPSOID_IN_DIGITS
+from service.routes.certified.answers import naming_certified
+from service.routes.certified.rotation import CERTIFIED_ROTATION
+from service.routes.certified.scenes import certified_scenes
+from service.routes.certified.surfaces import CERTIFIED_ELLIPSOID
+from service.routes.examples import examples
 from service.routes.plan import planning
 from service.routes.rotation.ensemble import ENSEMBLE
 from service.routes.rotation.precession import PRECESSION
@@ -20,13 +23,8 @@ from service.routing import PostRoute
 
 def questions() -> tuple[PostRoute, ...]:
     """Return every question that can be asked, in the order of the documentation."""
-    plain = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())
-    in_digits = {
-        "/v1/rotation/trajectory": TRAJECTORY_IN_DIGITS,
-        "/v1/rotation/precession": PRECESSION_IN_DIGITS,
-        "/v1/rotation/stability": STABILITY_IN_DIGITS,
-        "/v1/rotation/energy-ellipsoid": ELLIPSOID_IN_DIGITS,
-        **scenes_in_digits(),
-    }
-    asked = [with_digits(route, in_digits[route.path]) if route.path in in_digits else route for route in plain]
-    return (*asked, planning(asked))
+    certified = (*CERTIFIED_ROTATION, CERTIFIED_ELLIPSOID, *certified_scenes())
+    paths = [route.path for route in certified]
+    ordinary = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())
+    asked = (*(naming_certified(route, paths) for route in ordinary), *certified)
+    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*asked, planning(asked)))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from functools import cache
 from math import inf
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -16,10 +16,11 @@ from core.bodies.mass_properties import MassProperties
 from core.bodies.principal_inertia import EPSILON, PrincipalInertia, Symmetry
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
+from core.quantities import Unit
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, quickest, speed_of
-from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Matrix, Request, Vector, View
+from service.routing import Answer, PostRoute
+from service.schemas import Envelope, Matrix, Ratio, Request, Vector, View
 
 LOOKED_INTO = 8_000
 """Points of a body, as `counts` has them, up to which it is looked at to foresee a motion; larger ones are not answered
@@ -39,38 +40,46 @@ class MassPropertiesRequest(Request):
     body: Body
 
 
-class Principal(View):
+MomentsOfInertia = Annotated[Vector[float], Unit("kg m^2")]
+TensorOfInertia = Annotated[Matrix[float], Unit("kg m^2")]
+
+
+class PrincipalAxes(View):
     """Principal moments and axes."""
 
-    moments: Vector = Field(description="Ascending (kg m^2).")
-    axes: Matrix = Field(description="Columns are the principal axes in body axes, right-handed; written row by row.")
+    moments: MomentsOfInertia = Field(description="Ascending.")
+    axes: Matrix[Ratio[float]] = Field(
+        description="Columns are the principal axes in body axes, right-handed; written row by row."
+    )
 
 
-class Tensors(View):
+class InertiaTensors(View):
     """Tensors of inertia in body axes; I_xy = -(integral of x y dm)."""
 
-    about_center_of_mass: Matrix
-    about_origin: Matrix | None
+    about_center_of_mass: TensorOfInertia = Field(description="About the centre of mass.")
+    about_origin: TensorOfInertia | None = Field(description="About the origin of the frame of the body.")
 
 
-class ValidityView(View):
+class Validity(View):
     """Whether matter can have these mass properties, condition by condition."""
 
-    physical: bool
-    report: list[Condition]
+    physical: bool = Field(description="Whether every condition holds.")
+    report: list[Condition] = Field(description="The conditions, one by one.")
 
 
 class MassPropertiesAnswer(Envelope):
     """Mass properties of a body."""
 
-    mass: float | None = Field(description="kg; null where the body was given by its moments alone.")
-    center_of_mass: Vector | None = Field(description="m, in the frame in which the body was given.")
-    inertia: Tensors
-    principal: Principal
-    principal_about_origin: Principal | None
-    symmetry: Symmetry
+    mass: Annotated[float, Unit("kg")] | None = Field(description="Null where the body was given by its moments alone.")
+    center_of_mass: Annotated[Vector[float], Unit("m")] | None = Field(
+        description="In the frame in which the body was given."
+    )
+    inertia: InertiaTensors = Field(description="Tensors of inertia in body axes; I_xy = -(integral of x y dm).")
+    principal: PrincipalAxes = Field(description="About the centre of mass.")
+    principal_about_origin: PrincipalAxes | None = Field(description="About the origin; null where it is not known.")
+    symmetry: Symmetry = Field(description="Which of the principal moments are equal.")
     about: Literal["center-of-mass", "origin"] = Field(description="The point about which the body turns.")
-    validity: ValidityView
+    validity: Validity
 
 
 def properties_of(body: Any) -> MassProperties:
@@ -181,22 +190,6 @@ BODIES = (
         mass_properties,
         CalibratedCost("mass_properties", counts),
         is_small,
-        examples={
-            "principal-moments": Example(
-                "a body known by its principal moments",
-                {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}},
-            ),
-            "point-masses": Example(
-                "four point masses",
-                {
-                    "body": {
-                        "kind": "point-masses",
-                        "masses": [1.0, 2.0, 1.0, 0.5],
-                        "positions": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]],
-                    }
-                },
-            ),
-        },
         warming=({"body": TETRAHEDRON},),
     ),
 )

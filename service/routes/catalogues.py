@@ -15,34 +15,33 @@ from core.systems.accuracy import record
 from core.systems.methods import Method
 from core.systems.methods.method import AbstractMethod, Family, Invariance
 from service.problems import registry
-from service.routes.scenes import CATALOGUE
+from service.routes.scenes import SceneCatalogue, scenes
 from service.routing import GetRoute, Reply
-from service.schemas import SIGNATURE, View
+from service.schemas import SIGNATURE, Ratio, Signed, View
 
 
 class ProblemEntry(View):
     """One entry of the registry of problems."""
 
-    code: str
-    type: str
-    status: int
-    title: str
-    meaning: str
+    code: str = Field(description="Stable name for machines.")
+    type: str = Field(description="URI reference that problems of this type carry.")
+    status: int = Field(description="HTTP status.")
+    title: str = Field(description="The same for every occurrence.")
+    meaning: str = Field(description="When it happens and what to do about it.")
 
 
-class Errors(View):
+class ProblemRegistry(Signed):
     """The registry of problems."""
 
-    signature: dict[str, str]
     errors: list[ProblemEntry]
 
 
-class RecordView(View):
+class MethodRecord(View):
     """What a method with one setting was measured to do on problems with known solutions."""
 
-    tolerance: float
-    error: float = Field(description="Largest, relative to the largest norm of the motion.")
-    evaluations: int
+    tolerance: Ratio[float] = Field(description="Setting of the method.")
+    error: Ratio[float] = Field(description="Largest, relative to the largest norm of the motion.")
+    evaluations: int = Field(description="Of the equation of motion.")
 
 
 class MethodEntry(View):
@@ -53,14 +52,14 @@ class MethodEntry(View):
     order: int | None = Field(description="The error falls with this power of the step; null: no fixed order.")
     family: Family
     preserves: list[Invariance]
+    between_steps: str = Field(description="How samples come about whose times lie between the ends of steps.")
     when_to_use: str
-    record: list[RecordView]
+    record: list[MethodRecord]
 
 
-class Methods(View):
+class MethodCatalogue(Signed):
     """The catalogue of methods."""
 
-    signature: dict[str, str]
     methods: list[MethodEntry]
 
 
@@ -78,6 +77,7 @@ def methods() -> list[dict[str, Any]]:
             "order": member.order,
             "family": member.family,
             "preserves": member.preserves,
+            "between_steps": member.between_steps,
             "when_to_use": member.when_to_use,
             "record": sorted(measured.get(member.kind, []), key=lambda shown: shown["tolerance"]),
         }
@@ -85,34 +85,30 @@ def methods() -> list[dict[str, Any]]:
     ]
 
 
-def constant(build: Callable[[], Any]) -> Callable[[], Reply]:
-    """Return a page's content that is built when it is first asked for."""
+def _catalogue(path: str, operation_id: str, summary: str, answer: type[Signed], build: Callable[[], Any]) -> GetRoute:
+    """Return the route of a catalogue, which is built when it is first asked for; its example has one entry."""
+    name = path.rsplit("/", 1)[1]
 
     @cache
     def content() -> Reply:
-        return Reply(orjson.dumps({"signature": SIGNATURE, **build()}))
+        return Reply(orjson.dumps({"signature": SIGNATURE, name: build()}))
 
-    return content
+    def example() -> dict[str, Any]:
+        return {"signature": SIGNATURE, name: build()[:1]}
+
+    return GetRoute(path, operation_id, summary, "catalogues", content, answer, example=example)
 
 
 def catalogues() -> tuple[GetRoute, ...]:
     """Return the catalogues' routes."""
     return (
-        GetRoute(
-            "/v1/errors",
-            "list_errors",
-            "Every problem that can be answered",
-            "catalogues",
-            constant(lambda: {"errors": registry()}),
-            Errors,
-        ),
-        GetRoute(
+        _catalogue("/v1/errors", "list_errors", "Every problem that can be answered", ProblemRegistry, registry),
+        _catalogue(
             "/v1/methods",
             "list_methods",
-            "Every method that can be asked for, and when to use it",
-            "catalogues",
-            constant(lambda: {"methods": methods()}),
-            Methods,
+            "Every method that can be chosen, and when to use it",
+            MethodCatalogue,
+            methods,
         ),
-        CATALOGUE,
+        _catalogue("/v1/scenes", "list_scenes", "Every constrained scene and what it answers", SceneCatalogue, scenes),
     )

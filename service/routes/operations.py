@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from pydantic import Field
+
 from service.observability.metrics import CONTENT_TYPE, Metrics
 from service.problems import MEDIA_TYPE, REGISTRY, Problem
 from service.routing import GetRoute, Reply
@@ -13,7 +15,7 @@ from service.schemas import View
 class Status(View):
     """State of the service."""
 
-    status: str
+    status: str = Field(description="alive, or ready.")
 
 
 _ALIVE = Reply(b'{"status":"alive"}')
@@ -26,7 +28,15 @@ def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[GetRoute
     waiting = Reply(preparing.body(), MEDIA_TYPE.encode(), 503)
 
     return (
-        GetRoute("/healthz", "get_health", "Whether the process answers", "operations", lambda: _ALIVE, Status),
+        GetRoute(
+            "/healthz",
+            "get_health",
+            "Whether the process answers",
+            "operations",
+            lambda: _ALIVE,
+            Status,
+            example=lambda: {"status": "alive"},
+        ),
         GetRoute(
             "/readyz",
             "get_readiness",
@@ -34,6 +44,7 @@ def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[GetRoute
             "operations",
             lambda: _READY if ready() else waiting,
             Status,
+            example=lambda: {"status": "ready"},
         ),
         GetRoute(
             "/metrics",

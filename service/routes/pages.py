@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
+from service import VERSION
 from service.routing import GetRoute, Reply
 
 FOLDER = Path(__file__).parent.parent / "page"
@@ -27,6 +28,7 @@ def pages(openapi: Callable[[], bytes]) -> tuple[GetRoute, ...]:
         "The OpenAPI document",
         "pages",
         lambda: Reply(openapi()),
+        example=lambda: {"openapi": "3.1.0", "info": {"title": "Polhode", "version": VERSION}, "paths": {}},
     )
     return (document, *(_page(path, *entry) for path, entry in _FILES.items()))
 

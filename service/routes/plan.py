@@ -5,24 +5,27 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError
 from core.notices import Notice
+from core.quantities import Unit
 from core.systems.budget import Budget
 from core.systems.methods import Method
+from core.systems.system import Model
 from service.execution import cost_model as pricing
 from service.execution.cost_model import CalibratedCost, CostModel, one
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
+from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
 from service.routes.bodies import speed_to_follow
-from service.routes.rotation.trajectory import T_HANDLE, ModelView
-from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Request, View
+from service.routing import Answer, PostRoute
+from service.schemas import DecimalString, Envelope, Ratio, Request, View
+from service.schemas import Fault as FaultView
 
 WITHIN = "/request"
 CHEAP = 0.02
@@ -36,45 +39,46 @@ class PlanRequest(Request):
     request: Any = Field(description="The body that it would be sent.")
 
 
-class CostView(View):
+class PlannedCost(View):
     """What an answer would cost. Counts and bytes hold on every machine, milliseconds on the calibrated one, idle.
 
     Waiting for a turn is not foreseen, nor the time that the answer travels.
     """
 
     evaluations: int | None = Field(description="Of equations of motion; null if they are not foreseen.")
-    samples: int | None
+    samples: int | None = Field(description="Of the motion; null where none is sampled.")
     bytes: int = Field(description="Length of the answer as JSON.")
-    milliseconds: float
+    milliseconds: Annotated[float, Unit("ms")] = Field(description="Time of computing and writing the answer.")
 
 
-class ForeseenError(View):
-    """How wrong the answer would be, relative to the largest norm of the motion."""
+class PlannedError(View):
+    """How wrong the answer would be, relative to the largest norm of the whole motion."""
 
-    error: float | str = Field(description="A decimal string where digits are asked for, then relative to each number.")
+    error: Ratio[float] | Ratio[DecimalString] = Field(
+        description="A decimal string for certified questions, then relative to each number."
+    )
     how: str = Field(description="closed form: a bound; record of the method: an order of magnitude.")
-    inherited: float | None = Field(description="What the uncertainty of the inputs would move.")
+    inherited: Ratio[float] | None = Field(
+        description="Error propagated from the uncertainty of the inputs; null where nothing is known of the phase."
+    )
 
 
-class FaultView(View):
+class PlannedFault(FaultView):
     """What the request would be refused for."""
 
-    code: str
-    pointer: str
-    detail: str
-    remedy: str | None = None
+    code: str = Field(description="Of the problem.")
 
 
 class PlanAnswer(Envelope):
     """A plan."""
 
-    path: str
-    answerable: bool
-    model: ModelView | None = Field(description="null for questions that no model of motion is chosen for.")
+    path: str = Field(description="As asked.")
+    answerable: bool = Field(description="Whether the request would be answered.")
+    model: Model | None = Field(description="null for questions that no model of motion is chosen for.")
     method: Method | None = Field(description="null where no motion is computed.")
-    cost: CostView | None = Field(description="null if the request would be refused.")
-    accuracy: ForeseenError | None
-    errors: list[FaultView]
+    cost: PlannedCost | None = Field(description="null if the request would be refused.")
+    accuracy: PlannedError | None = Field(description="null where no error is stated.")
+    errors: list[PlannedFault] = Field(description="What the request would be refused for.")
 
 
 def planning(routes: Sequence[PostRoute]) -> PostRoute:
@@ -84,12 +88,14 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
     @cache
     def reader(path: str) -> Reader[Any]:
         # The document that holds the request has been held against the service's own limits.
-        return Reader(table[path].question, Limits(10**4, 10**9, 10**9, 10**9))
+        return Reader(table[path].question, Limits(10**4, 10**9, 10**9, 10**9), table[path].elsewhere)
 
     def plan(question: PlanRequest, budget: Budget) -> Answer:
         route = table.get(question.path)
         if route is None:
-            fault = Fault("/path", "must be the path of a question", "GET /openapi.json lists every path")
+            near = nearest_path(question.path, table)
+            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
+            fault = Fault("/path", "must be the path of a question", remedy)
             return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
         try:
             asked = reader(route.path).read(json.dumps(question.request).encode())
@@ -109,7 +115,6 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
         plan,
         CalibratedCost("plan", one),
         description="Always answered with 200: what the request would be refused for stands under `errors`.",
-        examples=EXAMPLES,
     )
 
 
@@ -182,8 +187,8 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
         return None
     known = [entry if isinstance(entry, dict) else vars(entry) for entry in stated]
     worst: dict[str, Any] = max(known, key=lambda entry: float(entry["error"]))
-    # An error below the range of doubles is stated as a decimal string.
-    return {"error": float(worst["error"]), "how": worst["how"], "inherited": worst.get("inherited")}
+    # A certified answer's is a decimal string, as it may be below the range of doubles.
+    return {"error": worst["error"], "how": worst["how"], "inherited": worst.get("inherited")}
 
 
 def _evaluations(asked: Any, budget: Budget) -> int | None:
@@ -231,24 +236,3 @@ def _refused(path: str, problem: Problem, within: str) -> Answer:
         "errors": errors,
         "warnings": [],
     }
-
-
-TUMBLING = {
-    "body": T_HANDLE,
-    "angular_velocity": [1.0, 10.0, 1.0],
-    "times": {"start": 0.0, "stop": 2e3, "count": 100_001},
-}
-
-EXAMPLES = {
-    "trajectory": Example(
-        "a hundred thousand samples", {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 1e-12}}
-    ),
-    "method": Example(
-        "the same by a method of low order",
-        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"method": {"kind": "explicit-euler", "step": 1e-3}}},
-    ),
-    "refused": Example(
-        "a request that would be refused",
-        {"path": "/v1/rotation/trajectory", "request": TUMBLING | {"accuracy": 2.0}},
-    ),
-}

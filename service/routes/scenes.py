@@ -1,126 +1,68 @@
-"""Questions about constrained scenes: one route for each member of core's catalogue, made from its own fields."""
+"""Questions about constrained scenes: one route for each member of core's catalogue, made from what it declares."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
 from functools import cache
-from typing import Any, Literal, cast, get_type_hints
+from typing import Any, Generic, Literal, cast, get_type_hints
 
-import orjson
-from pydantic import ConfigDict, Field, create_model
+from pydantic import Field, create_model
 
 from core.quantities import Tolerance, members_of
 from core.scenes import Scene
-from core.scenes.answer import ConstrainedSystem
-from core.scenes.answer import SceneAnswer as SceneFound
+from core.scenes.answer import ConstrainedSystem, SceneEvent
 from core.systems.budget import Budget
+from core.systems.system import Model
+from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, numbers
-from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import few_times
-from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView
-from service.routing import Answer, Example, GetRoute, PostRoute, Reply
-from service.schemas import SIGNATURE, Envelope, Request, Times, View, sample_count, sample_times
+from service.routes.examples import examples
+from service.routes.rotation.trajectory import Accuracy
+from service.routing import Answer, PostRoute
+from service.schemas import (
+    ROUND,
+    Envelope,
+    N,
+    Request,
+    Rounding,
+    Signed,
+    Times,
+    View,
+    sample_count,
+    sample_times,
+)
 
-TIMES: Any = Field(default=None, description="Measured from the given state, of either sign, in any order (s).")
+TIMES: Any = Field(default=None, description="Measured from the given state, of either sign, in any order.")
 OUTPUTS: Any = Field(default=None, min_length=1, description="What to compute; by default everything.")
 
 
-class SceneAnswer(Envelope):
-    """What was asked for of a scene, each figure under its own name."""
+class SceneAnswer(Envelope, Generic[N]):
+    """What was asked for of a scene; each figure is there if it is one of the outputs."""
 
-    model_config = ConfigDict(extra="allow")
-
-    model: ModelView
-    accuracy: AccuracyView
-    work: WorkView
+    model: Model
+    work: Work
     requested_samples: int = Field(description="Samples asked for; work.samples counts those that exist.")
     ended: str | None = Field(
         description="horizon, or the event that ended the motion; null if no motion was asked for."
     )
-    trajectory: dict[str, list[Any]] | None = Field(default=None, description="Columns, time first.")
+    events: list[SceneEvent[N]] | None = Field(default=None, description="What happens from t = 0 on, in order.")
 
 
 class SceneEntry(View):
     """One scene of the catalogue."""
 
-    name: str
-    path: str
+    name: str = Field(description="Last step of the path.")
+    path: str = Field(description="Where to send questions about it.")
     summary: str
-    outputs: list[str]
-    example: dict[str, Any]
+    outputs: list[str] = Field(description="Names of what it answers.")
+    example: dict[str, Any] = Field(description="A question.")
 
 
-class Scenes(View):
+class SceneCatalogue(Signed):
     """The catalogue of scenes."""
 
-    signature: dict[str, str]
     scenes: list[SceneEntry]
-
-
-EXAMPLES: Mapping[str, Mapping[str, Example]] = {
-    "unwinding-shafts": {
-        "tension": Example(
-            "the tension and accelerations of two solid shafts",
-            {
-                "masses": [2.0, 1.0],
-                "radii": [0.1, 0.2],
-                "slopes": [0.5, 0.9],
-                "gravity": 9.81,
-                "outputs": ["tension", "accelerations", "angular_accelerations"],
-            },
-        ),
-        "motion": Example(
-            "the motion until the string of one shaft has unwound",
-            {
-                "masses": [2.0, 1.0],
-                "radii": [0.1, 0.2],
-                "slopes": [0.5, 0.9],
-                "gravity": 9.81,
-                "positions": [1.0, 1.5],
-                "wound": [0.5, 0.8],
-                "times": {"start": 0.0, "stop": 2.0, "count": 21},
-            },
-        ),
-    },
-    "rod-in-hole": {
-        "horizontal": Example(
-            "how fast the rod turns when it is horizontal",
-            {
-                "hole_radius": 1.0,
-                "length": 1.0,
-                "mass": 1.0,
-                "gravity": 9.81,
-                "outputs": ["angular_velocity_at_horizontal", "period", "contact"],
-            },
-        ),
-        "motion": Example(
-            "one swing with the forces of the wall",
-            {
-                "hole_radius": 1.0,
-                "length": 1.0,
-                "mass": 1.0,
-                "gravity": 9.81,
-                "times": {"start": 0.0, "stop": 2.0, "count": 21},
-            },
-        ),
-    },
-    "chain-on-wedge": {
-        "motion": Example(
-            "a heavy chain that slides over the apex",
-            {
-                "masses": [1.0, 1.2],
-                "slopes": [0.6, 0.8],
-                "gravity": 9.81,
-                "length": 2.0,
-                "linear_density": 0.5,
-                "position": 1.0,
-                "velocity": 0.0,
-                "times": {"start": 0.0, "stop": 0.5, "count": 11},
-            },
-        ),
-    },
-}
 
 
 WARMING: Mapping[str, tuple[Mapping[str, Any], ...]] = {
@@ -151,34 +93,62 @@ def name_of(scene: type[ConstrainedSystem]) -> str:
     return str(scene.__dict__["kind"])
 
 
+def operation_of(scene: type[ConstrainedSystem]) -> str:
+    """Return the name of the operation that answers questions about a scene."""
+    return "scene_" + name_of(scene).replace("-", "_")
+
+
 def summary_of(scene: type[ConstrainedSystem]) -> str:
     """Return the first sentence of a scene's documentation."""
     return (scene.__doc__ or "").splitlines()[0].rstrip(".")
 
 
+def request_model(scene: type[ConstrainedSystem], title: str, **own: Any) -> type[Request]:
+    """Return the model of a question about a scene: fields of its own, and the outputs that can be asked for."""
+    # Built by a call, because a type made of names that are only known here is no type to the checker.
+    outputs: Any = list.__class_getitem__(Literal.__getitem__(tuple(scene.outputs)))
+    made: type[Request] = create_model(
+        f"{title}{scene.__name__}Request",
+        __base__=Request,
+        __doc__=scene.__doc__,
+        outputs=(outputs | None, OUTPUTS),
+        **own,
+    )
+    return made
+
+
+def answer_model(scene: type[ConstrainedSystem], base: type[View], title: str, number: type) -> type[View]:
+    """Return the model of an answer: the figures and columns that the scene declares, in one kind of number."""
+    hints = get_type_hints(scene.figures_type, include_extras=True)
+    own: dict[str, Any] = {name: (_in(hint, number) | None, None) for name, hint in hints.items()}
+    samples = scene.samples_type.__class_getitem__(number)  # type: ignore[attr-defined]
+    own["trajectory"] = (samples | None, Field(default=None, description="Of the times that the motion reaches."))
+    docs = f"{scene.figures_type.__doc__}".replace("What ", "Figures: what ", 1)
+    made: type[View] = create_model(f"{title}{scene.__name__}Answer", __base__=base, __doc__=docs, **own)
+    return made
+
+
+def _in(hint: Any, number: type) -> Any:
+    """Return an annotation in one kind of number."""
+    return hint[number] if getattr(hint, "__parameters__", ()) else hint
+
+
+class SceneAnswerInDoubles(SceneAnswer[float]):
+    """What was asked for of a scene."""
+
+    accuracy: Accuracy
+
+
 def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
     """Return the request that has the scene's own fields, and beside them what is asked of it."""
     hints = get_type_hints(scene, include_extras=True)
-    own: dict[str, Any] = {}
-    for entry in fields(scene):
-        default = ... if entry.default is MISSING else entry.default
-        own[entry.name] = (hints[entry.name], default)
-    # Built by a call, because a type made of names that are only known here is no type to the checker.
-    outputs: Any = Literal.__getitem__(tuple(scene.outputs))
-    listed: Any = list.__class_getitem__(outputs)
-    own["times"] = (
-        Times | None,
-        TIMES,
-    )
-    own["outputs"] = (
-        listed | None,
-        OUTPUTS,
-    )
-    own["round"] = (Digits | None, DIGITS)
+    own: dict[str, Any] = {
+        entry.name: (hints[entry.name], ... if entry.default is MISSING else entry.default) for entry in fields(scene)
+    }
+    own["times"] = (Times | None, TIMES)
+    own["round"] = (Rounding | None, ROUND)
     own["accuracy"] = (Tolerance, Field(default=1e-9, description="Largest tolerated relative error."))
-    title = "".join(part.capitalize() for part in name_of(scene).split("-")) + "Request"
-    made: type[Request] = create_model(title, __base__=Request, __doc__=scene.__doc__, **own)
-    return made
+    return request_model(scene, "", **own)
 
 
 def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
@@ -190,7 +160,9 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
         times = None if question.times is None else sample_times(question.times, budget)
         wanted = None if question.outputs is None else frozenset(question.outputs)
         found = system.answer(times, wanted, question.accuracy)
-        written: Answer = {
+        if question.round is not None:
+            found = found.rounded(question.round)
+        return {
             "model": found.model,
             "accuracy": found.accuracy,
             "work": found.work,
@@ -198,27 +170,10 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
             "ended": found.ended,
             **found.figures,
             "warnings": found.warnings,
+            **({} if found.trajectory is None else {"trajectory": dict(found.trajectory)}),
         }
-        if found.trajectory is not None:
-            written["trajectory"] = dict(found.trajectory)
-            if question.round is not None:
-                written |= _shortened(found, question.round)
-        return written
 
     return answer
-
-
-def _shortened(found: SceneFound, digits: Digits) -> Answer:
-    """Return the fields of an answer that change where its columns, but not the times, are rounded."""
-    columns, added = {}, 0.0
-    for name, column in (found.trajectory or {}).items():
-        if name == "time":
-            columns[name] = column
-        else:
-            columns[name], more = rounded(column, digits, found.accuracy.error)
-            added = max(added, more)
-    warnings = (*found.warnings, *notices_of(found.accuracy, added))
-    return {"trajectory": columns, "accuracy": covering(found.accuracy, added), "warnings": warnings}
 
 
 def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
@@ -242,43 +197,36 @@ def scene_probe(question: Any) -> Any:
     return question.model_copy(update={"times": [min(times), max(times)], "round": None})
 
 
+@cache
 def questions() -> tuple[PostRoute, ...]:
     """Return one route for each scene."""
     return tuple(
         PostRoute(
             f"/v1/scenes/{name_of(scene)}",
-            "scene_" + name_of(scene).replace("-", "_"),
+            operation_of(scene),
             summary_of(scene),
             "scenes",
             request_of(scene),
-            SceneAnswer,
+            answer_model(scene, SceneAnswerInDoubles, "", float),
             answering(scene),
-            CalibratedCost("scene_" + name_of(scene).replace("-", "_"), scene_counts),
+            CalibratedCost(operation_of(scene), scene_counts),
             lambda question: question.times is None or few_times(question.times),
             scene_probe,
-            examples=EXAMPLES[name_of(scene)],
             warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()
     )
 
 
-@cache
-def catalogue() -> Reply:
+def scenes() -> list[dict[str, Any]]:
     """Return the catalogue of scenes as it is published."""
-    entries = [
+    return [
         {
             "name": name_of(scene),
             "path": f"/v1/scenes/{name_of(scene)}",
             "summary": summary_of(scene),
             "outputs": list(scene.outputs),
-            "example": dict(next(iter(EXAMPLES[name_of(scene)].values())).question),
+            "example": dict(next(iter(examples()[operation_of(scene)].values())).question),
         }
         for scene in members()
     ]
-    return Reply(orjson.dumps({"signature": SIGNATURE, "scenes": entries}))
-
-
-CATALOGUE = GetRoute(
-    "/v1/scenes", "list_scenes", "Every constrained scene and what it answers", "catalogues", catalogue, Scenes
-)

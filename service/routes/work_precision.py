@@ -25,9 +25,9 @@ from core.work_precision import (
 from service.execution.cost_model import CalibratedCost, calibration, effort, extent, extreme, speed_of
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE, TIMES
-from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Request, Times, View, sample_count, sample_times
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
+from service.routing import Answer, PostRoute
+from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
 
 LADDER_RADIANS = 50.0
 """How far the body turns in the motions on which ladders are measured."""
@@ -50,45 +50,49 @@ class WorkPrecisionRequest(Request):
     )
 
 
-class MeasurementView(View):
-    """One method with one setting; errors are relative to the largest norm of the motion."""
+class MethodMeasurement(View):
+    """One method with one setting; errors are relative to the largest norm of the whole motion."""
 
-    method: Method
-    error: float | None = Field(description="Largest of any sample; null if the method failed.")
-    final_error: float | None = Field(description="At the time farthest from the start.")
-    component_errors: list[float] = Field(description="Of each component, relative to its own largest magnitude.")
-    drifts: dict[str, float] | None = Field(description="Of conserved quantities: not an error.")
-    evaluations: int
-    steps: int
-    seconds: float | None = Field(description="Median of the repeats; null if nothing was timed.")
+    method: Method = Field(description="With its setting.")
+    error: Ratio[float] | None = Field(description="Largest of any sample; null if the method failed.")
+    final_error: Ratio[float] | None = Field(description="At the time farthest from the start.")
+    component_errors: list[Ratio[float]] = Field(
+        description="Of each component, relative to its own largest magnitude."
+    )
+    drifts: dict[str, Ratio[float]] | None = Field(description="Of conserved quantities: not an error.")
+    evaluations: int = Field(description="Of the equation of motion.")
+    steps: int = Field(description="Taken by the method.")
+    seconds: Seconds[float] | None = Field(description="Median of the repeats; null if nothing was timed.")
     failure: str | None = Field(description="Why there are no samples.")
 
 
-class CurveView(View):
+class MethodCurve(View):
     """All settings of one method, cheapest first."""
 
-    kind: str
-    declared_order: int | None
-    fitted_order: float | None = Field(description="Between the coarse settings and the floor; null with too few.")
-    floor: float | None = Field(description="Where more work brings no smaller error; null if it was not met.")
-    measurements: list[MeasurementView]
+    kind: str = Field(description="Of the method.")
+    declared_order: int | None = Field(description="The error falls with this power of the step; null: no fixed order.")
+    fitted_order: Ratio[float] | None = Field(
+        description="Between the coarse settings and the floor; null with too few."
+    )
+    floor: Ratio[float] | None = Field(description="Where more work brings no smaller error; null if it was not met.")
+    measurements: list[MethodMeasurement] = Field(description="Cheapest first.")
 
 
-class RecommendationView(View):
+class Recommendation(View):
     """The cheapest setting that was measured to reach the accuracy."""
 
-    method: Method | None
-    reason: str
+    method: Method | None = Field(description="Null if none was measured to reach the accuracy.")
+    reason: str = Field(description="Why, in one sentence.")
 
 
 class WorkPrecisionAnswer(Envelope):
     """Error against cost."""
 
     reference: str = Field(description="What errors are measured against.")
-    reference_error: float = Field(description="Contained in every error that is stated.")
-    curves: list[CurveView]
-    pareto_front: list[MeasurementView] = Field(description="Beaten by none in both error and evaluations.")
-    recommendation: RecommendationView
+    reference_error: Ratio[float] = Field(description="Contained in every error that is stated.")
+    curves: list[MethodCurve] = Field(description="One for each kind of method.")
+    pareto_front: list[MethodMeasurement] = Field(description="Beaten by none in both error and evaluations.")
+    recommendation: Recommendation
 
 
 def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Answer:
@@ -185,26 +189,6 @@ WORK_PRECISION = (
         CalibratedCost("work_precision", work_precision_counts),
         planning_probe=work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
-        examples={
-            "t-handle": Example(
-                "three methods on a T-handle that tumbles",
-                {
-                    "body": T_HANDLE,
-                    "angular_velocity": [1.0, 10.0, 1.0],
-                    "times": {"start": 0.0, "stop": 5.0, "count": 21},
-                    "methods": [
-                        {"kind": "closed-form"},
-                        {"kind": "explicit-euler", "step": 0.01},
-                        {"kind": "explicit-euler", "step": 0.001},
-                        {"kind": "runge-kutta-4", "step": 0.02},
-                        {"kind": "runge-kutta-4", "step": 0.01},
-                        {"kind": "dormand-prince-853", "tolerance": 1e-6},
-                        {"kind": "dormand-prince-853", "tolerance": 1e-12},
-                    ],
-                    "accuracy": 1e-9,
-                },
-            ),
-        },
         representations={SVG: drawn},
     ),
 )

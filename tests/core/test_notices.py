@@ -1,4 +1,4 @@
-"""A notice seen from outside says the same, of the same place."""
+"""A notice seen from an enclosing object has the same code and detail, and a longer path."""
 
 from __future__ import annotations
 

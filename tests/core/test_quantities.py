@@ -215,7 +215,7 @@ def test_the_compiled_check_is_the_plain_one(owner: type, data: st.DataObject) -
 
 @settings(deadline=None, max_examples=400, derandomize=True)
 @given(data=st.data())
-def test_numbers_are_judged_by_the_ends_of_their_range(data: st.DataObject) -> None:
+def test_ranges_are_enforced_at_their_ends(data: st.DataObject) -> None:
     end = st.floats(-5, 5)
     quantity = Quantity(
         data.draw(st.sampled_from(["1", "m"])),
@@ -245,3 +245,15 @@ def test_rows_are_read_or_refused_at_their_first_fault(data: st.DataObject) -> N
         assert array.shape == ((len(value), rows.width) if rows.width else (len(value),))
         assert array.tolist() == [list(row) if rows.width else row for row in value]
         assert not array.flags.writeable
+
+
+def test_an_angle_out_of_range_is_told_to_be_in_radians() -> None:
+    slope = Quantity("rad", at_least=0, at_most=math.pi / 2)
+    for value in (30.0, -1.0):
+        with pytest.raises(InvalidParameter) as caught:
+            slope.check(("slope",), value)
+        assert caught.value.remedy == "angles are in radians: 30 degrees is 0.5236"
+    assert round(math.radians(30), 4) == 0.5236
+    with pytest.raises(InvalidParameter) as caught:
+        Quantity("m", at_least=0).check(("length",), -1.0)
+    assert caught.value.remedy is None

@@ -25,7 +25,7 @@ INDICES = Rows(3, Quantity("1", at_least=0), whole=True)
         (INDICES, np.arange(6, dtype=np.uint8).reshape(2, 3)),
     ],
 )
-def test_an_array_is_kept_as_a_copy_equal_to_its_list(rows: Rows, array: Any) -> None:
+def test_an_array_is_stored_as_a_copy_equal_to_its_list(rows: Rows, array: Any) -> None:
     kept, listed = rows.read((), array), rows.read((), array.tolist())
     assert (kept.dtype, kept.shape, kept.tobytes()) == (listed.dtype, listed.shape, listed.tobytes())
     assert kept.flags.c_contiguous

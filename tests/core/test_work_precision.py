@@ -10,7 +10,7 @@ import pytest
 
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.systems.budget import Budget
-from core.systems.error_statements import measured
+from core.systems.error_statements import known_norm, measured
 from core.systems.methods import (
     ClosedFormEvaluation,
     DormandPrince853,
@@ -50,7 +50,7 @@ def test_errors_are_those_that_the_question_has(whole) -> None:
         for one in curve.measurements:
             assert one.failure is None
             run = one.method.integrate(elliptic_functions(), TIMES)
-            true = measured(run.states, reference.sample(TIMES), TIMES)
+            true = measured(run.states, reference.sample(TIMES), TIMES, reference.largest_norm)
             # Never below what the reference leaves open, and above it only by rounding.
             assert true.largest + reference.bound <= one.error <= (true.largest + reference.bound) * (1 + 1e-14)
             assert true.final + reference.bound <= one.final_error <= (true.final + reference.bound) * (1 + 1e-14)
@@ -70,7 +70,7 @@ def test_the_floor_is_found_where_more_work_brings_nothing() -> None:
 
 def test_an_error_that_still_falls_unevenly_is_no_floor() -> None:
     # At coarse steps halving takes away less than half of the error, which is no round-off yet.
-    (curve,) = work_precision(stiff(1.0), [1.0], [ExplicitEuler(0.4), ExplicitEuler(0.2)]).curves
+    (curve,) = work_precision(stiff(1.0), [1.0], [ExplicitEuler(1 / 3), ExplicitEuler(0.2)]).curves
     coarse, fine = (one.error for one in curve.measurements)
     assert 0.55 * coarse < fine < 0.6 * coarse
     assert curve.floor is None
@@ -108,7 +108,8 @@ def test_the_recommendation_reaches_the_accuracy_when_it_is_followed(accuracy: f
     method = work_precision(system, TIMES, accuracy=accuracy).recommendation.method
     assert method is not None
     reference = solve(system, TIMES, accuracy=1e-12).state
-    assert measured(method.integrate(system, TIMES).states, reference, TIMES).largest <= accuracy
+    norm = known_norm(reference, system.initial_state)
+    assert measured(method.integrate(system, TIMES).states, reference, TIMES, norm).largest <= accuracy
 
 
 def test_an_accuracy_that_nothing_reached_is_told_with_the_best() -> None:
@@ -124,7 +125,12 @@ def test_without_a_closed_form_the_reference_is_an_integrator_whose_error_is_add
     assert 1e-15 < found.reference_error < 1e-12
     for curve in found.curves:
         for one in curve.measurements:
-            true = measured(one.method.integrate(problem, TIMES).states, problem.exact.sample(TIMES), TIMES).largest
+            true = measured(
+                one.method.integrate(problem, TIMES).states,
+                problem.exact.sample(TIMES),
+                TIMES,
+                problem.exact.largest_norm,
+            ).largest
             assert true <= one.error + problem.exact.bound
 
 
@@ -138,6 +144,16 @@ def test_times_are_medians_and_rule_the_recommendation() -> None:
 
 def test_the_same_question_has_the_same_answer(whole) -> None:
     assert work_precision(elliptic_functions(), TIMES) == whole
+
+
+def test_a_method_is_refused_that_is_there_already_with_the_same_settings() -> None:
+    methods = [RungeKutta4(0.01), RungeKutta4(0.02), SymmetricSplitting(0.01), RungeKutta4(0.01)]
+    with pytest.raises(InvalidParameter) as caught:
+        work_precision(elliptic_functions(), TIMES, methods)
+    assert caught.value.path == ("methods", 3)
+    assert "differ from methods/0" in caught.value.rule
+    assert "repeats" in str(caught.value.remedy)
+    assert len(work_precision(elliptic_functions(), TIMES, methods[:3]).curves) == 2
 
 
 def test_questions_that_cannot_be_asked() -> None:

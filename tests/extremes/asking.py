@@ -64,6 +64,11 @@ def ask(path: str, question: Asked) -> Reply:
     return Reply(json.loads(written(answer), parse_constant=_refuse), None)
 
 
+def certified(path: str, question: Asked, digits: int) -> Reply:
+    """Return the reply to a question asked of the certified route."""
+    return ask(path.replace("/v1/", "/v1/certified/"), question | {"digits": digits})
+
+
 def _refuse(name: str) -> None:
     raise AssertionError(f"{name} in an answer")
 

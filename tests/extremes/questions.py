@@ -9,6 +9,7 @@ from itertools import product
 from math import nextafter, pi, sqrt
 from typing import Any
 
+from service.routes.certified.answers import ONLY_ORDINARY
 from tests.contracts.test_bodies import SPECIMENS
 from tests.extremes.asking import Asked
 from tests.extremes.motions import SUBNORMAL, Motion, motions
@@ -73,8 +74,6 @@ def trajectories() -> Named:
         for make in MATRIX_OF_METHODS:
             method, turn = make(turn_of(motion)), turn_of(motion)
             yield f"{motion.name}, {method['kind']}", motion.question | {"times": [turn, -turn], "method": method}
-    for motion in MOTIONS[::3]:
-        yield f"{motion.name}, digits", motion.question | {"times": [turn_of(motion), -1.0], "digits": 17}
     for name, question in bodies():
         # What is derived of a body may leave the range of doubles where the body does not.
         if name.endswith((f"number 0 is {LARGEST:g}", "all by 1e-150", "all by 1e+150", "all by 1e+16")):
@@ -107,8 +106,6 @@ def precessions() -> Named:
         measure = {"method": method, "duration": 4.0 * steps, "samples": max(3, steps + 1), "tolerance": 0.1}
         question = {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 3.0]}, "angular_velocity": [1.0] * 3}
         yield f"{steps} steps of a method that blows up", question | {"measure": measure}
-    for motion in MOTIONS[::3]:
-        yield f"{motion.name}, digits", motion.question | {"digits": 17}
 
 
 def stabilities() -> Named:
@@ -118,8 +115,36 @@ def stabilities() -> Named:
         disturbance = [motion.rates[0], motion.rates[2]]
         disturbed = {"body": motion.question["body"], "rate": rate, "disturbance": disturbance}
         yield f"{motion.name}, disturbed", disturbed
+
+
+def certified_trajectories() -> Named:
     for motion in MOTIONS[::3]:
-        yield f"{motion.name}, digits", {"body": motion.question["body"], "rate": motion.rates[0], "digits": 17}
+        yield motion.name, motion.question | {"times": [turn_of(motion), -1.0], "digits": 17}
+
+
+def certified_precessions() -> Named:
+    for motion in MOTIONS[::3]:
+        yield motion.name, motion.question | {"digits": 17}
+
+
+def certified_stabilities() -> Named:
+    for motion in MOTIONS[::3]:
+        yield motion.name, {"body": motion.question["body"], "rate": motion.rates[0], "digits": 17}
+
+
+def certified_ellipsoids() -> Named:
+    for motion in MOTIONS[::6]:
+        yield motion.name, motion.question | CURVES | {"digits": 17}
+
+
+def certified(scene: Callable[[], Named]) -> Callable[[], Named]:
+    """Return what yields every tenth question about a scene, to a few digits."""
+
+    def questions() -> Named:
+        for name, question in [*scene()][::10]:
+            yield name, {key: value for key, value in question.items() if key not in ONLY_ORDINARY} | {"digits": 17}
+
+    return questions
 
 
 CURVES: Asked = {"resolution": 2, "points": 8, "separatrix": True}
@@ -302,5 +327,12 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/scenes/unwinding-shafts": shafts,
     "/v1/scenes/rod-in-hole": rods,
     "/v1/scenes/chain-on-wedge": chains,
+    "/v1/certified/rotation/trajectory": certified_trajectories,
+    "/v1/certified/rotation/precession": certified_precessions,
+    "/v1/certified/rotation/stability": certified_stabilities,
+    "/v1/certified/rotation/energy-ellipsoid": certified_ellipsoids,
+    "/v1/certified/scenes/unwinding-shafts": certified(shafts),
+    "/v1/certified/scenes/rod-in-hole": certified(rods),
+    "/v1/certified/scenes/chain-on-wedge": certified(chains),
     "/v1/plan": plans,
 }

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.extremes.asking import ANSWERING, BUDGET, ROUTES, ask
+from tests.extremes.asking import ANSWERING, BUDGET, ROUTES, ask, certified
 from tests.extremes.questions import LARGEST, MATRIX_OF_METHODS, MOTIONS, turn_of
 from tests.extremes.test_rotation import OWN, TRAJECTORY, farthest
 
@@ -25,7 +25,7 @@ def test_no_integrator_is_said_to_be_better_than_it_is(make: Any) -> None:
         found = ask(TRAJECTORY, question | {"method": make(turn)})
         if not found.answered:
             continue
-        exact = ask(TRAJECTORY, question | {"digits": 40}).of()
+        exact = certified(TRAJECTORY, question, 40).of()
         error = farthest(found.answer["angular_velocity"], exact["angular_velocity"])
         assert error <= found.answer["accuracy"]["error"] + OWN, motion.name
         compared += 1
@@ -62,7 +62,7 @@ def test_the_error_of_a_run_that_nothing_can_judge_is_relative_to_what_is_certai
     method = {"kind": "symmetric-splitting", "step": 0.0625}
     question = {"body": body, "angular_velocity": [0.5, 0.8, -0.6], "times": [0.0, 1.25, -2.5]}
     found = ask(TRAJECTORY, question | {"method": method}).of()
-    exact = ask(TRAJECTORY, question | {"digits": 20}).of()
+    exact = certified(TRAJECTORY, question, 20).of()
     wrong = abs(Fraction(found["angular_velocity"][1][0])) / max(
         abs(Fraction(row[0])) for row in exact["angular_velocity"]
     )

@@ -1,8 +1,8 @@
 """Free motions at every border against two references that share nothing with the double kernels.
 
-Ball arithmetic (`digits`) judges every motion; the closed form in 60 digits of mpmath (`tests.oracles`) judges the step
-from one side of a border to the other. A hundred thousand random motions
-are judged by `tests/core/certified/judge.py`.
+Ball arithmetic (certified answers) judges every motion; the closed form in 60 digits of mpmath (`tests.oracles`) judges
+the step from one side of a border to the other. `tests/core/certified/judge.py` does so for a
+hundred thousand random motions.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.extremes.asking import Asked, ask
+from tests.extremes.asking import Asked, ask, certified
 from tests.extremes.motions import Motion, motions
 from tests.extremes.questions import MOTIONS, STARTS, turn_of
 from tests.oracles.free_rotation import free_motion
@@ -33,7 +33,7 @@ UNRESOLVED = {
     "no body, of": "a time lies beyond 2^48 periods",
     "lamina of 1e-": "a time lies beyond 2^48 periods",
     "one moment and its rate subnormal": "moments and rates lie too far apart",
-    "largest doubles": "the closed form's own bound is larger",
+    "largest doubles": "hangs on the rounding of the constants of the motion",
 }
 """The only motions that are refused, by part of their names, and why."""
 
@@ -46,7 +46,7 @@ def times_of(motion: Motion) -> list[float]:
 
 def asked_both_ways(path: str, question: Asked, **only_in_doubles: Any) -> tuple[Any, Any]:
     """Return the answers in doubles and in 40 digits, either None where it is refused."""
-    found, exact = ask(path, question | only_in_doubles), ask(path, question | {"digits": 40})
+    found, exact = ask(path, question | only_in_doubles), certified(path, question, 40)
     return found, exact
 
 
@@ -237,14 +237,14 @@ def test_a_period_beyond_doubles_is_null_and_said_to_be() -> None:
     assert "out-of-range" in many.codes
     flip = ask(STABILITY, {"body": body, "rate": 5e-324, "disturbance": [5e-324, 0.0]}).of()["flip"]
     assert flip["interval"] is None
-    assert "range of double precision" in flip["reason"]
+    assert "only after a time beyond double precision" in flip["reason"]
 
 
 @pytest.mark.parametrize("digits", [3, 9, "meaningful"])
 def test_rounded_extremes_stay_within_what_is_then_stated(digits: Any) -> None:
     for motion in MOTIONS[::2]:
         question = motion.question | {"times": times_of(motion)[:4]}
-        found, exact = ask(TRAJECTORY, question | {"round": digits}), ask(TRAJECTORY, question | {"digits": 40})
+        found, exact = ask(TRAJECTORY, question | {"round": digits}), certified(TRAJECTORY, question, 40)
         if found.answered:
             error = farthest(found.answer["angular_velocity"], exact.of()["angular_velocity"])
             assert error <= found.answer["accuracy"]["error"] + OWN, motion.name

@@ -21,7 +21,7 @@ from tests.service.http.test_dispatch import receiving, scope, sending
 
 EXAMPLES = int(os.environ.get("POLHODE_FUZZ", "12"))
 SERVICE = inline_service(max_samples=500, max_evaluations=20_000)
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 
 NUMBERS = [
     0,

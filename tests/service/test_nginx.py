@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import http.client
 import json
+import re
 import shutil
 import socket
 import ssl
 import subprocess
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from email.message import Message
 from pathlib import Path
 
 import pytest
 
+from service.problems import REGISTRY
 from tests.service import hostile
 from tests.service.conftest import ROOT, Server
 
@@ -33,6 +36,16 @@ def test_limits_are_those_of_the_service() -> None:
     assert "server 127.0.0.1:8000;" in text
     read = float(text.split("proxy_read_timeout ")[1].split("s;")[0])
     assert read > Settings().deadline_seconds
+    # The proxy closes idle connections first: one that the service closed while a request is on its way is a 502.
+    upstream = text.split("upstream polhode {")[1].split("}")[0]
+    assert float(upstream.split("keepalive_timeout ")[1].split("s;")[0]) < Settings().keep_alive_seconds
+
+
+def test_its_problems_are_those_of_the_service() -> None:
+    for written in re.findall(r"'(\{.*\})'", CONFIGURATION.read_text(encoding="utf-8")):
+        problem = json.loads(written)
+        known = REGISTRY[problem["code"]]
+        assert (problem["type"], problem["title"], problem["status"]) == (known.uri, known.title, known.status)
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +115,27 @@ def test_large_bodies_are_refused_unread(proxy: int) -> None:
     with socket.create_connection(("127.0.0.1", proxy), timeout=20) as plain, tls().wrap_socket(plain) as secure:
         head = f"POST {PATH} HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\n"
         secure.sendall(f"{head}content-length: 9000000\r\n\r\n".encode())
-        assert secure.recv(100).startswith(b"HTTP/1.1 413")
+        received = b""
+        while not received.endswith(b"}") and (more := secure.recv(4096)):
+            received += more
+    assert received.startswith(b"HTTP/1.1 413")
+    assert b"content-type: application/problem+json" in received.lower()
+    assert json.loads(received.split(b"\r\n\r\n", 1)[1])["code"] == "body-too-large"
+
+
+@needs_nginx
+def test_too_many_requests_of_an_address_are_a_problem(proxy: int) -> None:
+    found = []
+    for _ in range(12):
+        # More at once than the burst that the configuration allows.
+        with ThreadPoolExecutor(60) as threads:
+            found += [*threads.map(lambda _: post(proxy, b"{"), range(60))]
+        refused = [(headers, content) for status, headers, content in found if status == 429]
+        if refused:
+            break
+    headers, content = refused[0]
+    assert (headers["content-type"], headers["retry-after"]) == ("application/problem+json", "1")
+    assert json.loads(content)["code"] == "too-busy"
 
 
 @needs_nginx

@@ -123,14 +123,16 @@ async def test_anything_can_be_planned(request_: Any) -> None:
 async def test_an_unknown_path_is_told() -> None:
     plan = await planned("/v1/nothing", {})
     assert [(entry["code"], entry["pointer"]) for entry in plan["errors"]] == [("not-found", "/path")]
+    (fault,) = (await planned("/v1/rotation/trajectories", {}))["errors"]
+    assert fault["remedy"] == "did you mean /v1/rotation/trajectory?"
 
 
 async def test_plans_run_nothing() -> None:
     """A question of a million samples by ten million evaluations is planned in the time of a small one."""
     request = FREE | {"times": {"start": 0.0, "stop": 1e4, "count": 10**6}}
     plan = await planned(PATH, request | {"method": {"kind": "explicit-euler", "step": 1e-3}})
-    # Samples lie a little more than ten steps apart, so that each takes eleven.
-    assert plan["cost"]["evaluations"] == 11 * (10**6 - 1)
+    # Samples lie a little more than ten steps apart; all but the first and the last take one more step each.
+    assert plan["cost"]["evaluations"] == 10**7 + 10**6 - 2
     assert plan["cost"]["samples"] == 10**6
     assert plan["cost"]["milliseconds"] > 100.0 * (await planned(PATH, FREE))["cost"]["milliseconds"]
 

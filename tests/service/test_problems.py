@@ -56,3 +56,13 @@ def test_codes_are_unique_and_published() -> None:
     published = registry()
     assert [entry["code"] for entry in published] == list(REGISTRY)
     assert all(entry["title"] and entry["meaning"].endswith(".") for entry in published)
+
+
+def test_a_problem_names_its_occurrence_by_the_request() -> None:
+    problem = Problem(REGISTRY["too-busy"], "later")
+    document = orjson.loads(problem.body("a-1"))
+    assert (document["instance"], document["request_id"]) == ("urn:polhode:request:a-1", "a-1")
+    assert {"instance", "request_id"}.isdisjoint(orjson.loads(problem.body()))
+    many = tuple(Fault(f"/{'p' * 300}/{i}", "x") for i in range(100))
+    longest = Problem(REGISTRY["invalid-parameter"], "bad", many).body("x" * 64)
+    assert len(longest) <= MOST_BYTES + 20

@@ -1,9 +1,10 @@
 import signal
+import socket
 
 import pytest
 from pydantic import ValidationError
 
-from service.__main__ import main, parser
+from service.__main__ import free_port, main, parser
 from service.settings import LONGEST, Settings
 
 
@@ -57,7 +58,7 @@ def test_paths_lead_somewhere_or_stop_the_start(
     assert str(stop.value.code).startswith(f"POLHODE_{name}: ")
 
 
-def test_defaults_are_those_of_the_house() -> None:
+def test_defaults() -> None:
     settings = Settings()
     assert (settings.host, settings.port, settings.workers) == ("127.0.0.1", 8000, 1)
 
@@ -68,3 +69,24 @@ def test_help_and_version(capsys: pytest.CaptureFixture[str]) -> None:
             main([option])
         assert stop.value.code == 0
         assert text in capsys.readouterr().out
+
+
+def test_a_port_in_use_is_one_clear_line() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(SystemExit) as stop:
+            main(["--port", str(port)])
+    message = str(stop.value.code)
+    assert message.startswith(f"cannot listen on 127.0.0.1, port {port}: Address already in use; ")
+    assert "\n" not in message
+
+
+def test_an_address_of_another_machine_is_one_clear_line() -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["--host", "192.0.2.1"])
+    assert str(stop.value.code).startswith("cannot listen on 192.0.2.1, port 8000: ")
+
+
+def test_any_free_port_is_found() -> None:
+    port = free_port("127.0.0.1", 0)
+    socket.create_server(("127.0.0.1", port)).close()

@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
+from service.routes.examples import examples
 from service.routes.work_precision import SVG, WORK_PRECISION
 from tests.service.conftest import client_of, inline_service
 
 SERVICE = inline_service()
 PATH = WORK_PRECISION[0].path
-QUESTION: dict[str, Any] = dict(WORK_PRECISION[0].examples["t-handle"].question)
+QUESTION: dict[str, Any] = dict(examples()["work_precision"]["t-handle"].question)
 
 pytestmark = pytest.mark.anyio
 

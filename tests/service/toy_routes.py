@@ -12,15 +12,17 @@ import numpy as np
 
 from core.errors import AccuracyUnreachable, MechanicsError, UnphysicalInertia
 from core.notices import Notice
-from core.quantities import AngularVelocity, Mass, MomentOfInertia, Position, TaggedBy, check
+from core.quantities import AngularVelocity, Mass, Position, Quantity, TaggedBy, check
 from core.systems.budget import Budget
 from service.routing import Example, PostRoute
 from service.schemas import Envelope, Request, Times, Vector, sample_count, sample_times
 
+PositiveMoment = Annotated[float, Quantity("kg m^2", above=0)]
+
 
 @dataclass(frozen=True)
 class Moments:
-    moments: tuple[MomentOfInertia, MomentOfInertia, MomentOfInertia]
+    moments: tuple[PositiveMoment, PositiveMoment, PositiveMoment]
     kind: Literal["moments"] = "moments"
 
     def __post_init__(self) -> None:

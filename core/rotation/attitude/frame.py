@@ -1,4 +1,4 @@
-"""How the quaternions of a closed form, which start where they may, are turned to start where they should; compiled."""
+"""Constant rotations that give the quaternions of a closed form the requested initial attitude, compiled."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from core.rotation.precession.constants import PrecessionConstants
 
 @kernel()
 def _given(q: NDArray[np.float64]) -> Quaternion:
-    """Return the unit quaternion of a client's four numbers."""
+    """Return the unit quaternion of four given numbers."""
     return unit(Quaternion((q[0], 0.0), (q[1], 0.0), (q[2], 0.0), (q[3], 0.0)))
 
 
@@ -42,7 +42,7 @@ def fill_at_rest(start: NDArray[np.float64], out: NDArray[np.float64]) -> None:
 def from_steady(
     start: NDArray[np.float64], rate: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return what turns rotations about an angular velocity into attitudes, shape (4, 4), and its direction.
+    """Return the matrix from rotations about an angular velocity to attitudes, shape (4, 4), and its direction.
 
     Parameters
     ----------
@@ -79,10 +79,10 @@ def from_precession(
     axes_tail: NDArray[np.float64],
     start: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Return what turns Rz(psi) P into the attitude, shape (4, 4): two products, from the left and from the right.
+    """Return the matrix from Rz(psi) P to the attitude, shape (4, 4): a product from the left and one from the right.
 
-    The axes of P are those of the motion: x along c, z along d, each on the side where the motion starts, y = z x x. In
-    them m is the direction of the angular momentum and P the shortest arc that takes it to z.
+    The axes of P are those of the motion: x along c, z along d, each in the direction of the initial component, and
+    y = z x x. In these axes m is the direction of the angular momentum and P the shortest rotation that takes it to z.
 
     Parameters
     ----------

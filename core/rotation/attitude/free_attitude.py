@@ -16,7 +16,7 @@ from core.errors import AccuracyUnreachable, InvalidParameter
 from core.rotation.attitude.frame import fill_at_rest, from_precession, from_steady
 from core.rotation.attitude.sampling import sample_attitude, sample_steady
 from core.rotation.closed_form.circulation import PERIODIC, REST, STEADY
-from core.rotation.free_rotation import DERIVED_ROUNDING, SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
+from core.rotation.free_rotation import SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
 from core.rotation.precession.constants import PrecessionConstants, angle_per_period, precession_constants
 from core.rotation.uncertainty.input_uncertainty import WHOLE_TURN, lost_after
 from core.systems.system import Floats
@@ -63,7 +63,7 @@ class FreeAttitude:
     @cached_property
     def constants(self) -> PrecessionConstants:
         """Constants of the precession about the angular momentum, where the angular velocity changes."""
-        i, it, w, wt = self.rotation.resolved
+        i, it, w, wt = self.rotation.resolved.numbers
         constants: PrecessionConstants = precession_constants(self.rotation.motion, i, it, w, wt)
         if not all(map(math.isfinite, (*constants[:-1], *constants.quarter))):
             raise self._beyond_doubles()
@@ -93,7 +93,7 @@ class FreeAttitude:
         else:
             inertia = self.rotation.inertia
             onto = from_precession(
-                motion, self.constants, *self.rotation.resolved, inertia.axes, inertia.axes_tail, start
+                motion, self.constants, *self.rotation.resolved.numbers, inertia.axes, inertia.axes_tail, start
             )
             sample_attitude(motion, self.constants, times, onto, out)
         if not np.isfinite(out).all():
@@ -110,15 +110,14 @@ class FreeAttitude:
         if motion.regime == REST:
             # Four components rounded by 2^-54 at most: a distance of 2^-53, and a vector is turned by twice as much.
             return 2.0 * UNIT_ROUNDOFF
-        if motion.regime == STEADY:
-            return ATTITUDE_ERROR
-        turned = math.pi * self._turns(horizon)
-        if self.rotation.exact_inputs:
-            phase: float = motion.computed.at(SET_UP_ROUNDING, horizon)
-            return ATTITUDE_ERROR + 8.0 * SET_UP_ROUNDING * turned + 4.0 * phase
-        moments, rates = self.rotation.grading
-        phase = motion.inherited.at(DERIVED_ROUNDING * moments, horizon, max(1.0, rates / moments))
-        return ATTITUDE_ERROR + 8.0 * DERIVED_ROUNDING * max(moments, rates) * turned + 4.0 * phase
+        computed = ATTITUDE_ERROR
+        if motion.regime != STEADY:
+            turned = math.pi * self._turns(horizon)
+            computed += 8.0 * SET_UP_ROUNDING * turned + 4.0 * motion.condition_bounds.at(SET_UP_ROUNDING, horizon)
+        if self.rotation.derivation is None:
+            return computed
+        derived = self.rotation.derivation.attitude(self.rotation.derived_rounding, horizon)
+        return min(WHOLE_TURN, computed + derived)
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return by what angle (rad) a relative `uncertainty` of every input may turn the samples, at most pi.
@@ -130,9 +129,9 @@ class FreeAttitude:
             return 0.0
         if self.rotation.motion.regime == REST:
             return min(WHOLE_TURN, 2.0 * uncertainty)
-        if self.rotation.sensitivity is None:
+        if self.rotation.input_uncertainty is None:
             return WHOLE_TURN
-        return self.rotation.sensitivity.attitude(uncertainty, horizon)
+        return self.rotation.input_uncertainty.attitude(uncertainty, horizon)
 
     def horizon_of(self, uncertainty: float = UNIT_ROUNDOFF) -> float | None:
         """Return the time after which a relative `uncertainty` of every input leaves nothing known of the attitude (s).
@@ -153,7 +152,7 @@ class FreeAttitude:
         if motion.regime == REST:
             return 0.0
         if motion.regime == STEADY:
-            return self.rotation.largest_rate / math.pi * horizon
+            return self.rotation.largest_norm / math.pi * horizon
         return abs(self.constants.turn) * motion.time_scale * horizon
 
     def _countable(self, horizon: float) -> None:

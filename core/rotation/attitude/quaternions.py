@@ -1,4 +1,4 @@
-"""Quaternions of 106 bits, compiled: for what is formed once and multiplies every sample."""
+"""Quaternions of 106 bits, compiled; for constants that multiply every sample."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Quaternion(NamedTuple):
 
 ZERO, ONE = (0.0, 0.0), (1.0, 0.0)
 IDENTITY = Quaternion(ONE, ZERO, ZERO, ZERO)
-"""No turn."""
+"""The identity."""
 
 
 @kernel()
@@ -46,7 +46,7 @@ def _products(a: Pair, b: Pair, c: Pair, d: Pair, e: Pair, f: Pair, g: Pair, h: 
 
 @kernel()
 def product(p: Quaternion, q: Quaternion) -> Quaternion:
-    """Return Hamilton's product p q: the turn q, then the turn p."""
+    """Return Hamilton's product p q: the rotation q, followed by p."""
     x, y, z = _minus(p.x), _minus(p.y), _minus(p.z)
     return Quaternion(
         _products(p.w, q.w, x, q.x, y, q.y, z, q.z),
@@ -58,7 +58,7 @@ def product(p: Quaternion, q: Quaternion) -> Quaternion:
 
 @kernel()
 def conjugate(q: Quaternion) -> Quaternion:
-    """Return w - x i - y j - z k, the turn back of a unit quaternion."""
+    """Return w - x i - y j - z k, the inverse rotation of a unit quaternion."""
     return Quaternion(q.w, _minus(q.x), _minus(q.y), _minus(q.z))
 
 
@@ -66,7 +66,7 @@ def conjugate(q: Quaternion) -> Quaternion:
 def unit(q: Quaternion) -> Quaternion:
     """Return q/|q|; q may be of any length but zero."""
     largest = max(max(abs(q.w[0]), abs(q.x[0])), max(abs(q.y[0]), abs(q.z[0])))
-    # Powers of two in two steps: that of a subnormal number would be infinite.
+    # Powers of two in two steps: the inverse of a subnormal number would overflow.
     exponent = -math.frexp(largest)[1]
     half = exponent // 2
     f, g = math.ldexp(1.0, half), math.ldexp(1.0, exponent - half)
@@ -86,7 +86,7 @@ def of_matrix(m: NDArray[np.float64], tail: NDArray[np.float64]) -> Quaternion:
     Parameters
     ----------
     m, tail : ndarray, shape (3, 3)
-        Whose sum the matrix is.
+        The matrix is their sum.
     """
     a, b, c = (m[0, 0], tail[0, 0]), (m[1, 1], tail[1, 1]), (m[2, 2], tail[2, 2])
     p, q, r = _plus(ONE, a), _plus(ONE, _minus(a)), _plus(b, c)

@@ -43,7 +43,7 @@ def _theta23_phase(
 
     With w = eta_x + i y, Q = q^(1/2): theta3 ~ 1 + 2 sum b_n, b_n = Q^(n^2) cos 2nw, b_{n+1} = 2 Q^(2n+1) cos 2w b_n -
     Q^(4n) b_{n-1}; theta2 ~ sum b_n, b_n = Q^(n(n+1)) cos(2n+1)w, b_{n+1} = 2 Q^(2n+2) cos 2w b_n - Q^(4n+2) b_{n-1}
-    with b_{-1} = b_0. Both go the same way from different starts, so that nothing branches.
+    with b_{-1} = b_0. Both use the same recurrence with different initial values, without branches.
     """
     wr, wi = pre.quarter.cos_x * c1, -pre.quarter.sin_x * s1
     # cos 2w
@@ -78,7 +78,7 @@ def _theta4_phase(quarter: Quarter, odd: bool, s: float, c: float) -> tuple[floa
 
 
 class _Instant(NamedTuple):
-    """What a quaternion Rz(psi) P is made of: the angular momentum m in the body, as a unit vector, and psi/2.
+    """The constituents of a quaternion Rz(psi) P: the unit vector m of the angular momentum in the body, and psi/2.
 
     psi/2 is a rate times time, plus `extra` quarters, plus the argument of `phase_r` + i `phase_i`.
     """
@@ -93,11 +93,11 @@ class _Instant(NamedTuple):
 
 @kernel(inline="always")
 def _unweighted(lat: Lattice) -> Weights:
-    """Return the constants of the theta quotients by themselves."""
+    """Return the constants of the theta quotients without amplitudes."""
     return Weights(lat.even_cn[0], lat.even_sn[0], lat.even_dn[0], lat.odd_cn[0], lat.odd_sn[0], lat.odd_dn[0])
 
 
-# Inlined before the loops are looked at: called, they would be too long to be taken into a loop of four samples.
+# Inlined before loop optimisation: as calls they would be too long to be vectorised by four samples.
 @kernel(inline="always")
 def _near_circular(motion: Motion, pre: PrecessionConstants, t: float) -> _Instant:
     lat = motion.lattice
@@ -197,7 +197,7 @@ def sample_attitude(
     out: NDArray[np.float64],
 ) -> None:
     """Fill `out`, shape (4, n), with `turn`, shape (4, 4), applied to the quaternions Rz(psi) P."""
-    # One array for each component and one loop for each branch, without branches of its own: four samples at a time.
+    # One array per component and one loop per branch, without branches inside, so the loops are vectorised.
     w, x, y, z = out[0], out[1], out[2], out[3]
     to_w, to_x, to_y, to_z = _row(turn, 0), _row(turn, 1), _row(turn, 2), _row(turn, 3)
     if pre.branch == CIRCULAR:

@@ -51,6 +51,13 @@ SMALLEST_MODULUS = -946
 """Binary exponent below which a complementary modulus other than 0 has lost digits of its low part."""
 
 
+LIKE_SYMMETRIC = -30
+"""Exponent up to which m and |I_b - I_c|/|I_b - I_d| let two nearly equal moments move a body as two equal ones do.
+
+The rate in the body varies by half of each, here 2^-31 of itself.
+"""
+
+
 class Decision(NamedTuple):
     """What the motion does, and the difference by which it was decided."""
 
@@ -169,6 +176,13 @@ def circulation(
 
 
 @kernel()
+def like_symmetric(c: Circulation) -> bool:
+    """Return whether a body with nearly equal moments about the axes c and b moves as one with equal ones."""
+    unevenness = sc_div(c.bc, c.bd)
+    return sc_mul(c.k, c.k).exponent <= LIKE_SYMMETRIC and unevenness.exponent <= LIKE_SYMMETRIC
+
+
+@kernel()
 def amplitudes(c: Circulation) -> Amplitudes:
     """Return the largest components of the angular velocity."""
     return Amplitudes(
@@ -186,7 +200,7 @@ def complement(c: Circulation, D: Scaled) -> Scaled:
 
 def exact_difference(resolved: Resolved) -> Scaled:
     """Return D_B = C (C - B) w_C^2 - A (B - A) w_A^2 from exact rational arithmetic, where `decision` left it open."""
-    i, it, w, wt = resolved
+    i, it, w, wt = resolved.numbers
     a, b, c = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(i, it, strict=True))
     wa, _, wc = (Fraction(float(x)) + Fraction(float(y)) for x, y in zip(w, wt, strict=True))
     exact = c * (c - b) * wc * wc - a * (b - a) * wa * wa

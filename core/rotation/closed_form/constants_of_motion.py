@@ -30,7 +30,6 @@ from core.double_double import (
     dd_mul,
     sc_abs,
     sc_div,
-    sc_mul,
     sc_pair,
     scaled,
 )
@@ -52,9 +51,7 @@ from core.rotation.closed_form.circulation import (
 from core.rotation.closed_form.condition_bounds import (
     NONE,
     ConditionBounds,
-    computed_sensitivity,
-    inherited_sensitivity,
-    steady_sensitivity,
+    rounding_bounds,
 )
 
 
@@ -93,9 +90,7 @@ class Motion(NamedTuple):
     start: float
     start_tail: float
     """Quarter periods at t = 0: start_quarter + start; on the separatrix, u at t = 0."""
-    inherited: ConditionBounds
-    """With u = 1: for uncertainties of moments and start, as the rounding of derived ones is."""
-    computed: ConditionBounds
+    condition_bounds: ConditionBounds
     """With u = 1: for the rounding of 2^-104 with which these constants were formed."""
 
     def mirrored(self, c: float, b: float, d: float) -> Motion:
@@ -124,10 +119,10 @@ def _weights(ac: Pair, ab: Pair, ad: Pair, lat: Lattice) -> Weights:
 
 
 @kernel()
-def _motionless(regime: int, inherited: ConditionBounds) -> Motion:
+def _motionless(regime: int) -> Motion:
     return Motion(
         regime, 2, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        0.0, 0.0, 1.0, 0.0, 0.0, 0.0, inherited, NONE,
+        0.0, 0.0, 1.0, 0.0, 0.0, 0.0, NONE,
     )  # fmt: skip
 
 
@@ -163,21 +158,14 @@ def constants_of_motion(
     """
     largest = max(abs(w[0]), abs(w[1]), abs(w[2]))
     found = decision(i, it, w, wt, decided, exact)
-    if found.regime == REST or found.regime == UNDECIDED:
-        return _motionless(found.regime, NONE)
-    if found.regime == STEADY:
-        axis = -1
-        if int(w[0] != 0.0) + int(w[1] != 0.0) + int(w[2] != 0.0) == 1:
-            axis = 0 if w[0] != 0.0 else 1 if w[1] != 0.0 else 2
-        unit = math.ldexp(1.0, -max(-1000, min(1000, scaled(i[2], 0.0, 0).exponent)))
-        fastest = 2.0 * largest if axis < 0 else largest
-        return _motionless(STEADY, steady_sensitivity(i[0] * unit, i[1] * unit, i[2] * unit, axis, fastest))
+    if found.regime == REST or found.regime == STEADY or found.regime == UNDECIDED:
+        return _motionless(found.regime)
 
     circled = 2 if found.D.high >= 0.0 else 0
     turning = circulation(i, it, w, wt, circled)
     k1 = complement(turning, found.D)
     if k1.high != 0.0 and k1.exponent < SMALLEST_MODULUS:
-        return _motionless(UNREACHABLE, NONE)
+        return _motionless(UNREACHABLE)
     far, p, cancellation = amplitudes(turning), turning.p, found.cancellation
     W_d, W_c = scaled(w[circled], wt[circled], 0), scaled(w[2 - circled], wt[2 - circled], 0)
     s = -1.0 if W_d.high < 0.0 else 1.0
@@ -194,41 +182,24 @@ def constants_of_motion(
     ac, ab, ad = sc_pair(far.c), sc_pair(far.b), sc_pair(far.d)
     amplitude_c, amplitude_b, amplitude_d = ac[0], s * ab[0], s * ad[0]
     p_pair = sc_pair(p)
-    # Sensitivities in units in which the largest moment and the largest component are of order one.
-    ie = math.ldexp(1.0, -max(-1000, min(1000, scaled(i[2], 0.0, 0).exponent)))
+    # Sensitivities in units in which the largest component is of order one.
     we = math.ldexp(1.0, -max(-1000, min(1000, scaled(largest, 0.0, 0).exponent)))
     m, m1 = kh * kh, k1h * k1h
-    dec = (
-        i[2 - circled] * ie, i[1] * ie, i[circled] * ie,
-        w[2 - circled] * we, w[1] * we, w[circled] * we,
-        amplitude_c * we, abs(amplitude_b) * we, abs(amplitude_d) * we,
-    )  # fmt: skip
-    top = max(dec[6], dec[7], dec[8])
-    fastest = 2.0 * max(abs(amplitude_c), abs(amplitude_b), abs(amplitude_d))
-    outer = max(abs(dec[3]), abs(dec[5]))
-    wa2, wc2 = (dec[3] / outer) ** 2, (dec[5] / outer) ** 2
-    tA = dec[0] * abs(dec[1] - dec[0]) * wa2
-    tC = dec[2] * abs(dec[2] - dec[1]) * wc2
-    grown = 3 * tA + dec[0] * (dec[0] + dec[1]) * wa2 + 3 * tC + dec[2] * (dec[2] + dec[1]) * wc2
-    d_D = grown / (tA + tC) * cancellation
+    size_c, size_b, size_d = amplitude_c * we, abs(amplitude_b) * we, abs(amplitude_d) * we
+    top = max(size_c, size_b, size_d)
 
     if k1h == 0.0:
         # sech has no sign of its own: half a turn about d gives w_c its sign, and w_b with it.
         side = -1.0 if ch < 0.0 else 1.0
         sh, sl, ch, cl = side * sh, side * sl, side * ch, side * cl
         amplitude_c, amplitude_b = side * amplitude_c, side * amplitude_b
-        missed = grown / (tA + tC) * sc_pair(sc_div(sc_mul(turning.cd, found.S), turning.bdY))[0]
         uh, ul = rf_of_roots(gh, gl, gh, gl, 1.0, 0.0)
         uh, ul = dd_mul(uh, ul, sh, sl)
-        inherited = inherited_sensitivity(
-            dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
-            1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, 8.0, missed, top, fastest,
-        )  # fmt: skip
-        computed = computed_sensitivity(dec[6], dec[7], dec[8], 1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, uh, 1.0, top)
+        computed = rounding_bounds(size_c, size_b, size_d, 1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, uh, 1.0, top)
         return Motion(
             SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0],
             _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-            *_rate(p), 0.0, uh, ul, inherited, computed,
+            *_rate(p), 0.0, uh, ul, computed,
         )  # fmt: skip
     lat = lattice(kh, kl, k1h, k1l)
     # Distance from the nearest quarter period, where |sn(K/2)|^2 = 1/(1 + k').
@@ -249,15 +220,11 @@ def constants_of_motion(
         quarter = side
         sign = -side if ch >= 0.0 else side
     f = sc_div(p, scaled(lat.K, lat.K_tail, 0))
-    inherited = inherited_sensitivity(
-        dec[0], dec[1], dec[2], dec[3], dec[4], dec[5], dec[6], dec[7], dec[8],
-        m, m1, p_pair[0], lat.K, sh, ch, dh, d_D, 0.0, top, fastest,
-    )  # fmt: skip
-    computed = computed_sensitivity(
-        dec[6], dec[7], dec[8], m, m1, p_pair[0], lat.K, sh, ch, dh, vh, 1.0 if decided else cancellation, top
+    computed = rounding_bounds(
+        size_c, size_b, size_d, m, m1, p_pair[0], lat.K, sh, ch, dh, vh, 1.0 if decided else cancellation, top
     )
     return Motion(
         PERIODIC, circled, amplitude_c, amplitude_b, amplitude_d, m, m1, p_pair[0],
         lat, _weights(ac, (s * ab[0], s * ab[1]), (s * ad[0], s * ad[1]), lat),
-        *_rate(f), quarter, sign * rh, sign * rl, inherited, computed,
+        *_rate(f), quarter, sign * rh, sign * rl, computed,
     )  # fmt: skip

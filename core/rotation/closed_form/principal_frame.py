@@ -9,13 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.bodies.principal_inertia import PrincipalInertia
+from core.bodies.principal_inertia import RESOLUTION, PrincipalInertia
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.systems.system import Floats
-
-RESOLUTION = 2.0**-96
-"""Differences of derived moments, and derived components, below this share of the largest are taken as 0."""
 
 
 @kernel()
@@ -37,12 +34,15 @@ def resolve(
     x: float,
     y: float,
     z: float,
+    derived: bool,
     out: NDArray[np.float64],
-) -> None:
+) -> float:
     """Fill `out`, shape (4, 3), with moments, angular velocity along their axes and the tails of each, in pairs.
 
-    The moments are those of the motion and (x, y, z) the angular velocity in body axes. Where either was derived, what
-    lies below the resolution of derived numbers is noise, whose sign would decide the regime, and is taken as 0.
+    The moments are those of the motion and (x, y, z) the angular velocity in body axes. Where the axes were derived,
+    what is below the resolution of derived numbers is noise, whose sign would decide the regime, and is taken as 0.
+    Where they are exact so is every component, however small. What is returned is the largest share of the largest
+    moment or component that was taken as 0.
     """
     for k in range(3):
         out[0, k], out[1, k] = moments[k], moments_tail[k]
@@ -52,33 +52,55 @@ def resolve(
         h, low = dd_add(h, low, ph, pl)
         ph, pl = dd_mul_d(axes[2, k], axes_tail[2, k], z)
         out[2, k], out[3, k] = dd_add(h, low, ph, pl)
-    if moments_tail[0] == 0.0 and moments_tail[1] == 0.0 and moments_tail[2] == 0.0 and _own_axes(axes, axes_tail):
-        return
+    dropped = 0.0
+    if not derived:
+        return dropped
     for k in range(2):
         # With the tails: over many turns a difference far below an ulp is seen.
-        if (out[0, k + 1] - out[0, k]) + (out[1, k + 1] - out[1, k]) <= RESOLUTION * moments[2]:
+        gap = (out[0, k + 1] - out[0, k]) + (out[1, k + 1] - out[1, k])
+        if gap <= RESOLUTION * moments[2]:
             out[0, k + 1], out[1, k + 1] = out[0, k], out[1, k]
+            dropped = max(dropped, abs(gap) / moments[2])
     largest = max(abs(out[2, 0]), abs(out[2, 1]), abs(out[2, 2]))
     for k in range(3):
-        if abs(out[2, k]) <= RESOLUTION * largest:
+        if abs(out[2, k]) <= RESOLUTION * largest and largest > 0.0:
+            dropped = max(dropped, abs(out[2, k]) / largest)
             out[2, k], out[3, k] = 0.0, 0.0
+    return dropped
 
 
 class Resolved(NamedTuple):
-    """Principal moments, ascending, and angular velocity along their axes, each with its tail, shape (3,)."""
+    """Principal moments, ascending, and angular velocity along their axes, each with its tail, shape (3,).
+
+    `dropped` is what was taken for noise, as a share of the largest moment or component.
+    """
 
     moments: Floats
     moments_tail: Floats
     angular_velocity: Floats
     angular_velocity_tail: Floats
+    dropped: float
+
+    @property
+    def numbers(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Moments and angular velocity with their tails."""
+        return self.moments, self.moments_tail, self.angular_velocity, self.angular_velocity_tail
 
     @classmethod
     def of(cls, inertia: PrincipalInertia, angular_velocity: Floats) -> Resolved:
         """Return what `resolve` makes of a body and its angular velocity in body axes, shape (3,)."""
         found = np.empty((4, 3))
         x, y, z = map(float, angular_velocity)
-        resolve(inertia.axes, inertia.axes_tail, inertia.moments, inertia.moments_tail, x, y, z, found)
-        return cls(found[0], found[1], found[2], found[3])
+        derived = not inertia.rounding.exact_zeros
+        dropped = resolve(
+            inertia.axes, inertia.axes_tail, inertia.moments, inertia.moments_tail, x, y, z, derived, found
+        )
+        if inertia.tensor is not None and inertia.tensor.turns_steadily(angular_velocity):
+            # Of several components all but one are noise, unless they belong to equal moments.
+            main = int(np.abs(found[2]).argmax())
+            equal = [k for k in range(3) if found[0, k] == found[0, main] and found[1, k] == found[1, main]]
+            found[2:, [k for k in range(3) if k not in equal]] = 0.0
+        return cls(found[0], found[1], found[2], found[3], dropped)
 
 
 @dataclass(frozen=True, eq=False)

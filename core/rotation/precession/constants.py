@@ -1,8 +1,9 @@
-"""The constants of the angle that a free body turns about its angular momentum, compiled.
+"""The constants of the rotation angle of a free body about its angular momentum, compiled.
 
-With axes x' = e_c, z' = e_d (each pointing where w starts) and y' completing them, m = M/L has m_z' > 0 always, and
+With axes x' = e_c, z' = e_d (in the directions of the initial components of w) and y' completing them, m = M/L has
+m_z' > 0 always, and
 
-    R = Rz(psi) P(m),   P the shortest arc that takes m to z',   psi' = (2E + L w_z')/(L + M_z').
+    R = Rz(psi) P(m),   P the shortest rotation from m to z',   psi' = (2E + L w_z')/(L + M_z').
 
 psi = kappa u + 2 eta arg theta4(z - i xi | q^2), where z = pi u/2K, xi = pi x/2K, eta = +1 about the largest moment
 and -1 about the smallest, and sc(x|m1)^2 = I_c|I_d-I_b| / (I_d|I_b-I_c|) depends on the moments alone. Near the
@@ -53,7 +54,7 @@ CIRCULAR, HYPERBOLIC, LIMIT = range(3)
 
 
 class Quarter(NamedTuple):
-    """What psi/2 does in a quarter period, and the constants of its periodic part inside of one."""
+    """The change of psi/2 in a quarter period, and the constants of its periodic part."""
 
     per_quarter: float
     per_quarter_tail: float
@@ -88,8 +89,8 @@ class PrecessionConstants(NamedTuple):
 def _sin_cos_dd(ah: float, al: float) -> tuple[float, float, float, float]:
     """Return sin a and cos a as pairs, for 0 <= a <= pi/4, by their Taylor series."""
     wh, wl = dd_sqr(ah, al)
-    # sin a/a = 1 - w/(2 3) (1 - w/(4 5) (...)),  cos a = 1 - w/(1 2) (1 - w/(3 4) (...)); what is left from the term
-    # in w^10 on is multiplied by w^10/20! < 2^-65, and doubles suffice for it.
+    # sin a/a = 1 - w/(2 3) (1 - w/(4 5) (...)),  cos a = 1 - w/(1 2) (1 - w/(3 4) (...)). The terms from w^10 on are
+    # multiplied by w^10/20! < 2^-65, so doubles suffice for them.
     sh, sl, ch, cl = 0.0, 0.0, 0.0, 0.0
     for n in range(27, 19, -2):
         sh = wh / ((n + 1) * (n + 2)) * (1.0 - sh)
@@ -179,7 +180,7 @@ def _theta4_slope(xh: float, xl: float, qh: float, ql: float) -> tuple[float, fl
 
 
 class Turning(NamedTuple):
-    """A motion as it turns about its angular momentum, at u = 0, where w = (A_c, 0, A_d) in x', y', z'."""
+    """The rotation about the angular momentum at u = 0, where w = (A_c, 0, A_d) in x', y', z'."""
 
     L: Scaled
     M_c: Scaled
@@ -197,7 +198,7 @@ class Turning(NamedTuple):
 
 @kernel()
 def turning(c: Circulation, far_c: Scaled, far_d: Scaled) -> Turning:
-    """Return what a motion with amplitudes `far_c` and `far_d` is at u = 0."""
+    """Return the rotation about the angular momentum at u = 0, for amplitudes `far_c` and `far_d`."""
     M_c, M_d = sc_mul(c.I_c, far_c), sc_mul(c.I_d, far_d)
     L = sc_sqrt(sc_add(sc_mul(M_c, M_c), sc_mul(M_d, M_d)))
     top = sc_add(sc_add(sc_mul(M_c, far_c), sc_mul(M_d, far_d)), sc_mul(L, far_d))
@@ -211,7 +212,7 @@ def turning(c: Circulation, far_c: Scaled, far_d: Scaled) -> Turning:
 
 @kernel()
 def quarter_turn(c: Circulation, t: Turning, of: Periods) -> Quarter:
-    """Return what psi/2 does in a quarter period of a motion that turns as `t` says at u = 0."""
+    """Return the change of psi/2 in a quarter period, for the rotation `t` at u = 0."""
     eta = 1.0 if c.circled == 2 else -1.0
     ah, al = dd_mul(t.kappa, t.kappa_tail, of.K, of.K_tail)
     kh, kl = sc_pair(c.k)
@@ -253,9 +254,9 @@ def quarter_turn(c: Circulation, t: Turning, of: Periods) -> Quarter:
 
 @kernel()
 def angle_per_period(quarter: Quarter, eta: float) -> Pair:
-    """Return the angle by which the circled axis turns about the angular momentum in a period, not reduced (rad)."""
-    # Rz(psi) turns by 8 quarters of psi/2; it differs from Euler's angle of the circled axis by the one turn that the
-    # shortest arc P makes with m.
+    """Return the rotation angle of the circled axis about the angular momentum in a period, not reduced (rad)."""
+    # Rz(psi) rotates by 8 quarters of psi/2. It differs from Euler's angle of the circled axis by one turn, which the
+    # shortest rotation P makes with m.
     h, low = dd_mul_d(quarter.per_quarter, quarter.per_quarter_tail, 8.0)
     return dd_add(h, low, 2.0 * eta * PI[0], 2.0 * eta * PI[1])
 
@@ -264,7 +265,7 @@ def angle_per_period(quarter: Quarter, eta: float) -> Pair:
 def precession_constants(
     motion: Motion, i: NDArray[np.float64], it: NDArray[np.float64], w: NDArray[np.float64], wt: NDArray[np.float64]
 ) -> PrecessionConstants:
-    """Return the constants of the attitude of a motion that turns (periodic or on the separatrix).
+    """Return the constants of the attitude of a periodic motion, or one on the separatrix.
 
     Parameters
     ----------

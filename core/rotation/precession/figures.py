@@ -47,8 +47,8 @@ from core.rotation.closed_form.circulation import (
     circulation,
     complement,
     decision,
+    like_symmetric,
 )
-from core.rotation.closed_form.principal_frame import resolve
 from core.rotation.precession.constants import angle_per_period, quarter_turn, turning
 
 ABSENT = math.nan
@@ -62,12 +62,6 @@ UNRESOLVED = -math.inf
 
 SMALLEST_ANGLE = 2.0**-43
 """What 1e-29 rad are half a unit in the last place of (rad); for K/8 times that, K/4 times the angle."""
-
-LIKE_SYMMETRIC = -30
-"""Exponent up to which m and |I_b - I_c|/|I_b - I_d| let two nearly equal moments move a body as two equal ones do.
-
-The rate in the body varies by half of each, here 2^-31 of itself.
-"""
 
 Figures = tuple[float, float, float, float, float, float, float, float, float]
 Found = tuple[int, bool, bool, tuple[float, float, float], Figures]
@@ -84,7 +78,7 @@ def stated(x: Scaled) -> float:
 
 
 @kernel()
-def _angle(across: Scaled, along: Scaled, obtuse: bool) -> float:
+def angle_of_tangent(across: Scaled, along: Scaled, obtuse: bool) -> float:
     """Return the angle in [0, pi] whose tangent is across/along in magnitude; both are at least 0."""
     if along.high == 0.0:
         return 0.5 * PI[0] if across.high != 0.0 else 0.0
@@ -119,31 +113,26 @@ def _momentum(
 
 
 @kernel()
-def _like_symmetric(c: Circulation) -> bool:
-    """Return whether a body with nearly equal moments about the axes c and b moves as one with equal ones."""
-    unevenness = sc_div(c.bc, c.bd)
-    return sc_mul(c.k, c.k).exponent <= LIKE_SYMMETRIC and unevenness.exponent <= LIKE_SYMMETRIC
-
-
-@kernel()
 def _regular(equal: Scaled, single: Scaled, gap: Scaled, along: Scaled, across: Scaled, periodic: bool) -> Figures:
     """Return the figures of a body with moments `equal`, twice, and `single`; gap is what they differ by."""
     forward = sc_abs(along)
     m_along, m_across = sc_mul(single, forward), sc_mul(equal, across)
     space_rate = sc_div(sc_sqrt(sc_add(sc_mul(m_along, m_along), sc_mul(m_across, m_across))), equal)
-    body_rate, period, turned, mean = ABSENT, ABSENT, ABSENT, ABSENT
+    # Across the axis nothing goes round it; along the axis there is nothing that could.
+    body_rate = 0.0 if along.high == 0.0 else ABSENT
+    period, turned, mean = ABSENT, ABSENT, ABSENT
     if periodic:
         rate = sc_mul(sc_div(gap, equal), along)
         time = sc_div(scaled(2.0 * PI[0], 2.0 * PI[1], 0), sc_abs(rate))
         body_rate, period = stated(rate), stated(time)
         turned, mean = stated(sc_mul(space_rate, time)), stated(space_rate)
-    between = _angle(
+    between = angle_of_tangent(
         sc_mul(sc_mul(sc_abs(gap), across), forward), sc_add(sc_mul(m_across, across), sc_mul(m_along, forward)), False
     )
     obtuse = along.high < 0.0
     return (
         body_rate, stated(space_rate), period, ABSENT,
-        _angle(m_across, m_along, obtuse), _angle(across, forward, obtuse), between, turned, mean,
+        angle_of_tangent(m_across, m_along, obtuse), angle_of_tangent(across, forward, obtuse), between, turned, mean,
     )  # fmt: skip
 
 
@@ -188,10 +177,10 @@ def precession_figures(
     moments: NDArray[np.float64],
     moments_tail: NDArray[np.float64],
     axes: NDArray[np.float64],
-    axes_tail: NDArray[np.float64],
-    x: float,
-    y: float,
-    z: float,
+    i: NDArray[np.float64],
+    it: NDArray[np.float64],
+    w: NDArray[np.float64],
+    wt: NDArray[np.float64],
     decided: bool,
     high: float,
     low: float,
@@ -203,10 +192,10 @@ def precession_figures(
     ----------
     symmetry_axis : int
         Number of the moment that is not equal to the other two: 2 or 0; -1 where all three differ.
-    moments, moments_tail, axes, axes_tail : ndarray, shape (3,) and (3, 3)
+    moments, moments_tail, axes : ndarray, shape (3,) and (3, 3)
         As in `PrincipalInertia`; all moments positive, or the smallest 0 and the spin across its axis.
-    x, y, z : float
-        Angular velocity in body axes, not 0 (rad/s).
+    i, it, w, wt : ndarray, shape (3,)
+        As in `Resolved`; the angular velocity not 0.
     decided, high, low, exponent : bool, float, float, int
         As `decided` and `exact` of `constants_of_motion`, for a second call where the first returned UNDECIDED.
 
@@ -215,9 +204,6 @@ def precession_figures(
     tuple
         The figures in the order of `core.rotation.precession.FIGURES`.
     """
-    resolved = np.empty((4, 3))
-    resolve(axes, axes_tail, moments, moments_tail, x, y, z, resolved)
-    i, it, w, wt = resolved[0], resolved[1], resolved[2], resolved[3]
     k = symmetry_axis
     regime, apart, spun = STEADY, False, 0
     exact_period, followed = _of_a_limit(ABSENT), False
@@ -247,7 +233,7 @@ def precession_figures(
             if k1.exponent < SMALLEST_MODULUS:
                 return UNREACHABLE, False, apart, (0.0, 0.0, 0.0), _of_a_limit(ABSENT)
             exact_period, followed = _elliptic(c, k1), True
-            if circled != k or not _like_symmetric(c):
+            if circled != k or not like_symmetric(c):
                 ax, ay, az, _ = oriented(axes, circled)
                 return regime, k >= 0, apart, (ax, ay, az), exact_period
         else:
@@ -265,7 +251,7 @@ def precession_figures(
     figures = _regular(equal, single, scaled(h, tail, 0), along, across, regime == PERIODIC)
     if followed:
         figures = (
-            figures[0], figures[1], exact_period[2], figures[3], figures[4], figures[5], figures[6],
+            figures[0], figures[1], exact_period[2], exact_period[3], figures[4], figures[5], figures[6],
             exact_period[7], exact_period[8],
         )  # fmt: skip
     return regime, False, apart, (ax, ay, az), figures

@@ -13,7 +13,7 @@ from typing import Annotated
 import numpy as np
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError
-from core.quantities import Duration, Quantity, check
+from core.quantities import Duration, Quantity, Unit, check
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
@@ -64,8 +64,8 @@ class Crossing:
         How far it misses the start (rad/s).
     """
 
-    time: float
-    distance: float
+    time: Annotated[float, Unit("s")]
+    distance: Annotated[float, Unit("rad s^-1")]
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,8 @@ class MeasuredPeriod:
     crossing : Crossing or None
         The method's own period.
     error : float
-        Largest error of the method's samples up to the return (or the end), relative to the largest norm of the motion.
+        Largest error of the method's samples up to the return (or the end), relative to the largest norm of the whole
+        motion.
     drifts : dict
         Largest relative change of energy and momentum over the same samples.
     explanation : str
@@ -97,16 +98,16 @@ class MeasuredPeriod:
         What it cost.
     """
 
-    time: float | None
+    time: Annotated[float, Unit("s")] | None
     grid_point: int | None
-    theory: float | None
-    relative_difference: float | None
-    from_tolerance: float | None
-    from_grid: float | None
-    from_method: float | None
+    theory: Annotated[float, Unit("s")] | None
+    relative_difference: Annotated[float, Unit("1")] | None
+    from_tolerance: Annotated[float, Unit("s")] | None
+    from_grid: Annotated[float, Unit("s")] | None
+    from_method: Annotated[float, Unit("s")] | None
     crossing: Crossing | None
-    error: float
-    drifts: dict[str, float]
+    error: Annotated[float, Unit("1")]
+    drifts: dict[str, Annotated[float, Unit("1")]]
     explanation: str
     work: Work
 
@@ -145,7 +146,11 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         distances = _distances(run.states, system.initial_state)
         back = first_return(distances, measure.tolerance)
         seen = slice(0, back + 1 if back is not None else None)
-        error = measured(run.states[seen], exact[seen], times[seen]).beyond(rotation.error(times[seen])).largest
+        own = rotation.error(times[seen])
+        error = measured(run.states[seen], exact[seen], times[seen], rotation.largest_norm).beyond(own).largest
+    except AccuracyUnreachable as fault:
+        fault.path = ("measure", "duration")
+        raise
     except InvalidParameter as fault:
         raise fault.inside("measure", "method") from fault
     except MechanicsError as fault:

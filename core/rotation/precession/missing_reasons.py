@@ -1,4 +1,4 @@
-"""Why a figure of a precession does not exist."""
+"""Reasons why a quantity of a precession does not exist."""
 
 from __future__ import annotations
 

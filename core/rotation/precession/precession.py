@@ -25,7 +25,7 @@ Mechanics", 3rd ed., section 5.6. R. Montgomery, "How much does the rigid body r
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf, isfinite
+from math import inf, isfinite, isnan, nan
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
@@ -44,9 +44,12 @@ from core.rotation.closed_form.circulation import (
     too_near_the_separatrix,
 )
 from core.rotation.closed_form.principal_frame import Resolved
+from core.rotation.equal_moments import NEARLY_EQUAL, equal_within_rounding
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession import missing_reasons
 from core.rotation.precession.figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
+from core.rotation.precession.middle_axis import middle_axis_tilt
+from core.rotation.stability.classification import unstable_axis, unstable_spin
 from core.rotation.torque_free import inherited_notices
 from core.systems.system import Floats
 
@@ -67,15 +70,20 @@ class Precession(NamedTuple):
         Unit vector in body axes: the symmetry axis, or the principal axis that the angular velocity circles. It points
         along the positive side of the body axis that it is nearest to.
     body_rate : float or None
-        Rate at which the angular velocity goes round `axis` in the body, positive in the right-hand sense; symmetric
-        bodies only (rad/s).
+        Rate at which the angular velocity goes round `axis` in the body, positive in the right-hand sense; 0 for a spin
+        across the axis, None for one along it; symmetric bodies only (rad/s).
     space_rate : float or None
         Rate L/I at which the axis goes round the angular momentum; symmetric bodies only. For a spin along the
         axis it is the rate of an infinitesimal wobble (rad/s).
     period : float or None
         Of the angular velocity in the body (s).
     flip_interval : float or None
-        Between sign changes of the component along the middle axis (s).
+        Between sign changes of the component along the middle axis, whether or not that axis turns over (s).
+    middle_axis_tilt : tuple of 2 floats, or None
+        Least and largest angle between the middle axis and the angular momentum in the whole motion (rad).
+    tumbles : bool
+        Whether the middle axis turns over, from within 45 degrees of the angular momentum to within 45 degrees of its
+        opposite.
     axis_to_angular_momentum, axis_to_angular_velocity : float or None
         Angle of the axis with each, from 0 to pi; symmetric bodies only (rad). The second is the half-angle of
         the body cone if it is acute.
@@ -99,6 +107,8 @@ class Precession(NamedTuple):
     space_rate: float | None = None
     period: float | None = None
     flip_interval: float | None = None
+    middle_axis_tilt: tuple[float, float] | None = None
+    tumbles: bool = False
     axis_to_angular_momentum: float | None = None
     axis_to_angular_velocity: float | None = None
     angular_momentum_to_angular_velocity: float | None = None
@@ -157,22 +167,40 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
     symmetry = inertia.symmetry
     if x == y == z == 0.0:
         return Precession(symmetry, "rest", absent=_AT_REST.copy(), warnings=warnings)
-    if symmetry == "spherical":
-        if len(set(zip(inertia.moments.tolist(), inertia.moments_tail.tolist(), strict=True))) > 1:
-            warnings += (_equal_within_rounding("the three moments"),)
+    if not any(inertia.apart):
         return Precession(symmetry, "steady", absent=_SPHERE.copy(), warnings=warnings)
-    k = _SYMMETRY_AXIS[symmetry]
-    parts = inertia.moments, inertia.moments_tail, inertia.axes, inertia.axes_tail
-    regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, False, 0.0, 0.0, 0)
+    k = _SYMMETRY_AXIS[symmetry] if symmetry != "spherical" else _AXIS_NEAR_A_SPHERE[inertia.apart]
+    resolved = Resolved.of(inertia, np.array((x, y, z)))
+    parts = inertia.moments, inertia.moments_tail, inertia.axes, *resolved.numbers
+    regime, beyond, apart, axis, figures = precession_figures(k, *parts, False, 0.0, 0.0, 0)
     if regime == UNDECIDED:
-        exact = exact_difference(Resolved.of(inertia, np.array((x, y, z))))
-        regime, beyond, apart, axis, figures = precession_figures(k, *parts, x, y, z, True, *exact)
+        regime, beyond, apart, axis, figures = precession_figures(k, *parts, True, *exact_difference(resolved))
     if regime == UNREACHABLE:
         raise too_near_the_separatrix()
-    if apart:
-        warnings += (_DIFFERENT_AS_GIVEN if beyond else _equal_within_rounding("two moments"),)
-    told = _TOLD[symmetry, regime, beyond]
+    if symmetry == "spherical" or beyond:
+        warnings += (NEARLY_EQUAL,)
+    elif apart:
+        warnings += (_EQUAL_IN_FIGURES,)
+    told = _TOLD[symmetry if k < 0 else _SYMMETRY_ABOUT[k], regime, beyond]
     absent = told.absent.copy()
+    tilt = middle_axis_tilt(resolved, inertia)
+    if tilt is not None:
+        absent.pop("middle_axis_tilt", None)
+        if not isfinite(tilt.least):
+            code, reason = _LOST[OUT_OF_RANGE]
+            absent["middle_axis_tilt"] = reason
+            warnings += (Notice(code, f"middle_axis_tilt {reason} and is null"),)
+    if told.regime == "steady" and inertia.moments[0] > 0.0:
+        why = unstable_spin(inertia.apart, resolved.angular_velocity.tolist())
+        warnings += () if why is None else (unstable_axis(why),)
+    if told is _CONSTANT and isnan(figures[0]):
+        absent["body_rate"] = missing_reasons.STEADY_IN_BODY
+    if not isnan(figures[3]) and told.order is not None:
+        if inertia.rounding.exact_zeros:
+            # The moments are the body's own, and the middle one is known to differ.
+            absent.pop("flip_interval", None)
+        else:
+            figures = (*figures[:3], nan, *figures[4:])
     if OUT_OF_RANGE in figures or UNRESOLVED in figures:
         lost = {name: _LOST[figure] for name, figure in zip(FIGURES, figures, strict=True) if figure in _LOST}
         absent |= {name: reason for name, (_, reason) in lost.items()}
@@ -183,8 +211,9 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
     pointing: Floats = np.array(axis)
     pointing.setflags(write=False)
     return Precession(
-        symmetry, told.regime, pointing, body_rate, space_rate, period, flip, to_momentum, to_velocity, between,
-        told.order, turned, mean, absent, warnings,
+        symmetry, told.regime, pointing, body_rate, space_rate, period, flip,
+        tilt.range if tilt is not None and isfinite(tilt.least) else None, tilt is not None and tilt.tumbles,
+        to_momentum, to_velocity, between, told.order, turned, mean, absent, warnings,
     )  # fmt: skip
 
 
@@ -201,6 +230,10 @@ def _components(vector: Floats | tuple[float, float, float]) -> tuple[float, flo
 _SYMMETRY_AXIS: Mapping[Symmetry, int] = {"triaxial": -1, "oblate": 2, "prolate": 0, "linear": 0}
 """Number, in ascending order, of the moment that is not equal to the other two."""
 
+_AXIS_NEAR_A_SPHERE = {(False, True): 2, (True, False): 0, (True, True): -1}
+"""The same of three nearly equal moments, by which of them differ."""
+
+_SYMMETRY_ABOUT: Mapping[int, Symmetry] = {2: "oblate", 0: "prolate"}
 
 _LOST: Mapping[float, tuple[str, str]] = {
     OUT_OF_RANGE: ("out-of-range", "leaves the range of double precision"),
@@ -221,9 +254,9 @@ def _absent(*reasons: tuple[str, tuple[str, ...]]) -> dict[str, str]:
     return {name: reason for reason, names in reasons for name in names}
 
 
-_AT_REST = _absent((missing_reasons.NOTHING_TURNS, ("axis", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
+_AT_REST = _absent((missing_reasons.NOTHING_TURNS, ("axis", "middle_axis_tilt", *OF_SYMMETRIC_BODIES, *_OF_A_CHANGE)))
 _SPHERE = _absent(
-    (missing_reasons.SPHERE, ("axis", *OF_SYMMETRIC_BODIES)),
+    (missing_reasons.SPHERE, ("axis", "middle_axis_tilt", *OF_SYMMETRIC_BODIES)),
     (missing_reasons.STEADY_ANYHOW, _OF_A_CHANGE),
 )
 _THREE = missing_reasons.TRIAXIAL, OF_SYMMETRIC_BODIES
@@ -232,12 +265,21 @@ _BEYOND = (
     "not move as a symmetric one",
     OF_SYMMETRIC_BODIES,
 )
+_NEAR_A_SPHERE = (
+    "the three moments are nearly equal, and the body moves neither as a sphere nor as one with an axis of symmetry",
+    OF_SYMMETRIC_BODIES,
+)
 _NEVER_RETURNS = missing_reasons.ON_THE_SEPARATRIX, _OF_A_CHANGE[:-1]
-_TRIAXIAL = {
-    STEADY: RegimeReport("steady", None, _absent(_THREE, (missing_reasons.STEADY_BY_AXIS, _OF_A_CHANGE))),
-    PERIODIC: RegimeReport("periodic", None, _absent(_THREE)),
-    SEPARATRIX: RegimeReport("separatrix", None, _absent(_THREE, _NEVER_RETURNS)),
-}
+
+
+def _of_three(reason: tuple[str, tuple[str, ...]]) -> dict[int, RegimeReport]:
+    return {
+        STEADY: RegimeReport("steady", None, _absent(reason, (missing_reasons.STEADY_BY_AXIS, _OF_A_CHANGE))),
+        PERIODIC: RegimeReport("periodic", None, _absent(reason)),
+        SEPARATRIX: RegimeReport("separatrix", None, _absent(reason, _NEVER_RETURNS)),
+    }
+
+
 _UNLIKE_SYMMETRIC = {
     PERIODIC: RegimeReport("periodic", None, _absent(_BEYOND)),
     SEPARATRIX: RegimeReport("separatrix", None, _absent(_BEYOND, _NEVER_RETURNS)),
@@ -246,11 +288,12 @@ _CONSTANT = RegimeReport(
     "steady",
     None,
     _absent(
-        (missing_reasons.STEADY_IN_BODY, ("body_rate", *_OF_A_CHANGE)),
+        (missing_reasons.STEADY_IN_BODY, _OF_A_CHANGE),
         (missing_reasons.SAME_DIRECTION, ("order_of_directions",)),
+        (missing_reasons.NO_MIDDLE_AXIS, ("middle_axis_tilt",)),
     ),
 )
-_NO_MIDDLE_AXIS = _absent((missing_reasons.NO_MIDDLE_AXIS, ("flip_interval",)))
+_NO_MIDDLE_AXIS = _absent((missing_reasons.NO_MIDDLE_AXIS, ("flip_interval", "middle_axis_tilt")))
 
 
 def order_of_directions(symmetry: Symmetry) -> str:
@@ -263,9 +306,10 @@ def order_of_directions(symmetry: Symmetry) -> str:
 def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], RegimeReport]:
     """Return what is told by symmetry, regime and whether a symmetric body does not move as one."""
     found: dict[tuple[Symmetry, int, bool], RegimeReport] = {
-        ("triaxial", regime, False): told for regime, told in _TRIAXIAL.items()
+        ("triaxial", regime, False): told for regime, told in _of_three(_THREE).items()
     }
-    symmetric: tuple[Symmetry, ...] = ("oblate", "prolate", "linear")
+    found |= {("spherical", regime, False): told for regime, told in _of_three(_NEAR_A_SPHERE).items()}
+    symmetric: tuple[Symmetry, ...] = ("oblate", "prolate")
     for symmetry in symmetric:
         found[symmetry, STEADY, False] = _CONSTANT
         found[symmetry, PERIODIC, False] = RegimeReport("periodic", order_of_directions(symmetry), _NO_MIDDLE_AXIS)
@@ -276,14 +320,7 @@ def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], RegimeReport]:
 _TOLD = _told_of_all()
 
 
-_DIFFERENT_AS_GIVEN = Notice(
-    "moments-nearly-equal",
-    "two moments differ by less than 16 units in the last place of the largest; the difference is taken as given, and "
-    "half a unit in a moment may change the whole motion",
-    ("body",),
+_EQUAL_IN_FIGURES = equal_within_rounding(
+    "two moments",
+    "the figures that only a symmetric body has; period, and angle in it, are those of the moments as given",
 )
-
-
-def _equal_within_rounding(which: str) -> Notice:
-    detail = f"{which} differ by less than 16 units in the last place of the largest and are taken as equal"
-    return Notice("moments-equal-within-rounding", detail, ("body",))

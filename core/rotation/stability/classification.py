@@ -12,9 +12,11 @@ earth satellites", Nature 182 (1958) 760 (the major-axis rule).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Literal, NamedTuple
+
+from core.notices import Notice
 
 Kind = Literal["center", "saddle", "degenerate"]
 Attitude = Literal["orbital", "unstable"]
@@ -65,6 +67,35 @@ def drift(own: Fraction, low: Fraction, high: Fraction, rate: Fraction) -> Fract
     if (own == low) == (own == high):
         return Fraction(0)
     return abs(rate * ((high if own == low else low) - own)) / own
+
+
+UNSTABLE_SPINS: Mapping[Kind, str] = {
+    "saddle": "the spin lies along the middle axis, which is unstable: nothing accelerates, but the slightest "
+    "disturbance grows exponentially and turns the body over",
+    "degenerate": "the spin lies in the plane of two equal moments, which is unstable: nothing accelerates, but the "
+    "slightest rate along the third axis makes the spin drift round the plane",
+}
+"""What a steady spin that is not stable is said to be, by its kind of equilibrium."""
+
+
+def unstable_axis(why: str) -> Notice:
+    """Return the warning about a spin that is unstable; its path leads from the question."""
+    return Notice("unstable-axis", why, ("angular_velocity",))
+
+
+def unstable_spin(apart: tuple[bool, bool], components: Sequence[float]) -> str | None:
+    """Return why a steady spin is unstable, None where it is stable.
+
+    Parameters
+    ----------
+    apart : tuple of 2 bool
+        Whether the middle moment differs from the smallest, and the largest from the middle one.
+    components : sequence of 3 float
+        Of the spin along ascending principal axes; those that do not vanish lie along axes of equal moments.
+    """
+    axis = max(range(3), key=lambda k: abs(components[k]))
+    verdict = classify_equilibrium((0, int(apart[0]), sum(apart)), axis, components[axis] != 0.0)
+    return None if verdict.stable else UNSTABLE_SPINS[verdict.kind]
 
 
 _CENTER = (

@@ -1,7 +1,8 @@
-"""Rates of the linearised equation about each principal axis, compiled; `core.rotation.stability` says what they mean.
+"""Rates of the linearised equation about each principal axis, compiled; see `core.rotation.stability`.
 
-At most ten operations in double-double, each right to 4 2^-106 with separate exponents, and one last rounding: the
-rates are the nearest doubles unless the exact ones lie within 1e-13 units in the last place of the middle between two.
+There are at most ten operations in double-double with separate exponents, each accurate to 4 2^-106, and one final
+rounding. The rates are the nearest doubles, unless the exact value is within 1e-13 units in the last place of the
+midpoint between two doubles.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ from core.rotation.precession.figures import stated
 
 
 class LinearRates(NamedTuple):
-    """About one axis; `OUT_OF_RANGE` where no normal double can state a rate (1/s)."""
+    """Rates about one axis; `OUT_OF_RANGE` if a rate is outside the range of normal doubles (1/s)."""
 
     turning: float
     """Rate of the rotation itself (rad/s)."""
     size: float
     """Magnitude of the two eigenvalues that may differ from 0."""
     drift: float
-    """Where the moment is equal to another but not to the third: linear rate of drift per unit of disturbance."""
+    """If the moment is equal to exactly one other: linear rate of drift per unit of disturbance."""
 
 
 @kernel()

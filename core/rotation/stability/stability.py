@@ -11,18 +11,17 @@ What follows from them, and where it is proved, stands in `core.rotation.stabili
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
 
-from core.bodies.exact import exact_vector, vector_pairs
 from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmetry
+from core.bodies.principal_inertia import ROUNDED_ONCE
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.notices import Notice
 from core.quantities import AngularRate, check_value
-from core.rotation.closed_form.principal_frame import RESOLUTION, PrincipalFrame
+from core.rotation.equal_moments import moments_of_kinds
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.figures import OUT_OF_RANGE, oriented
 from core.rotation.stability.classification import REST, Attitude, Kind, classify_equilibrium
@@ -144,7 +143,7 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
     if not inertia.moments[0] > 0.0:
         rule = "have three moments of inertia greater than 0 to rotate freely"
         raise InvalidParameter("body", rule, remedy="give a body with extent in at least two directions")
-    moments, warnings = _moments(inertia)
+    moments, warnings = moments_of_kinds(inertia)
     rates = linear_rates(*moments, float(rate))
     pairs = list(zip(*(part.tolist() for part in moments), strict=True))
     shown = [_about(pairs, k, rates[k], inertia) for k in range(3)]
@@ -208,36 +207,6 @@ _AT_REST = Equilibrium(
 )
 
 
-def _moments(inertia: PrincipalInertia) -> tuple[tuple[Floats, Floats], list[Notice]]:
-    """Return the moments as they count, with their tails, and what is to be said of those that are nearly equal.
-
-    Along body axes they are the client's own and differ if they differ. Those of a turned tensor carry the rounding of
-    its components, and the sign of a smaller difference would be that of rounding. What is left between the equal
-    moments of a turned solid is not worth a word.
-    """
-    given = inertia.moments, inertia.moments_tail
-    distinct = {"triaxial": 3, "oblate": 2, "prolate": 2, "linear": 2, "spherical": 1}[inertia.symmetry]
-    if len(set(zip(*(part.tolist() for part in given), strict=True))) == distinct:
-        return given, []
-    if PrincipalFrame(inertia.axes, inertia.axes_tail).aligned:
-        detail = (
-            "moments differ by less than 16 units in the last place of the largest; the difference is taken as given, "
-            "and half a unit in a moment may change the kind of an equilibrium"
-        )
-        return given, [Notice("moments-nearly-equal", detail, ("body",))]
-    low, middle, high = exact = exact_vector(*given)
-    if distinct == 1:
-        merged, apart = [sum(exact, Fraction(0)) / 3] * 3, high - low
-    elif inertia.symmetry == "oblate":
-        merged, apart = [(low + middle) / 2] * 2 + [high], middle - low
-    else:
-        merged, apart = [low] + [(middle + high) / 2] * 2, high - middle
-    if apart <= Fraction(RESOLUTION) * high:
-        return vector_pairs(merged), []
-    detail = "moments differ by less than 16 units in the last place of the largest and are taken as equal"
-    return vector_pairs(merged), [Notice("moments-equal-within-rounding", detail, ("body",))]
-
-
 def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tuple[float, float]) -> Flip:
     if len(disturbance) != 2:
         raise InvalidParameter("disturbance", "be two rates, along the axes of smallest and largest moment")
@@ -247,7 +216,7 @@ def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tu
         raise no_middle_axis()
     given = (float(disturbance[0]), float(disturbance[1]))
     # A body along its principal axes moves as this one does; in them the disturbance is exact.
-    along = replace(inertia, axes=np.eye(3), axes_tail=np.zeros((3, 3)))
+    along = replace(inertia, axes=np.eye(3), axes_tail=np.zeros((3, 3)), rounding=ROUNDED_ONCE, tensor=None)
     rotation = FreeRotation(along, np.array([given[0], rate, given[1]]))
     try:
         interval = rotation.flip_interval
@@ -255,9 +224,11 @@ def _flip(inertia: PrincipalInertia, distinct: int, rate: float, disturbance: tu
         fault.path = ("disturbance",)
         raise
     if interval is not None and not isfinite(interval):
-        reason = "it turns over, but after a time that leaves the range of double precision"
+        reason = "its component along the middle axis changes its sign only after a time beyond double precision"
         return Flip(given, None, f"{reason}; {rotation.model.why}")
-    return Flip(given, interval, flip_reason(interval is not None, rotation.model.why))
+    tilt = rotation.middle_axis_tilt
+    tumbles = tilt is not None and tilt.tumbles
+    return Flip(given, interval, flip_reason(interval is not None, tumbles, rotation.model.why))
 
 
 def no_middle_axis() -> NotApplicable:
@@ -269,6 +240,13 @@ def no_middle_axis() -> NotApplicable:
     )
 
 
-def flip_reason(flips: bool, why: str) -> str:
+def flip_reason(periodic: bool, tumbles: bool, why: str) -> str:
     """Return what becomes of a disturbed rotation about the middle axis, with the reason for its model."""
-    return f"{'it turns over every half period' if flips else 'it never turns over'}; {why}"
+    if not periodic:
+        return f"it never turns over; {why}"
+    if tumbles:
+        return f"it turns over every half period; {why}"
+    return (
+        "the disturbance is so large that the body circles another axis and the middle axis never turns over: the "
+        f"component along it changes its sign every half period, no more; {why}"
+    )

@@ -23,12 +23,12 @@ FINEST = 200
 
 @dataclass(frozen=True)
 class MeshQuality:
-    """How well triangles stand for the ellipsoid.
+    """Quality of the mesh as an approximation of the ellipsoid.
 
     Attributes
     ----------
     watertight : bool
-        Whether every edge belongs to two triangles that run along it in opposite directions.
+        Whether every edge belongs to two triangles that traverse it in opposite directions.
     euler_characteristic : int
         Vertices less edges plus faces; 2 for a closed surface without holes.
     volume_ratio : float
@@ -62,10 +62,10 @@ class EnergyEllipsoid:
     Attributes
     ----------
     semi_axes : ndarray, shape (3,)
-        sqrt(2E/I_i) along the body axes where these are principal, else along the principal axes, moments ascending
-        (rad/s).
+        sqrt(2E/I_i) along the body axes if these are principal, otherwise along the principal axes with ascending
+        moments (rad/s).
     axes : ndarray, shape (3, 3)
-        Columns are the axes to which they belong, in body axes.
+        Columns are the axes of the ellipsoid, in body axes.
     energy : float
         J.
     """
@@ -90,7 +90,7 @@ class EnergyEllipsoid:
             raise InvalidParameter(
                 "body", "have three moments of inertia greater than 0 for its energy surface to close"
             )
-        # 2E/I with exponents apart, an even one for the root.
+        # 2E/I with a separate exponent, which is even for the root.
         axes = []
         for moment in principal.moments.tolist():
             (e, p), (i, q) = math.frexp(2.0 * energy if energy < 1e308 else energy), math.frexp(moment)
@@ -104,7 +104,7 @@ class EnergyEllipsoid:
 
     @classmethod
     def through(cls, body: MassProperties, angular_velocity: Floats) -> EnergyEllipsoid:
-        """Return the ellipsoid on which an angular velocity, shape (3,), lies.
+        """Return the ellipsoid through an angular velocity, shape (3,).
 
         Raises
         ------
@@ -122,19 +122,19 @@ class EnergyEllipsoid:
         return cls.of(body, _ldexp(mantissa, exponent + size + 2 * rate, "angular_velocity"))
 
     def points(self, directions: Floats) -> Floats:
-        """Return the points of the surface that unit vectors, shape (n, 3), are mapped to, both in body axes.
+        """Return the images of unit vectors, shape (n, 3), on the surface, both in body axes.
 
-        The map stretches along the principal axes: where they are the body axes, component i by sqrt(2E/I_i).
+        The map stretches along the principal axes; if they are the body axes, component i by sqrt(2E/I_i).
         """
         scaled = (directions @ self.axes) * self.semi_axes
-        # One correction takes the rounding of the direction's length out of the energy.
+        # One correction removes the rounding of the direction's length from the energy.
         shape = scaled / self.semi_axes
         scaled *= 1.5 - 0.5 * (shape * shape).sum(axis=1, keepdims=True)
         points: Floats = scaled @ self.axes.T
         return points
 
     def triangles(self, resolution: int) -> TriangleMesh:
-        """Return an icosahedron whose edges are cut into `resolution` parts, put on the sphere and scaled.
+        """Return an icosahedron with edges divided into `resolution` parts, projected on the sphere and stretched.
 
         Raises
         ------
@@ -150,12 +150,12 @@ class EnergyEllipsoid:
     def grid(self, resolution: int) -> tuple[Floats, Floats, Floats]:
         """Return x, y and z, each of shape (2 resolution, resolution), over longitude and colatitude.
 
-        Colatitude from the body's z axis runs from 0 to pi along rows, longitude from its x axis from 0 to 2 pi down
-        columns, both ends included.
+        Colatitude from the body's z axis increases from 0 to pi along rows, longitude from its x axis from 0 to 2 pi
+        along columns, both ends included.
         """
         check_resolution(resolution, 2)
         colatitude, longitude = np.linspace(0.0, np.pi, resolution), np.linspace(0.0, 2.0 * np.pi, 2 * resolution)
-        # The seam closes and the poles are points, exactly.
+        # The seam is closed and the poles are points, exactly.
         cosine, sine = np.cos(longitude), np.sin(longitude)
         cosine[-1], sine[-1] = cosine[0], sine[0]
         ring = np.sin(colatitude)
@@ -188,14 +188,14 @@ def check_resolution(resolution: int, least: int) -> None:
 
 
 class Geodesic(NamedTuple):
-    """An icosahedron whose edges are cut into parts, vertices shared, not yet put on the sphere.
+    """An icosahedron with divided edges and shared vertices, before projection on the sphere.
 
     Attributes
     ----------
     corners : ndarray, shape (n, 3)
         Of the icosahedron; each vertex is a mean of three of them.
     weights : ndarray, shape (n, 3)
-        Of those three: whole numbers.
+        Integer weights of the three corners.
     faces : ndarray, shape (m, 3)
         Indices of vertices.
     """
@@ -212,12 +212,12 @@ CORNERS = np.array(
         ((0, 0, -1), (1, 0, 0)), ((0, 0, 1), (1, 0, 0)), ((0, 0, -1), (-1, 0, 0)), ((0, 0, 1), (-1, 0, 0)),
     ]
 )  # fmt: skip
-"""Of an icosahedron, shape (12, 2, 3): the first vector plus the second times the golden section (1 + sqrt 5)/2."""
+"""Corners of an icosahedron, shape (12, 2, 3): the first vector plus the golden ratio times the second."""
 CORNERS.setflags(write=False)
 
 
 def geodesic(parts: int) -> Geodesic:
-    """Return an icosahedron with every edge cut into so many parts; see `EnergyEllipsoid.triangles`.
+    """Return an icosahedron with every edge divided into so many parts; see `EnergyEllipsoid.triangles`.
 
     Raises
     ------
@@ -230,7 +230,7 @@ def geodesic(parts: int) -> Geodesic:
         (11, 10, 2), (10, 7, 6), (7, 1, 8),
         (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1),
     ]  # fmt: skip
-    # Each vertex is made once: first the corners, then the insides of the edges, then those of the faces.
+    # Each vertex is created once: first the corners, then those inside the edges, then those inside the faces.
     edges = sorted({(min(p, q), max(p, q)) for a, b, c in solid for p, q in ((a, b), (b, c), (c, a))})
     along = np.arange(1, parts)
     count = len(CORNERS)
@@ -290,9 +290,9 @@ def topology(vertices: int, faces: Faces) -> tuple[bool, int]:
 
 def _quality(directions: Floats, vertices: Floats, faces: Faces) -> MeshQuality:
     a, b, c = (directions[faces[:, k]] for k in range(3))
-    # The volume ratio is the same for sphere and ellipsoid, which differ by a linear map.
+    # A linear map takes the sphere to the ellipsoid, so the volume ratio is the same.
     inside = float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
-    # In units in which no product of two lengths leaves the range of doubles.
+    # In units in which products of two lengths do not overflow or underflow.
     unit = math.ldexp(1.0, math.frexp(float(np.abs(vertices).max()))[1] - 1)
     a, b, c = (vertices[faces[:, k]] / unit for k in range(3))
 

@@ -1,4 +1,4 @@
-"""Starts of one energy, drawn uniformly over the directions of the scaled sphere."""
+"""Random initial states of one energy, with uniformly distributed directions on the scaled sphere."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def initial_states(body: MassProperties, energy: float, count: int, seed: int) -
     """Return angular velocities of one energy, shape (count, 3), in body axes (rad/s).
 
     Directions are uniform on the unit sphere, then each principal component is scaled by the semi-axis sqrt(2E/I_i) of
-    the energy ellipsoid: uniform on the sphere that is scaled, not in area of the ellipsoid. The generator is numpy's
-    PCG64 seeded with `seed`, from which three normal numbers per direction are drawn, so equal questions get equal
+    the energy ellipsoid. The states are uniform on the sphere, not in the area of the ellipsoid. The generator is
+    numpy's PCG64 seeded with `seed`, from which three normal numbers per direction are drawn. Equal requests give equal
     states within one version of numpy.
 
     Parameters

@@ -1,13 +1,14 @@
-"""Polhodes: the closed curves that the angular velocity draws on the energy ellipsoid, and the separatrix between them.
+"""Polhodes, the closed curves of the angular velocity on the energy ellipsoid, and the separatrix between them.
 
-A polhode is where the energy ellipsoid meets the momentum ellipsoid. With the amplitudes of the motion it is
+A polhode is the intersection of the energy ellipsoid and the momentum ellipsoid. With the amplitudes of the motion it
+is
 
     w_c = A_c cos(theta),   w_b = A_b sin(theta),   w_d = A_d sqrt(cos^2 theta + m1 sin^2 theta),
 
-the closed form with theta = am u. Even steps of theta space the points well also near the separatrix, where even steps
-of time would crowd them at the middle axis. The extreme points, where a component vanishes or is largest, lie at
-multiples of pi/2: all four of them are among the points if and only if their number is a multiple of 4, and the first
-is always.
+the closed form with theta = am u. Even steps of theta give evenly distributed points even near the separatrix, where
+even steps of time would concentrate them at the middle axis. The extreme points, where a component vanishes or is
+largest, are at multiples of pi/2. All four are among the points if and only if the number of points is a multiple of 4;
+the first always is.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from core.work import spend
 
 MOST_POINTS = 100_000
 WORK_OF_A_CURVE = 20
-"""Units of work (`core.work`) beside those of its points: the constants of its motion are set up."""
+"""Units of work (`core.work`) of a curve for the constants of its motion, in addition to those of its points."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +41,11 @@ class Polhode:
     Attributes
     ----------
     regime : str
-        Of the motion that draws it.
+        Of the motion along it.
     closed : bool
-        Whether the last point is the first; a steady rotation draws a single point.
+        Whether the last point is the first; a steady rotation is a single point.
     angular_momentum : float or None
-        Magnitude, the same at every point (kg m^2/s); None where it leaves the range of normal doubles.
+        Magnitude, the same at every point (kg m^2/s); None if it leaves the range of normal doubles.
     points : ndarray, shape (n, 3)
         In body axes (rad/s).
     """
@@ -58,7 +59,7 @@ class Polhode:
 def polhode(body: MassProperties, angular_velocity: Floats, count: int = 256) -> Polhode:
     """Return the polhode through an angular velocity, shape (3,), as `count` points and the first again.
 
-    On the separatrix itself it is the ellipse on which the motion lies, of which the motion draws one half.
+    On the separatrix itself the result is the whole ellipse, of which the motion traces one half.
 
     Raises
     ------
@@ -105,7 +106,7 @@ def separatrix(body: MassProperties, energy: float, count: int = 256) -> tuple[P
 
 
 def _momentum(rotation: FreeRotation) -> float | None:
-    """Return |L|, formed with exponents apart; None where it leaves the range of normal doubles."""
+    """Return |L|, formed with separate exponents; None if it leaves the range of normal doubles."""
     moments, rates = rotation.resolved.moments, rotation.resolved.angular_velocity
     size, rate = math.frexp(float(moments[2]))[1], math.frexp(float(np.abs(rates).max()))[1]
     mantissa, exponent = math.frexp(math.hypot(*(np.ldexp(moments, -size) * np.ldexp(rates, -rate)).tolist()))
@@ -122,7 +123,7 @@ def _shares(principal: PrincipalInertia) -> tuple[float, float] | None:
         return scaled(float(a[j] - a[k]), float((a[j] - (a[j] - a[k])) - a[k] + (b[j] - b[k])), 0)
 
     low, high, whole = difference(1, 0), difference(2, 1), difference(2, 0)
-    if low.high == 0.0 or high.high == 0.0:
+    if not all(principal.apart):
         return None
 
     def share(step: Scaled, outer: Scaled) -> float:
@@ -135,7 +136,7 @@ def _shares(principal: PrincipalInertia) -> tuple[float, float] | None:
 def _circle(count: int) -> tuple[Floats, Floats]:
     """Return cosines and sines of even steps around the circle, the last the same as the first.
 
-    Within a quadrant the angle is at most pi/2, and at its ends cosine and sine are exactly 0 and 1.
+    At the ends of a quadrant cosine and sine are exactly 0 and 1.
     """
     quadrant, rest = np.divmod(4 * np.arange(count), count)
     angle = rest * (0.5 * math.pi / count)

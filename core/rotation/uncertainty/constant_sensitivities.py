@@ -1,7 +1,7 @@
-"""How uncertain inputs move the constants of a free motion: first-order derivatives, summed in size, compiled.
+"""How uncertain inputs change the constants of a free motion: first-order derivatives, summed in size, compiled.
 
 With d the circled axis, c the other extreme, b the middle, s = 1 for d the largest moment and -1 for the smallest,
-every gap g_jk = |I_j - I_k| moves by s (dI_j - dI_k), or its opposite where k lies nearer to d, and
+every gap g_jk = |I_j - I_k| changes by s (dI_j - dI_k), or its opposite where k lies nearer to d, and
 
     A_c^2 = w_c^2 + (I_b g_db/I_c g_dc) w_b^2      A_b^2 = w_b^2 + (I_c g_dc/I_b g_db) w_c^2
     A_d^2 = w_d^2 + (I_b g_bc/I_d g_dc) w_b^2      p^2 = A_d^2 g_db g_dc/(I_b I_c)
@@ -25,36 +25,72 @@ from core.elliptic.integrals import one_less_e_over_k
 Floats = NDArray[np.float64]
 
 (
-    AMPLITUDE_C, AMPLITUDE_B, AMPLITUDE_D, PHASE, RATE, FREQUENCY, MODULUS, START, FORCE, TURN,
-    MOMENTS, ALONG, CROSSWISE, TIP, POLE_C, POLE_B, POLE_D, PRECESSION, SINGULAR,
-) = range(19)  # fmt: skip
-COUNT = 19
-"""What is summed, in this order: |dA_c|, |dA_b|, |dA_d|, the shift of u at the start, relative moves of p and of p/K,
-|dm|/k1; |dw| at the start, the largest change of Euler's coefficients, the turn of the axes; relative moves of the
-moments; of a steady spin along and across itself; of the angular momentum's direction, the amplitudes of its path in
-the body, the rate of precession, and that part of it that grows where the body leaves the middle axis."""
+    AMPLITUDE_C, AMPLITUDE_B, AMPLITUDE_D, PHASE, RATE, FREQUENCY, MODULUS, START_A, START_B, START_C, FORCE,
+    FORCE_ALONG, FORCE_ACROSS, TURN, MOMENTS, GAPS, ALONG, CROSSWISE, TIP, POLE_C, POLE_B, POLE_D, PRECESSION, SINGULAR,
+) = range(24)  # fmt: skip
+COUNT = 24
+"""What is summed, in this order: |dA_c|, |dA_b|, |dA_d|, the shift of u at the start, relative changes of p and of p/K,
+|dm|/k1; the components of |dw| at the start, the largest change of Euler's coefficients, and of two equal moments that
+along the axis of the third and the larger one across it; the turn of the axes; relative changes of the moments, and of
+the gaps between them and that of the axis about which the body turns; of a steady spin along and across itself; of the
+angular momentum's direction, the amplitudes of its path in the body, the rate of precession, and that part of it that
+grows where the body leaves the middle axis."""
 
 
 @kernel()
-def add_start(i: Floats, w: Floats, dI: Floats, dw: Floats, turns: Floats, sums: Floats) -> None:
-    """Add what holds of every motion; moments `i`, components `w` and their moves, shape (n, 3), along the axes."""
+def third_axis(low: float, high: float) -> int:
+    """Return the axis of the third moment where just two are equal, -1 otherwise; `low` and `high` are the gaps."""
+    if low == 0.0 and high > 0.0:
+        return 2
+    return 0 if high == 0.0 and low > 0.0 else -1
+
+
+@kernel()
+def add_start(
+    i: Floats, low: float, high: float, w: Floats, axis: int, dI: Floats, dw: Floats, turns: Floats, sums: Floats
+) -> None:
+    """Add what holds of every motion.
+
+    Parameters
+    ----------
+    i, w : ndarray, shape (3,)
+        Moments, ascending, and components at t = 0.
+    low, high : float
+        The gaps between the moments.
+    axis : int
+        Axis about which the body turns.
+    dI, dw : ndarray, shape (n, 3)
+        Changes of moments and components by each input.
+    turns : ndarray, shape (n,)
+        Angles by which the axes turn.
+    """
+    third = third_axis(low, high)
     spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     for k in range(dI.shape[0]):
-        relative, force, size, along = 0.0, 0.0, 0.0, 0.0
+        relative, apart, force, across, along = 0.0, 0.0, 0.0, 0.0, 0.0
         for a in range(3):
             b, c = (a + 1) % 3, (a + 2) % 3
             relative = max(relative, abs(dI[k, a]) / i[a])
-            force = max(force, abs(dI[k, b] - dI[k, c] - (i[b] - i[c]) * dI[k, a] / i[a]) / i[a])
-            size += dw[k, a] * dw[k, a]
+            gap = (low if a + axis == 1 else high if a + axis == 3 else low + high) if a != axis else 0.0
+            if gap > 0.0:
+                apart = max(apart, abs(dI[k, a] - dI[k, axis]) / gap)
+            coefficient = abs(dI[k, b] - dI[k, c] - (i[b] - i[c]) * dI[k, a] / i[a]) / i[a]
+            force = max(force, coefficient)
+            if a == third:
+                sums[FORCE_ALONG] += coefficient
+            else:
+                across = max(across, coefficient)
+            sums[START_A + a] += abs(dw[k, a])
             along += dw[k, a] * w[a]
         along = abs(along) / spin
         x = dw[k, 1] * w[2] - dw[k, 2] * w[1]
         y = dw[k, 2] * w[0] - dw[k, 0] * w[2]
         z = dw[k, 0] * w[1] - dw[k, 1] * w[0]
-        sums[START] += math.sqrt(size)
         sums[FORCE] += force
+        sums[FORCE_ACROSS] += across
         sums[TURN] += turns[k]
         sums[MOMENTS] += relative
+        sums[GAPS] += apart
         sums[ALONG] += along
         sums[CROSSWISE] += math.sqrt(x * x + y * y + z * z) / spin
 
@@ -64,9 +100,9 @@ def add_constants(
     i: Floats, low: float, high: float, w: Floats, circled: int, m: float, k1: float, K: float,
     dI: Floats, dw: Floats, sums: Floats, table: Floats,
 ) -> None:  # fmt: skip
-    """Add what moves the constants of a motion that turns.
+    """Add what changes the constants of a motion that turns.
 
-    `table`, shape (n, 6), is filled with what each input moves: A_c, A_b, A_d, u at the start, log p and m/k1.
+    `table`, shape (n, 6), is filled with what each input changes: A_c, A_b, A_d, u at the start, log p and m/k1.
 
     Parameters
     ----------
@@ -79,7 +115,7 @@ def add_constants(
     m, k1, K : float
         Parameter, complementary modulus, quarter period; k1 = K = 0 on the separatrix.
     dI, dw : ndarray, shape (n, 3)
-        By what a unit of the relative uncertainty of each input moves moments and components.
+        By what a unit of the relative uncertainty of each input changes moments and components.
     """
     d, c, s = (2, 0, 1.0) if circled == 2 else (0, 2, -1.0)
     g_dc = low + high
@@ -102,7 +138,7 @@ def add_constants(
         c1, b1, d1 = dw[k, c], dw[k, 1], sign * dw[k, d]
         e_dc, e_db, e_bc = s * (jd - ic), s * (jd - ib), s * (ib - ic)
         e_c, e_b, e_d = ic / Ic, ib / Ib, jd / Id
-        # Each ratio r of gaps carries its own relative move; a gap in a numerator may vanish, and is not divided by.
+        # Each ratio r of gaps carries its own relative change; a gap in a numerator may vanish, and is not divided by.
         dr_c = r_c * (e_b - e_c - e_dc / g_dc) + Ib / (Ic * g_dc) * e_db
         dr_d = r_d * (e_b - e_d - e_dc / g_dc) + Ib / (Id * g_dc) * e_bc
         from_b = r_b * (e_c - e_b + e_dc / g_dc - e_db / g_db)
@@ -112,13 +148,13 @@ def add_constants(
         dp = dA_d / A_d + 0.5 * (e_db / g_db + e_dc / g_dc - e_b - e_c)
         if m < 0.5:
             ratio = Ic / (Id * g_db) * (A_c / A_d) ** 2
-            moved = ratio * e_bc + m * (e_c - e_d - e_db / g_db + 2.0 * dA_c / A_c - 2.0 * dA_d / A_d)
-            moved /= unit
+            changed = ratio * e_bc + m * (e_c - e_d - e_db / g_db + 2.0 * dA_c / A_c - 2.0 * dA_d / A_d)
+            changed /= unit
         else:
             share = wc / A_d
             dD = dn / unit * (dn * (e_d + e_db / g_db) + 2.0 * d1 / A_d)
             dD -= Ic / (Id * g_db) * share / unit * (share * (g_bc * e_c + e_bc) + 2.0 * g_bc * c1 / A_d)
-            moved = -dD + k1 / unit * k1 * (e_d + e_db / g_db + 2.0 * dA_d / A_d)
+            changed = -dD + k1 / unit * k1 * (e_d + e_db / g_db + 2.0 * dA_d / A_d)
         # tan phi = sn/cn at the start.
         phase = cn * (b1 - sn * dA_b) / A_b - sn * (c1 - cn * dA_c) / A_c
         sums[AMPLITUDE_C] += abs(dA_c)
@@ -126,10 +162,10 @@ def add_constants(
         sums[AMPLITUDE_D] += abs(dA_d)
         sums[PHASE] += abs(phase) / dn
         sums[RATE] += abs(dp)
-        sums[FREQUENCY] += abs(dp - dK / K * moved) if K > 0.0 else abs(dp)
-        sums[MODULUS] += abs(moved)
+        sums[FREQUENCY] += abs(dp - dK / K * changed) if K > 0.0 else abs(dp)
+        sums[MODULUS] += abs(changed)
         table[k, 0], table[k, 1], table[k, 2] = dA_c, dA_b, dA_d
-        table[k, 3], table[k, 4], table[k, 5] = phase / dn, dp, moved
+        table[k, 3], table[k, 4], table[k, 5] = phase / dn, dp, changed
         # The angular momentum: its size, its direction, the amplitudes of its unit vector, and the rate about it.
         xc, xb, xd = ic * wc + Ic * c1, ib * wb + Ib * b1, jd * wd + Id * d1
         dL = (xc * Ic * wc + xb * Ib * wb + xd * Id * wd) / L
@@ -145,7 +181,7 @@ def add_constants(
             largest = max(largest, abs(dE + dL * f + L * dA_d * at - h * (dL + jd * f + Id * dA_d * at)) / over)
         sums[PRECESSION] += largest
         under = L + Id * A_d * k1
-        sums[SINGULAR] += D / (under * under) * A_d * abs(moved) * 0.5
+        sums[SINGULAR] += D / (under * under) * A_d * abs(changed) * 0.5
 
 
 @kernel()

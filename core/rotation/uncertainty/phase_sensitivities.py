@@ -6,7 +6,7 @@ At the amplitude phi, Delta^2 = 1 - m sin^2 phi, input by input,
     dw_d = dA_d Delta - A_d (m sin phi cos phi Q + sin^2 phi dm/2 Delta)
     Q = dphi_0/Delta_0 + (u - u_0) dlog p - (F_m(phi) - F_m(phi_0)) dm,   F_m = integral of sin^2/2 Delta^3
 
-is what the motion moves by when it comes to phi for the first time; half a period, 2K, later Q has grown by
+is the change of the motion when it comes to phi for the first time; half a period, 2K, later Q has grown by
 2K (dlog p - K'/K dm), and the rest is the same. The derivation is in docs/physics/error-statements.md.
 """
 
@@ -79,9 +79,10 @@ def largest_until(phases: Floats, angle: float, half_period: float, frequency: f
     """Return the largest error up to |u - u_0| = `angle`, `frequency` being the sum of |dlog f| over the inputs."""
     largest, rows = 0.0, phases.shape[0] // 2
     for row in range(phases.shape[0]):
-        # One phase more than is reached: the horizon may lie between two.
-        if row % rows > 0 and phases[row - 1, 0] > angle:
+        # In every half period one phase more than is reached: the horizon may lie between two.
+        before = phases[row - 1, 0] if row % rows > 0 else 0.0
+        if before > angle:
             continue
-        passes = max(0.0, math.floor((angle - phases[row, 0]) / half_period))
+        passes = max(0.0, math.floor((angle - before) / half_period))
         largest = max(largest, phases[row, 1] + passes * half_period * frequency * phases[row, 2])
     return BETWEEN * largest

@@ -1,7 +1,7 @@
 """Sensitivities of principal moments and of components along the axes, from those of a tensor, compiled.
 
-With principal axes v and P = v^T dI v, the moments move by P_jj, and the axes turn by P_jk/(I_k - I_j) in the plane of
-j and k (perturbation theory: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., sections 7.2.2 and 8.1).
+With principal axes v and P = v^T dI v, the moments change by P_jj, and the axes turn by P_jk/(I_k - I_j) in the plane
+of j and k (perturbation theory: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., sections 7.2.2 and 8.1).
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ Floats = NDArray[np.float64]
 
 
 @kernel()
-def moves_of_given_moments(moments: Floats, components: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return moves of moments, components and axes by moments and components themselves: (6, 3), (6, 3), (6,)."""
+def given_moment_sensitivities(moments: Floats, components: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return changes of moments, components and axes by moments and components themselves: (6, 3), (6, 3), (6,)."""
     dI, dw = np.zeros((6, 3)), np.zeros((6, 3))
     for k in range(3):
         dI[k, k], dw[3 + k, k] = moments[k], components[k]
@@ -26,10 +26,10 @@ def moves_of_given_moments(moments: Floats, components: Floats) -> tuple[Floats,
 
 
 @kernel()
-def moves_along_axes(
+def projected_sensitivities(
     low: float, high: float, components: Floats, axes: Floats, velocity: Floats, tensors: Floats
 ) -> tuple[Floats, Floats, Floats, Floats, float]:
-    """Return the same by the numbers that move a tensor, shape (n, 3, 3), and by those of the start.
+    """Return the same by the numbers that describe a tensor, shape (n, 3, 3), and by those of the start.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def moves_along_axes(
     crossed : ndarray, shape (3, n)
         P_jk in the planes (0, 1), (1, 2), (2, 0) of equal moments, where the axes are free; else 0.
     own : float
-        Sum of the norms of the moves of the tensor.
+        Sum of the norms of the changes of the tensor.
     """
     n = tensors.shape[0]
     dI, dw, turns = np.zeros((n + 3, 3)), np.zeros((n + 3, 3)), np.zeros(n + 3)

@@ -1,4 +1,4 @@
-"""From the moves of a body's tensor and of the start to those of principal moments, components and constants."""
+"""From the sensitivities of a body's tensor and of the start to those of principal moments, components, constants."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from core.rotation.closed_form.circulation import PERIODIC, SEPARATRIX, STEADY
 from core.rotation.closed_form.constants_of_motion import Motion
-from core.rotation.uncertainty import constant_sensitivities as moved
+from core.rotation.uncertainty import constant_sensitivities as at
 from core.rotation.uncertainty.phase_sensitivities import LARGEST_MODULUS, phase_errors
-from core.rotation.uncertainty.projected_sensitivities import moves_along_axes, moves_of_given_moments
+from core.rotation.uncertainty.projected_sensitivities import given_moment_sensitivities, projected_sensitivities
 
 Floats = NDArray[np.float64]
 
 FIRST_ORDER = 0.1
-"""Beyond this an error, and a relative move of a constant, is no longer told by its first derivative."""
+"""Beyond this a first derivative no longer bounds an error, or the relative change of a constant."""
 
 MOST_INPUTS = 3000
 """With more inputs the bounds that need no phases are stated."""
@@ -31,7 +31,7 @@ _PLANES = ((0, 1), (1, 2), (2, 0))
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
-    """First-order moves of one motion for a relative uncertainty of one, in units in which figures are of order one.
+    """First derivatives of one motion for a relative uncertainty of one, in units in which figures are of order one.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Sensitivities:
     gaps : tuple of 2 floats
         B - A and C - B.
     own, own_start : float
-        Sums over the inputs of the norms of their moves of tensor and of start.
+        Bounds of the norms of the changes of tensor and of start by all inputs together.
     sums : list of COUNT floats
         Of `core.rotation.uncertainty.constant_sensitivities`.
     largest : float
@@ -78,7 +78,7 @@ class Sensitivities:
         largest: float,
         unit: float,
     ) -> Sensitivities:
-        """Project the moves of a tensor, shape (n, 3, 3), in body axes, or of the moments themselves where it is None.
+        """Project the sensitivities of a tensor, shape (n, 3, 3), in body axes, or of the moments where it is None.
 
         Parameters
         ----------
@@ -91,17 +91,17 @@ class Sensitivities:
         unit : float
             What brings the motion's rates to these units.
         """
-        sums, crossed = np.zeros(moved.COUNT), False
+        sums, crossed = np.zeros(at.COUNT), False
         dn, k1 = _start_of(moments, gaps, components, motion)
         if moments[0] == 0.0:
             # A line of matter along a body axis, which no uncertainty gives a moment about itself.
             moments = np.maximum(moments, moments[1])
         if axes is None or tensors is None:
-            dI, dw, turns = moves_of_given_moments(moments, components)
-            own, own_start = sum(moments.tolist()), sum(map(abs, components.tolist()))
+            dI, dw, turns = given_moment_sensitivities(moments, components)
+            own, own_start = sum(moments.tolist()), math.hypot(*components.tolist())
         else:
-            dI, dw, turns, crosses, own = moves_along_axes(*gaps, components, axes, velocity, tensors)
-            own_start = sum(map(abs, velocity.tolist()))
+            dI, dw, turns, crosses, own = projected_sensitivities(*gaps, components, axes, velocity, tensors)
+            own_start = math.hypot(*velocity.tolist())
             for plane, across in zip(_PLANES, crosses, strict=True):
                 if across.any():
                     crossed = True
@@ -128,33 +128,55 @@ class Sensitivities:
         return high / A, (low + high) / B, low / C
 
     def early(self, uncertainty: float, time: float) -> float:
-        """Return the bound for early times: Euler's equations, of bounded steepness, from a moved start."""
+        """Return the bound for early times: Euler's equations, of bounded steepness, from another start."""
         first, second, third = self._ratios
         s, w = self.sums, self.largest
-        step, force = s[moved.START], w * w * s[moved.FORCE] / math.sqrt(3.0)
+        step, force = math.hypot(*s[at.START_A : at.START_C + 1]), w * w * s[at.FORCE]
         in_body = self.own_start, w * w * self.own * (1.0 + max(first, second, third)) / float(self.moments[0])
-        along_axes = self._carried(step, force, time) + s[moved.TURN] * w
-        if uncertainty * s[moved.TURN] > FIRST_ORDER:
+        along_axes = self._carried(step, force / math.sqrt(3.0), time)
+        if self.third >= 0:
+            along_axes = min(along_axes, self._of_equal_moments(time))
+        along_axes += s[at.TURN] * w
+        if uncertainty * s[at.TURN] > FIRST_ORDER:
             along_axes = math.inf
         return uncertainty * min(along_axes, self._carried(*in_body, time))
 
+    @property
+    def third(self) -> int:
+        """Axis of the third moment where just two are equal, -1 otherwise."""
+        return int(at.third_axis(*self.gaps))
+
+    def _of_equal_moments(self, time: float) -> float:
+        """Return the bound for two equal moments I, component by component; docs/physics/error-statements.md, bound 5.
+
+        Unequal changes of the two moments drive the spin w_3 along the third axis, and w_3 turns the rest of the
+        angular velocity: at the rate |I_3 - I|/I times its own change, and by what the two other coefficients change.
+        Where neither changes, as for a cylinder known by radius and height that spins across its axis, nothing grows.
+        """
+        s, k = self.sums, self.third
+        along = s[at.START_A + k]
+        across = math.hypot(*(s[at.START_A + j] for j in range(3) if j != k))
+        spin = abs(float(self.components[k]))
+        rest = math.hypot(*(float(self.components[j]) for j in range(3) if j != k))
+        drive = 0.5 * rest * rest * s[at.FORCE_ALONG] * time
+        turning = max(self._ratios[0], self._ratios[2]) * (along + 0.5 * drive) + spin * s[at.FORCE_ACROSS]
+        grown = math.hypot(along + drive, across + rest * time * turning)
+        return grown if math.isfinite(grown) else math.inf
+
     def _carried(self, step: float, force: float, time: float) -> float:
-        """Return what a moved start and a moved torque have come to."""
+        """Return what another start and another torque have come to."""
         first, second, third = self._ratios
         if 0.0 in self.gaps:
             # The component along the third axis drifts, and turns the other two.
             turn = max(first, third) * self.largest * time
             return step * (1.0 + turn) + force * time * (1.0 + 0.5 * turn)
-        # Grönwall's lemma, with the symmetric part of the Jacobian; the middle coefficient has the other sign.
-        steepest = max(abs(first - second), abs(second - third), abs(third + first))
-        power = math.sqrt(1.0 / 3.0) * steepest * self.largest * time
-        return (step + force * time) * math.exp(power) if power < _MOST else math.inf
+        return (step + force * time) * growth_factor(first, second, third, math.sqrt(1.0 / 3.0) * self.largest * time)
 
     def crosswise(self, time: float) -> float:
         """Return by how much what is across a steady spin along a principal axis grows."""
         if self.crossed or np.count_nonzero(self.components) > 1:
             return math.inf
-        if not self.sums[moved.CROSSWISE]:
+        if not self.sums[at.CROSSWISE]:
             return 1.0
         (A, B, C), (low, high) = self.moments.tolist(), self.gaps
         rate = self.largest * time
@@ -169,6 +191,33 @@ class Sensitivities:
         for a, b in ((one, other), (other, one)):
             skew = max(skew, min(math.sqrt(b / a) if a else math.inf, 1.0 + b * rate))
         return skew
+
+
+def growth_factor(first: float, second: float, third: float, time: float) -> float:
+    """Return by how much a disturbance may have grown, by Grönwall's lemma in the norm that shows it best.
+
+    With the sizes q of Euler's coefficients (that of the middle axis has the other sign), the square of a difference of
+    two motions that weighs the axis k of an extreme moment s >= 1 times the others grows no faster than by the
+    symmetric part of the Jacobian in that norm: with k the axis of the largest moment by
+
+        max(|q_1 - q_2|, s q_3 + q_1/s, |s q_3 - q_2/s|)
+
+    per unit of time, and the difference itself is at most s times as large. Where two moments are nearly equal, q_3 is
+    small, and s in proportion to the time leaves a growth in proportion to it, as for two equal moments.
+
+    Parameters
+    ----------
+    first, second, third : float
+        (C - B)/A, (C - A)/B, (B - A)/C.
+    time : float
+        In units of sqrt(3) over the largest rate: |m.e|-type terms are at most 1/sqrt(3) of the product of norms.
+    """
+    least = math.inf
+    for own, other in ((third, first), (first, third)):
+        for weight in {1.0, max(1.0, time * max(other, second))}:
+            rate = max(abs(other - second), weight * own + other / weight, abs(weight * own - second / weight))
+            least = min(least, math.log(weight) + rate * time)
+    return math.exp(least) if least < _MOST else math.inf
 
 
 def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion) -> tuple[float, float]:
@@ -193,10 +242,11 @@ def _add(
     moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
     dI: Floats, dw: Floats, turns: Floats, k1: float, sums: Floats,
 ) -> Floats:  # fmt: skip
-    moved.add_start(moments, w, dI, dw, turns, sums)
+    axis = int(np.abs(w).argmax()) if motion.regime == STEADY else motion.circled
+    at.add_start(moments, *gaps, w, axis, dI, dw, turns, sums)
     table = np.zeros((len(dI), 6))
     if motion.regime != STEADY:
-        moved.add_constants(moments, *gaps, w, motion.circled, motion.m, k1, motion.lattice.K, dI, dw, sums, table)
+        at.add_constants(moments, *gaps, w, motion.circled, motion.m, k1, motion.lattice.K, dI, dw, sums, table)
     return table
 
 
@@ -204,7 +254,7 @@ def _add_crossed(
     moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
     plane: tuple[int, int], across: Floats, sums: Floats,
 ) -> None:  # fmt: skip
-    """Add moves that would turn the axes of two equal moments, which may as well be chosen at 45 degrees."""
+    """Add changes that would turn the axes of two equal moments, which may as well be chosen at 45 degrees."""
     j, k = plane
     turned = w.copy()
     turned[j], turned[k] = math.sqrt(0.5) * (w[j] + w[k]), math.sqrt(0.5) * (w[k] - w[j])

@@ -22,6 +22,7 @@ class ClosedFormEvaluation(AbstractMethod):
 
     order: ClassVar[None] = None
     family: ClassVar[Family] = "closed form"
+    between_steps: ClassVar[str] = "There are no steps: the closed form is evaluated at every time by itself."
     when_to_use: ClassVar[str] = (
         "Always, where a closed form exists: it is right to the last digits at any time and faster than every "
         "integrator that reaches an error of 1e-3."

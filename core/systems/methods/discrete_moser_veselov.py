@@ -19,7 +19,7 @@ from core.compiled import kernel
 from core.double_double import two_sum
 from core.errors import NotApplicable
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import NO_CONVERGENCE, OVERFLOW, FixedStep, keep, march_by
+from core.systems.methods.fixed_step import NO_CONVERGENCE, OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import Family, Invariance
 from core.systems.system import DISCRETE_STEP, Floats, Integers, System
 
@@ -36,18 +36,24 @@ def _march(
     tally: Integers,
 ) -> int:
     increment, tail = np.empty_like(state), np.zeros_like(state)
-    for i in range(count.size):
-        for _ in range(count[i]):
-            if not advance(step[i], state, parameters, increment):
-                tally[1] = NO_CONVERGENCE
-                return i
-            for k in range(state.size):
-                # The rounding of the sum is carried on, which keeps the first integrals from drifting.
-                state[k], tail[k] = two_sum(state[k], increment[k] + tail[k])
+    grid, grid_tail = np.empty_like(state), np.empty_like(state)
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            replace(grid_tail, tail)
+            for _ in range(count[i, run]):
+                if not advance(step[i, run], state, parameters, increment):
+                    tally[1] = NO_CONVERGENCE
+                    return i
+                for k in range(state.size):
+                    # The rounding of the sum is carried on, which keeps the first integrals from drifting.
+                    state[k], tail[k] = two_sum(state[k], increment[k] + tail[k])
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
-    return count.size
+        replace(state, grid)
+        replace(tail, grid_tail)
+    return len(count)
 
 
 @dataclass(frozen=True)
@@ -57,7 +63,7 @@ class DiscreteMoserVeselov(FixedStep):
     Parameters
     ----------
     step : float
-        Longest step (s).
+        Length of the steps, from t = 0 (s).
     """
 
     step: Duration

@@ -249,6 +249,10 @@ class DormandPrince853(Marching):
     order: ClassVar[int] = 8
     family: ClassVar[Family] = "explicit"
     setting: ClassVar[str] = "tolerance"
+    between_steps: ClassVar[str] = (
+        "By the method's own interpolant of order seven, at three further evaluations in every step with a sample. "
+        "The steps do not depend on the samples; only the last one ends at the farthest."
+    )
     when_to_use: ClassVar[str] = (
         "The default where there is no closed form: smooth motions to errors from 1e-4 down to 1e-13, with as many "
         "samples as wanted at little extra cost."

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.compiled import kernel
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by
+from core.systems.methods.fixed_step import ONE_STEP, OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import Family
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
@@ -25,17 +25,20 @@ def _march(
     samples: Floats,
     tally: Integers,
 ) -> int:
-    slope = np.empty_like(state)
-    for i in range(count.size):
-        h = step[i]
-        for j in range(count[i]):
-            field(begin[i] + j * h, state, parameters, slope)
-            for k in range(state.size):
-                state[k] += h * slope[k]
+    slope, grid = np.empty_like(state), np.empty_like(state)
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            h = step[i, run]
+            for j in range(count[i, run]):
+                field(begin[i, run] + j * h, state, parameters, slope)
+                for k in range(state.size):
+                    state[k] += h * slope[k]
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
-    return count.size
+        replace(state, grid)
+    return len(count)
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class ExplicitEuler(FixedStep):
     Parameters
     ----------
     step : float
-        Longest step (s).
+        Length of the steps, from t = 0 (s).
     """
 
     step: Duration
@@ -53,6 +56,7 @@ class ExplicitEuler(FixedStep):
 
     order: ClassVar[int] = 1
     family: ClassVar[Family] = "explicit"
+    between_steps: ClassVar[str] = ONE_STEP + " For this method that is the straight line to the next grid point."
     when_to_use: ClassVar[str] = (
         "To see what a first-order method does, which most physics engines use: on a free body its energy grows at "
         "every step, and ten times less error costs ten times more steps."

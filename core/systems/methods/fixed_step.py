@@ -1,9 +1,16 @@
-"""Methods whose step is chosen by the client: the plan of the steps, and the base that runs it.
+"""Methods whose step is chosen by the client: the grid that they march on, samples between its points, and their base.
 
-The interval between consecutive samples is divided into the fewest equal steps that are no longer than the chosen one,
-so every sample is a point of the method and none is interpolated. An interval that is a whole number of chosen steps,
-up to the rounding of the times, gets exactly the chosen step: on an equally spaced grid whose spacing is the step, the
-method goes from grid point to grid point.
+A method marches in steps of the chosen length from the initial state, forwards and backwards in time, and nothing else
+moves the march: its states at the grid points n h are the same whatever times are asked for. A time that is a grid
+point up to its own rounding is answered with the state there. A time between two grid points is answered by the
+method's own continuous extension: one further step, of the remaining length, from the grid point before it. Such a step
+has the local error of the method, so that samples keep its order, and it conserves what every step of the method does;
+the march goes on from the grid point as if it had not been taken.
+
+References
+----------
+E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993, section II.6
+(continuous extensions).
 """
 
 from __future__ import annotations
@@ -16,7 +23,7 @@ import numpy as np
 from numba import types
 
 from core.compiled import kernel
-from core.double_double import dd_add, two_prod
+from core.double_double import two_prod
 from core.errors import InvalidParameter
 from core.quantities import Duration
 from core.systems.methods.method import Leg, Marching, Units
@@ -24,53 +31,66 @@ from core.systems.system import Floats, Integers, System
 
 _doubles = types.float64[::1]
 _integers = types.int64[::1]
+_table = types.float64[:, ::1]
+_counts = types.int64[:, ::1]
 
 
 def march_by(law: Any) -> Any:
     """Return the signature of a compiled march by a law of motion that is itself compiled with the signature `law`.
 
     Its arguments are (law, begin, step, count, state, parameters, samples to be filled in, tally). `begin`, `step` and
-    `count` hold the start, the signed length and the number of the steps of each interval. The result is the number of
-    samples that were reached. ``tally[0]`` holds the evaluations that are left beyond the declared ones, and is counted
-    down by methods that need such; ``tally[1]`` says why a march stopped early; ``tally[2]`` holds the declared
-    evaluations of each step.
+    `count`, shape (n, 2), hold for each sample the start, the signed length and the number of two runs of steps: along
+    the grid, and from the grid to the sample. The march goes on from the state between the two. The result is the
+    number of samples that were reached. ``tally[0]`` holds the evaluations that are left beyond the declared ones, and
+    is counted down by methods that need such; ``tally[1]`` says why a march stopped early; ``tally[2]`` holds the
+    declared evaluations of each step.
 
-    Every method has the two loops of its march to itself: handing a step and its arrays to a common march was measured
-    to cost 5 to 30 ns a step, where a step of forward Euler takes 9.
+    Every method has the loops of its march to itself: handing a step and its arrays to a common march was measured to
+    cost 5 to 30 ns a step, where a step of forward Euler takes 9.
     """
     samples = types.float64[:, ::1]
-    return types.int64(types.FunctionType(law), _doubles, _doubles, _integers, _doubles, _doubles, samples, _integers)
+    return types.int64(types.FunctionType(law), _table, _table, _counts, _doubles, _doubles, samples, _integers)
 
 
 OVERFLOW, NO_CONVERGENCE, OUT_OF_BUDGET = 1, 2, 3
 
 
-@kernel(types.float64(_doubles, types.float64, _doubles, _doubles, _integers))
-def plan(targets: Floats, step: float, begin: Floats, length: Floats, count: Integers) -> float:
-    """Lay out the steps to `targets` and return their number; stop at an interval that needs more than 2**53."""
-    now, tail, total = 0.0, 0.0, 0.0
+@kernel(types.float64(_doubles, types.float64, types.int64, _table, _table, _counts))
+def lay_out(targets: Floats, step: float, parts: int, begin: Floats, length: Floats, count: Integers) -> float:
+    """Lay out the steps to `targets`, of one sign and growing magnitude, and return their number.
+
+    Each step is divided into `parts`. With more than 2**53 steps the layout is not complete: they cannot be numbered.
+    """
+    done, further = 0.0, 0.0
     for i in range(targets.size):
-        distance = (targets[i] - now) - tail
-        # Four roundings are what a time and its predecessor may each be off when they come from start + i * spacing.
-        slack = 4 * 2.220446049250313e-16 * abs(targets[i])
-        begin[i] = now
-        if abs(distance) <= slack:
-            length[i], count[i] = 0.0, 0
-            continue
-        if abs(abs(distance) - step) <= slack:
-            needed, size = 1.0, math.copysign(step, distance)
-        else:
-            needed = max(1.0, np.ceil((abs(distance) - slack) / step))
-            if not needed <= 9007199254740992.0:
-                return float(needed)
-            whole = abs(abs(distance) - needed * step) <= slack
-            size = math.copysign(step if whole else abs(distance) / needed, distance)
-        length[i] = size
-        count[i] = int(needed)
-        total += needed
-        covered, rest = two_prod(size, needed)
-        now, tail = dd_add(now, tail, covered, rest)
-    return total
+        distance = abs(targets[i])
+        whole = np.floor(distance / step)
+        if not whole <= 9007199254740992.0:
+            return float(parts * whole)
+        # Four roundings are what a time may be off that comes from start + i * spacing.
+        slack = 4 * 2.220446049250313e-16 * distance
+        covered, rest = two_prod(whole, step)
+        left = (distance - covered) - rest
+        if left >= step - slack:
+            whole, left = whole + 1.0, 0.0
+        elif left <= slack:
+            # Also where the quotient was rounded up to the next grid point.
+            left = 0.0
+        signed = math.copysign(step, targets[i])
+        begin[i, 0], length[i, 0], count[i, 0] = done * signed, signed / parts, parts * int(whole - done)
+        begin[i, 1], length[i, 1], count[i, 1] = whole * signed, math.copysign(left, targets[i]) / parts, 0
+        if left > 0.0:
+            count[i, 1] = parts
+            further += parts
+        done = whole
+    return parts * done + further
+
+
+@kernel(types.void(_doubles, _doubles))
+def replace(target: Floats, source: Floats) -> None:
+    """Copy a state over another."""
+    for k in range(target.size):
+        target[k] = source[k]
 
 
 @kernel(types.boolean(_doubles, types.int64, types.float64[:, ::1]))
@@ -83,20 +103,34 @@ def keep(state: Floats, i: int, samples: Floats) -> bool:
     return finite
 
 
+ONE_STEP = (
+    "By the method's own continuous extension: one further step, of the remaining length, from the grid point before "
+    "the sample. It has the order and the invariants of the method, and the march goes on from the grid point."
+)
+"""How these methods sample between the points of their grid."""
+
+
 class FixedStep(Marching):
     """Base of the methods with a fixed step.
 
-    A subclass gives its compiled march and the evaluations that each step needs at least; the base plans the steps,
+    A subclass gives its compiled march and the evaluations that each step needs at least; the base lays out the steps,
     refuses what is over the budget before running it, and counts.
     """
 
     step: Duration
     setting: ClassVar[str] = "step"
+    between_steps: ClassVar[str] = ONE_STEP
+
+    @property
+    def grid_step(self) -> float:
+        """Length of the steps of the grid (s)."""
+        return self.step
 
     def finer(self) -> Halved:
-        """Return the same method with every step halved.
+        """Return the same method with every step taken as two, those from grid points to samples too.
 
-        That is not half the `step`: where samples lie closer than the step, they rule, and halving it changes nothing.
+        That is not the method with half the `step`, by which a sample within the first half of the first step would be
+        reached in the same single step.
         """
         return Halved(self)
 
@@ -124,24 +158,22 @@ class FixedStep(Marching):
     def _march_divided(
         self, system: System, start: Floats, targets: Floats, limit: int, units: Units, parts: int
     ) -> Leg:
-        """March as `_march` does, with every planned step divided into `parts`."""
-        begin, length = np.empty_like(targets), np.empty_like(targets)
-        count = np.empty(targets.size, np.int64)
-        steps = parts * plan(targets, units.duration(self.step), begin, length, count)
+        """March as `_march` does, with every step divided into `parts`."""
+        shape = (targets.size, 2)
+        begin, length, count = np.empty(shape), np.empty(shape), np.empty(shape, np.int64)
+        total = lay_out(targets, units.duration(self.step), parts, begin, length, count)
         each = self._evaluations_per_step(system)
-        if steps * each > limit:
-            raise self._over_budget(steps * each, limit)
-        length /= parts
-        count *= parts
-        declared = int(steps) * each
+        if total * each > limit:
+            raise self._over_budget(total * each, limit)
+        declared = int(total) * each
         samples = np.empty((targets.size, start.size))
         tally = np.array([limit - declared, 0, each])
         march = self._compiled()
         reached = march(self._law(system), begin, length, count, start.copy(), system.parameters, samples, tally)
         if tally[1]:
             time = units.given_time(float(targets[reached]))
-            raise self._failure(int(tally[1]), time, int(count[:reached].sum()) / steps, limit)
-        return Leg(samples, limit - int(tally[0]), int(steps), 0)
+            raise self._failure(int(tally[1]), time, int(count[:reached].sum()) / total, limit)
+        return Leg(samples, limit - int(tally[0]), int(count[:, 0].sum()), 0)
 
     def _failure(self, why: int, time: float, fraction: float, limit: int) -> Exception:
         if why == OVERFLOW:
@@ -156,9 +188,15 @@ class Halved(Marching):
     """A method with a fixed step, each of whose steps is taken as two."""
 
     setting: ClassVar[str] = "step"
+    between_steps: ClassVar[str] = ONE_STEP
 
     def __init__(self, method: FixedStep) -> None:
         self.method, self.kind = method, method.kind
+
+    @property
+    def grid_step(self) -> float:
+        """Length of the steps of the grid (s)."""
+        return 0.5 * self.method.step
 
     def finer(self) -> None:
         """Return None: it is there to compare with, not to go on from."""

@@ -18,7 +18,7 @@ import numpy as np
 from core.compiled import kernel
 from core.double_double import two_sum
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep, march_by
+from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import Family, Invariance
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
@@ -38,42 +38,50 @@ def _march(
 ) -> int:
     slope, new, middle = np.empty_like(state), np.empty_like(state), np.empty_like(state)
     tail = np.zeros_like(state)
+    grid, grid_tail, grid_slope = np.empty_like(state), np.empty_like(state), np.empty_like(state)
     # The slope of the last step is the first guess; for the first step it is the one at the start.
-    field(begin[0], state, parameters, slope)
+    field(begin[0, 0], state, parameters, slope)
     tally[0] -= 1
-    for i in range(count.size):
-        h = step[i]
-        for j in range(count[i]):
-            t = begin[i] + (j + 0.5) * h
-            last, spent = np.inf, 0
-            while True:
-                for k in range(state.size):
-                    middle[k] = state[k] + 0.5 * h * slope[k]
-                field(t, middle, parameters, new)
-                spent += 1
-                change, size = 0.0, 0.0
-                for k in range(state.size):
-                    change = max(change, abs(h * (new[k] - slope[k])))
-                    size = max(size, abs(state[k]), abs(middle[k]))
-                    slope[k] = new[k]
-                # Beside the round-off of the state, a change that no longer falls is round-off and nothing else.
-                if change == 0.0 or (change >= last and change <= 1e-13 * size):
-                    break
-                if spent >= ITERATIONS or not change < np.inf:
-                    tally[1] = NO_CONVERGENCE
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            replace(grid_tail, tail)
+            replace(grid_slope, slope)
+            h = step[i, run]
+            for j in range(count[i, run]):
+                t = begin[i, run] + (j + 0.5) * h
+                last, spent = np.inf, 0
+                while True:
+                    for k in range(state.size):
+                        middle[k] = state[k] + 0.5 * h * slope[k]
+                    field(t, middle, parameters, new)
+                    spent += 1
+                    change, size = 0.0, 0.0
+                    for k in range(state.size):
+                        change = max(change, abs(h * (new[k] - slope[k])))
+                        size = max(size, abs(state[k]), abs(middle[k]))
+                        slope[k] = new[k]
+                    # Beside the round-off of the state, a change that no longer falls is round-off and nothing else.
+                    if change == 0.0 or (change >= last and change <= 1e-13 * size):
+                        break
+                    if spent >= ITERATIONS or not change < np.inf:
+                        tally[1] = NO_CONVERGENCE
+                        return i
+                    last = change
+                tally[0] -= spent - 1
+                if tally[0] < 0:
+                    tally[1] = OUT_OF_BUDGET
                     return i
-                last = change
-            tally[0] -= spent - 1
-            if tally[0] < 0:
-                tally[1] = OUT_OF_BUDGET
-                return i
-            for k in range(state.size):
-                # The rounding of the sum is carried on, which keeps the invariants from drifting.
-                state[k], tail[k] = two_sum(state[k], h * slope[k] + tail[k])
+                for k in range(state.size):
+                    # The rounding of the sum is carried on, which keeps the invariants from drifting.
+                    state[k], tail[k] = two_sum(state[k], h * slope[k] + tail[k])
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
-    return count.size
+        replace(state, grid)
+        replace(tail, grid_tail)
+        replace(slope, grid_slope)
+    return len(count)
 
 
 @dataclass(frozen=True)
@@ -83,7 +91,7 @@ class ImplicitMidpoint(FixedStep):
     Parameters
     ----------
     step : float
-        Longest step (s).
+        Length of the steps, from t = 0 (s).
     """
 
     step: Duration

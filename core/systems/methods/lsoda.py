@@ -32,6 +32,9 @@ class Lsoda(FromSciPy):
 
     order: ClassVar[None] = None
     family: ClassVar[Family] = "implicit"
+    between_steps: ClassVar[str] = (
+        "By the polynomial of the current order that the multistep method itself carries from step to step."
+    )
     when_to_use: ClassVar[str] = (
         "To compare with what scipy.integrate.odeint gives, or for a motion that may turn stiff on its way."
     )

@@ -57,6 +57,8 @@ class AbstractMethod(ABC):
         ``"closed form"``, ``"explicit"``, ``"implicit"`` or ``"structure-preserving"``.
     preserves : tuple of str
         What the method keeps to round-off, whatever its step.
+    between_steps : str
+        How samples come about whose times lie between the ends of steps.
     when_to_use : str
         One sentence.
     """
@@ -65,6 +67,7 @@ class AbstractMethod(ABC):
     order: ClassVar[int | None]
     family: ClassVar[Family]
     preserves: ClassVar[tuple[Invariance, ...]] = ()
+    between_steps: ClassVar[str]
     when_to_use: ClassVar[str]
 
     @abstractmethod
@@ -163,6 +166,11 @@ class Marching(AbstractMethod):
 
     setting: ClassVar[str]
 
+    @property
+    def grid_step(self) -> float | None:
+        """Length of the steps (s), None for methods that choose them."""
+        return None
+
     def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
         """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""
         budget = budget or Budget()
@@ -188,7 +196,9 @@ class Marching(AbstractMethod):
             evaluations += leg.evaluations
             steps += leg.steps
             rejected += leg.rejected
-        return Integration(units.given_states(states), Work(times.size, evaluations, steps, rejected))
+        return Integration(
+            units.given_states(states), Work(times.size, evaluations, steps, rejected, step=self.grid_step)
+        )
 
     def _limited(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         """March within the work that may be done here as well as within the budget."""

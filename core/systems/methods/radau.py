@@ -31,6 +31,7 @@ class Radau(FromSciPy):
 
     order: ClassVar[int] = 5
     family: ClassVar[Family] = "implicit"
+    between_steps: ClassVar[str] = "By the method's own collocation polynomial, an interpolant of order three."
     when_to_use: ClassVar[str] = (
         "For stiff motions, where explicit methods would need steps far shorter than anything that is seen; a free "
         "body is not one."

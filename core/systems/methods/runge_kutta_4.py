@@ -15,7 +15,7 @@ import numpy as np
 
 from core.compiled import kernel
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by
+from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import Family
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
@@ -32,27 +32,30 @@ def _march(
     tally: Integers,
 ) -> int:
     k1, k2, k3, k4 = np.empty_like(state), np.empty_like(state), np.empty_like(state), np.empty_like(state)
-    stage = np.empty_like(state)
-    for i in range(count.size):
-        h = step[i]
-        for j in range(count[i]):
-            t = begin[i] + j * h
-            field(t, state, parameters, k1)
-            for k in range(state.size):
-                stage[k] = state[k] + 0.5 * h * k1[k]
-            field(t + 0.5 * h, stage, parameters, k2)
-            for k in range(state.size):
-                stage[k] = state[k] + 0.5 * h * k2[k]
-            field(t + 0.5 * h, stage, parameters, k3)
-            for k in range(state.size):
-                stage[k] = state[k] + h * k3[k]
-            field(t + h, stage, parameters, k4)
-            for k in range(state.size):
-                state[k] += h * ((k1[k] + k4[k]) + 2 * (k2[k] + k3[k])) / 6
+    stage, grid = np.empty_like(state), np.empty_like(state)
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            h = step[i, run]
+            for j in range(count[i, run]):
+                t = begin[i, run] + j * h
+                field(t, state, parameters, k1)
+                for k in range(state.size):
+                    stage[k] = state[k] + 0.5 * h * k1[k]
+                field(t + 0.5 * h, stage, parameters, k2)
+                for k in range(state.size):
+                    stage[k] = state[k] + 0.5 * h * k2[k]
+                field(t + 0.5 * h, stage, parameters, k3)
+                for k in range(state.size):
+                    stage[k] = state[k] + h * k3[k]
+                field(t + h, stage, parameters, k4)
+                for k in range(state.size):
+                    state[k] += h * ((k1[k] + k4[k]) + 2 * (k2[k] + k3[k])) / 6
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
-    return count.size
+        replace(state, grid)
+    return len(count)
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class RungeKutta4(FixedStep):
     Parameters
     ----------
     step : float
-        Longest step (s).
+        Length of the steps, from t = 0 (s).
     """
 
     step: Duration

@@ -12,10 +12,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from core.compiled import kernel
 from core.errors import NotApplicable
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by
+from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import Family, Invariance
 from core.systems.system import PART_FLOW, Floats, Integers, Splitting, System
 
@@ -33,18 +35,22 @@ def _march(
 ) -> int:
     # A step of n parts takes 2 n - 1 flows.
     last = (tally[2] - 1) // 2
-    for i in range(count.size):
-        h = step[i]
-        for _ in range(count[i]):
-            for part in range(last):
-                flow(part, 0.5 * h, state, parameters)
-            flow(last, h, state, parameters)
-            for part in range(last - 1, -1, -1):
-                flow(part, 0.5 * h, state, parameters)
+    grid = np.empty_like(state)
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            h = step[i, run]
+            for _ in range(count[i, run]):
+                for part in range(last):
+                    flow(part, 0.5 * h, state, parameters)
+                flow(last, h, state, parameters)
+                for part in range(last - 1, -1, -1):
+                    flow(part, 0.5 * h, state, parameters)
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
-    return count.size
+        replace(state, grid)
+    return len(count)
 
 
 @dataclass(frozen=True)
@@ -54,7 +60,7 @@ class SymmetricSplitting(FixedStep):
     Parameters
     ----------
     step : float
-        Longest step (s).
+        Length of the steps, from t = 0 (s).
     """
 
     step: Duration

@@ -4,31 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any, Literal
-
-from pydantic import ConfigDict, Field, create_model
+from typing import Any
 
 from core.certified.scenes import certified_scene, exact_scene
 from core.errors import InvalidParameter
 from core.scenes.answer import ConstrainedSystem
 from core.systems.budget import Budget
 from core.systems.trajectory import Work
-from service.requests.decimal_models import DigitCount, TimesInNumerals, explicit_fields, fields_in_numerals, instants
-from service.routes.certified.questions import (
-    AccuracyInDigits,
-    CertifiedCost,
-    Cost,
-    InDigits,
-    PerSample,
-    accuracy,
-    affordable,
+from service.requests.decimal_models import (
+    DecimalTimes,
+    DigitCount,
     ends,
-    times_written,
+    explicit_fields,
+    fields_in_numerals,
+    instants,
 )
-from service.routes.rotation.trajectory import ModelView, WorkView
-from service.routes.scenes import OUTPUTS, TIMES, members, name_of
-from service.routing import Answer, Example
-from service.schemas import Envelope, Request
+from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
+from service.routes.certified.cost import CertifiedCost, Cost, PerSample, affordable
+from service.routes.scenes import TIMES, SceneAnswer, answer_model, members, name_of, questions, request_model
+from service.routing import Answer, PostRoute
+from service.schemas import DecimalString
 
 COLUMNS = 8
 """Numbers in a sample, at most."""
@@ -42,69 +37,6 @@ SAMPLES: Mapping[str, PerSample] = {"rod-in-hole": PerSample(4.5e-5, 1.5e-7, 1.5
 
 WRITTEN: Mapping[str, int] = {"rod-in-hole": 5, "chain-on-wedge": 4}
 """Numbers that are written of a sample, its time among them, where they are not as many as may be."""
-
-EXAMPLES: Mapping[str, Mapping[str, Any]] = {
-    "unwinding-shafts": {
-        "masses": ["2", "1"],
-        "radii": ["0.1", "0.2"],
-        "slopes": ["0.5", "0.9"],
-        "gravity": "9.81",
-        "outputs": ["tension", "accelerations"],
-        "digits": 50,
-    },
-    "rod-in-hole": {
-        "hole_radius": "1",
-        "length": "1",
-        "mass": "1",
-        "gravity": "9.81",
-        "times": {"start": "0", "stop": "2", "count": 5},
-        "digits": 50,
-    },
-    "chain-on-wedge": {
-        "masses": ["1", "1.2"],
-        "slopes": ["0.6", "0.8"],
-        "gravity": "9.81",
-        "length": "2",
-        "linear_density": "0.5",
-        "position": "1",
-        "times": ["0.1", "0.2"],
-        "digits": 50,
-    },
-}
-
-
-class SceneAnswerInDigits(Envelope):
-    """What was asked for of a scene, each figure under its own name, numbers as decimal strings."""
-
-    model_config = ConfigDict(extra="allow")
-
-    model: ModelView
-    accuracy: AccuracyInDigits
-    work: WorkView
-    requested_samples: int = Field(description="Samples asked for; work.samples counts those that exist.")
-    ended: str | None = Field(
-        description="horizon, or the event that ended the motion; null if no motion was asked for."
-    )
-    trajectory: dict[str, list[Any]] | None = Field(default=None, description="Columns, time first.")
-
-
-def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
-    """Return the request that has the scene's own fields as numerals, and beside them what is asked of it."""
-    own = fields_in_numerals(scene)
-    # Built by a call, because a type made of names that are only known here is no type to the checker.
-    outputs: Any = list.__class_getitem__(Literal.__getitem__(tuple(scene.outputs)))
-    own["times"] = (
-        TimesInNumerals | None,
-        TIMES,
-    )
-    own["outputs"] = (
-        outputs | None,
-        OUTPUTS,
-    )
-    own["digits"] = (DigitCount, ...)
-    title = "".join(part.capitalize() for part in name_of(scene).split("-")) + "InDigits"
-    made: type[Request] = create_model(title, __base__=Request, __doc__=scene.__doc__, **own)
-    return made
 
 
 def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
@@ -144,29 +76,35 @@ def _samples(question: Any, budget: Budget) -> int:
     return 0 if question.times is None else affordable(question.times, question.digits, COLUMNS, budget)
 
 
-def planning_probe(question: Any) -> Any:
+def scene_probe(question: Any) -> Any:
     """Return the question about the earliest and the latest time alone."""
     return question if question.times is None else question.model_copy(update={"times": list(ends(question.times))})
 
 
+class CertifiedSceneAnswer(Certified, SceneAnswer[DecimalString]):
+    """What was asked for of a scene, numbers as decimal strings."""
+
+
 @cache
-def scenes_in_digits() -> Mapping[str, InDigits]:
-    """Return by path what is asked and answered of each scene where a question has ``digits``."""
-    return {f"/v1/scenes/{name_of(scene)}": _in_digits(scene) for scene in members()}
+def certified_scenes() -> tuple[PostRoute, ...]:
+    """Return one route for each scene."""
+    return tuple(map(_route, questions(), members()))
 
 
-def _in_digits(scene: type[ConstrainedSystem]) -> InDigits:
-    each = SAMPLES.get(name_of(scene), ELEMENTARY)
+def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
+    name = name_of(scene)
+    each = SAMPLES.get(name, ELEMENTARY)
 
     def cost(question: Any, budget: Budget) -> Cost:
-        return Cost(_samples(question, budget), WRITTEN.get(name_of(scene), COLUMNS), each)
+        samples = _samples(question, budget)
+        return Cost(samples * each.seconds(question.digits), 10 + samples * WRITTEN.get(name, COLUMNS))
 
-    example = Example("50 digits, every one of them proven", EXAMPLES[name_of(scene)])
-    return InDigits(
-        request_of(scene),
-        SceneAnswerInDigits,
-        answering(scene),
-        CertifiedCost(cost),
-        planning_probe,
-        {"digits": example},
+    own = fields_in_numerals(scene) | {"times": (DecimalTimes | None, TIMES), "digits": (DigitCount, ...)}
+    return certified_route(
+        ordinary,
+        question=request_model(scene, "Certified", **own),
+        answer=answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString),
+        handle=answering(scene),
+        price=CertifiedCost(cost),
+        planning_probe=scene_probe,
     )

@@ -6,38 +6,35 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from core.bodies.exact import tensor_pairs
-from core.bodies.mass_properties import MassProperties
 from core.certified.adaptive_precision import check_digits
 from core.certified.ellipsoid_mesh import certified_grid, certified_triangles
 from core.certified.energy_ellipsoid import CertifiedEllipsoid
-from core.certified.exact_inertia import ExactInertia
-from core.certified.exact_inputs import nearest
-from core.errors import BudgetExceeded
-from core.rotation.surfaces.initial_states import initial_states
 from core.systems.budget import Budget
-from service.requests.decimal_models import (
-    AngularVelocityInNumerals,
-    BodyInNumerals,
-    DigitCount,
-    EnergyInNumerals,
-    body_of,
+from service.requests.decimal_models import DecimalAngularVelocity, DecimalBody, DecimalEnergy, DigitCount, body_of
+from service.responses.ellipsoid_svg import ellipsoid_figure
+from service.responses.svg import SVG
+from service.routes.certified.answers import Certified, accuracy, certified_route, notices
+from service.routes.certified.cost import CertifiedCost, Cost, PerSample, summing
+from service.routes.rotation.surfaces import (
+    SURFACES,
+    Count,
+    Drawn,
+    EllipsoidSurface,
+    curve_points,
+    curves_drawn,
+    require_one,
 )
-from service.routes.certified.questions import SET_UP, AccuracyInDigits, InDigits, PerSample, accuracy, notices, summing
-from service.routes.rotation.surfaces import Count, Drawn, require_one
-from service.routing import Answer, Example
-from service.schemas import Envelope, Request, View, fields_of
-
-Row = list[str]
+from service.routing import Answer
+from service.schemas import DecimalString, Request, fields_of
 
 
-class EllipsoidInDigits(Request):
-    """A body and the energy of its rotation, or a state that has it, the answer wanted to a number of digits."""
+class CertifiedEllipsoidRequest(Request):
+    """A body and the energy of its rotation, or a state that has it."""
 
-    body: BodyInNumerals
-    energy: EnergyInNumerals | None = Field(default=None, description="Kinetic energy (J); this or angular_velocity.")
-    angular_velocity: AngularVelocityInNumerals | None = Field(
-        default=None, description="A state of that energy (rad/s)."
+    body: DecimalBody
+    energy: DecimalEnergy | None = Field(default=None, description="Kinetic energy; this or angular_velocity.")
+    angular_velocity: DecimalAngularVelocity | None = Field(
+        default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
     )
     resolution: Count | None = Field(
         default=None,
@@ -49,8 +46,8 @@ class EllipsoidInDigits(Request):
     )
     polhodes: Drawn | None = Field(
         default=None,
-        description="Draw polhodes through random starts: the same doubles as without digits, each then scaled to the "
-        "energy exactly.",
+        description="Draw polhodes through random starts: the same doubles as in the ordinary question, each "
+        "then scaled to the energy exactly.",
     )
     separatrix: bool = Field(default=False, description="Draw the separatrix.")
     points: Count = Field(
@@ -59,57 +56,14 @@ class EllipsoidInDigits(Request):
     digits: DigitCount
 
 
-class QualityInDigits(View):
-    """How well the triangles stand for the ellipsoid."""
-
-    watertight: bool
-    euler_characteristic: int
-    volume_ratio: str = Field(description="Volume inside the triangles over that of the ellipsoid.")
-    smallest_angle: str = Field(description="Of any triangle (rad).")
-    longest_edge: str = Field(description="Of any triangle (rad/s).")
+class CertifiedEllipsoidAnswer(Certified, EllipsoidSurface[DecimalString]):
+    """The surface w.I.w = 2E in body axes, numbers as decimal strings."""
 
 
-class MeshInDigits(View):
-    """Triangles, counter-clockwise seen from outside."""
-
-    vertices: list[Row]
-    faces: list[list[int]]
-    quality: QualityInDigits
-
-
-class GridInDigits(View):
-    """Coordinates over longitude (down) and colatitude (along), both ends included."""
-
-    x: list[Row]
-    y: list[Row]
-    z: list[Row]
-
-
-class PolhodeInDigits(View):
-    """One curve; the last point is the first if it is closed."""
-
-    regime: str
-    closed: bool
-    angular_momentum: str = Field(description="Magnitude, the same at every point (kg m^2/s).")
-    points: list[Row]
-
-
-class EllipsoidAnswerInDigits(Envelope):
-    """The surface w.I.w = 2E in body axes (rad/s)."""
-
-    energy: str
-    semi_axes: Row = Field(description="sqrt(2E/I) along each of `axes` (rad/s).")
-    axes: list[Row] = Field(description="Columns: the body axes if principal, else the principal axes.")
-    accuracy: AccuracyInDigits
-    mesh: MeshInDigits | None = None
-    grid: GridInDigits | None = None
-    polhodes: list[PolhodeInDigits] | None = None
-    separatrix: list[PolhodeInDigits] | None = Field(default=None, description="Empty if two moments are equal.")
-
-
-def energy_ellipsoid(question: EllipsoidInDigits, budget: Budget) -> Answer:
+def energy_ellipsoid(question: CertifiedEllipsoidRequest, budget: Budget) -> Answer:
     """Answer with the semi-axes, and with the surface and the curves that are asked for."""
     body, digits = body_of(question.body), question.digits
+    curve_points(question, budget)
     check_digits(digits, _numbers(question))
     require_one(question)
     if question.energy is not None:
@@ -132,7 +86,7 @@ def energy_ellipsoid(question: EllipsoidInDigits, budget: Budget) -> Answer:
         answer["grid"] = dict(zip("xyz", certified_grid(surface, resolution, digits), strict=True))
     starts: list[Any] = []
     if question.polhodes is not None:
-        starts = _drawn(body.of_motion, surface, question.polhodes)
+        starts = surface.drawn_starts(question.polhodes.count, question.polhodes.seed)
     elif question.angular_velocity is not None:
         starts = [question.angular_velocity]
     if starts:
@@ -142,30 +96,19 @@ def energy_ellipsoid(question: EllipsoidInDigits, budget: Budget) -> Answer:
     return answer
 
 
-def _drawn(inertia: ExactInertia, surface: CertifiedEllipsoid, drawn: Drawn) -> list[Any]:
-    """Return the starts that a question in doubles is answered with, of which only the directions count."""
-    body = MassProperties(*tensor_pairs(inertia.tensor))
-    return list(initial_states(body, nearest(surface.twice_energy / 2), drawn.count, drawn.seed).tolist())
-
-
-def _surface(question: EllipsoidInDigits) -> tuple[str | None, int]:
+def _surface(question: CertifiedEllipsoidRequest) -> tuple[str | None, int]:
     if question.layout is None and question.resolution is None:
         return None, 0
     return question.layout or "triangles", question.resolution or 16
 
 
-def _curves(question: EllipsoidInDigits) -> int:
-    drawn = question.polhodes.count if question.polhodes is not None else 0
-    return (drawn or (question.angular_velocity is not None)) + 2 * question.separatrix
-
-
-def _vertices(question: EllipsoidInDigits) -> int:
+def _vertices(question: CertifiedEllipsoidRequest) -> int:
     layout, resolution = _surface(question)
     return {None: 0, "triangles": 10 * resolution**2 + 2, "grid": 2 * resolution**2}[layout]
 
 
-def _numbers(question: EllipsoidInDigits) -> int:
-    return 3 * (_vertices(question) + _curves(question) * question.points)
+def _numbers(question: CertifiedEllipsoidRequest) -> int:
+    return 3 * (_vertices(question) + curves_drawn(question) * question.points)
 
 
 POINT = PerSample(7e-6, 2e-8, 6e-11)
@@ -174,38 +117,31 @@ VERTEX = PerSample(5e-6, 1e-8, 6e-11)
 FACE = PerSample(2e-5, 2.5e-8, 1.5e-10)
 
 
-class EllipsoidPrice:
-    """Price of an ellipsoid in digits: points of curves, vertices, and triangles, of which angles are measured."""
+def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> Cost:
+    """Return what is counted: points of curves, vertices, and triangles, of which angles are measured.
 
-    def __call__(self, question: EllipsoidInDigits, budget: Budget) -> float:
-        """Return the predicted time of computing an answer (s), or raise `BudgetExceeded`."""
-        digits, curves = question.digits, _curves(question)
-        points = curves * question.points
-        if points > budget.samples:
-            path = ("polhodes", "count") if question.polhodes is not None else ("points",)
-            remedy = "ask for fewer curves, or for fewer points on each"
-            raise BudgetExceeded("points", points, budget.samples, path=path, remedy=remedy)
-        check_digits(digits, _numbers(question))
-        layout, resolution = _surface(question)
-        faces = 20 * resolution**2 if layout == "triangles" else 0
-        return (
-            SET_UP
-            + summing(question.body)
-            + curves * CURVE.seconds(digits)
-            + points * POINT.seconds(digits)
-            + _vertices(question) * VERTEX.seconds(digits)
-            + faces * FACE.seconds(digits)
-        )
-
-    def size(self, question: EllipsoidInDigits, budget: Budget) -> float:
-        """Return the predicted length of an answer as JSON (bytes)."""
-        layout, resolution = _surface(question)
-        faces = 20 * resolution**2 * 14 if layout == "triangles" else 0
-        # A numeral has a sign, a point, two quotes and a comma; a third of the axes' components are zeros.
-        return 600.0 + faces + (8 + _numbers(question)) * (question.digits + 5.5)
+    Raises
+    ------
+    BudgetExceeded
+        For more points or digits than one answer may have.
+    """
+    digits, curves = question.digits, curves_drawn(question)
+    points = curve_points(question, budget)
+    check_digits(digits, _numbers(question))
+    layout, resolution = _surface(question)
+    faces = 20 * resolution**2 if layout == "triangles" else 0
+    seconds = (
+        summing(question.body)
+        + curves * CURVE.seconds(digits)
+        + points * POINT.seconds(digits)
+        + _vertices(question) * VERTEX.seconds(digits)
+        + faces * FACE.seconds(digits)
+    )
+    # A third of the axes' components are zeros.
+    return Cost(seconds, 8 + _numbers(question), 600.0 + 14 * faces)
 
 
-def planning_probe(question: EllipsoidInDigits) -> EllipsoidInDigits:
+def ellipsoid_probe(question: CertifiedEllipsoidRequest) -> CertifiedEllipsoidRequest:
     """Return the question about a coarse surface and few points."""
     changes: dict[str, Any] = {"points": min(question.points, 16)}
     if question.resolution is not None and question.resolution <= 200:
@@ -217,33 +153,12 @@ def planning_probe(question: EllipsoidInDigits) -> EllipsoidInDigits:
     return question.model_copy(update=changes)
 
 
-ELLIPSOID_IN_DIGITS = InDigits(
-    EllipsoidInDigits,
-    EllipsoidAnswerInDigits,
-    energy_ellipsoid,
-    EllipsoidPrice(),
-    planning_probe,
-    {
-        "digits": Example(
-            "semi-axes, a polhode and the separatrix to 40 digits, every point on both quadrics",
-            {
-                "body": {"kind": "principal-moments", "moments": ["2", "1", "0.5"]},
-                "angular_velocity": ["0.4", "1", "0.7"],
-                "separatrix": True,
-                "points": 8,
-                "digits": 40,
-            },
-        ),
-        "digits-mesh": Example(
-            "the icosahedron on the ellipsoid and two of the seeded polhodes",
-            {
-                "body": {"kind": "principal-moments", "moments": ["2", "1", "0.5"]},
-                "energy": "1",
-                "resolution": 1,
-                "polhodes": {"count": 2, "seed": 1},
-                "points": 8,
-                "digits": 20,
-            },
-        ),
-    },
+CERTIFIED_ELLIPSOID = certified_route(
+    SURFACES[0],
+    question=CertifiedEllipsoidRequest,
+    answer=CertifiedEllipsoidAnswer,
+    handle=energy_ellipsoid,
+    price=CertifiedCost(ellipsoid_cost),
+    planning_probe=ellipsoid_probe,
+    representations={SVG: ellipsoid_figure},
 )

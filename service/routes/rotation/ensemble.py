@@ -13,17 +13,31 @@ from core.errors import InvalidParameter
 from core.notices import Notice
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
+from core.rotation.sampled_rotation import in_range
 from core.rotation.surfaces.initial_states import initial_states
-from core.rotation.torque_free import pinned_notices
+from core.rotation.torque_free import inherited_notices
 from core.systems.budget import Budget
 from core.systems.methods import Method
+from core.systems.system import Model
+from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
-from service.responses.rounding import DIGITS, Digits, covering, notices_of, rounded
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
-from service.routes.rotation.surfaces import SOURCE_BODY, Count, Seed
-from service.routes.rotation.trajectory import AccuracyView, ModelView, WorkView, in_closed_form, in_range
-from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Request, Times, Vector, View, sample_count, sample_times
+from service.routes.rotation.surfaces import Count, Seed
+from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy, in_closed_form
+from service.routing import Answer, PostRoute
+from service.schemas import (
+    ROUND,
+    AngularVelocityRow,
+    Envelope,
+    Ratio,
+    Request,
+    Rounding,
+    Seconds,
+    Times,
+    View,
+    sample_count,
+    sample_times,
+)
 
 FEW_MEMBERS = 8
 """Members of an ensemble up to which it may be begun in the event loop."""
@@ -35,9 +49,9 @@ OUTLINED = 16
 class Sample(Request):
     """Starts of one energy, drawn uniformly over the scaled sphere."""
 
-    energy: Energy
-    count: Count
-    seed: Seed = 0
+    energy: Energy = Field(description="Kinetic energy of every start.")
+    count: Count = Field(description="Number of starts.")
+    seed: Seed = Field(default=0, description="Of the draw; equal seeds give equal starts.")
 
 
 class EnsembleRequest(Request):
@@ -45,34 +59,36 @@ class EnsembleRequest(Request):
 
     body: Body
     angular_velocities: Annotated[list[AngularVelocity], Field(min_length=1)] | None = Field(
-        default=None, description="Starts at t = 0, in body axes (rad/s); these or a sample."
+        default=None, description="Starts at t = 0, in body axes; these or a sample."
     )
-    sample: Sample | None = None
-    times: Times
-    accuracy: Tolerance = 1e-9
-    method: Method | None = None
-    round: Digits | None = DIGITS
+    sample: Sample | None = Field(default=None, description="Starts of one energy; this or angular_velocities.")
+    times: Times = TIMES
+    accuracy: Tolerance = ACCURACY
+    method: Method | None = METHOD
+    round: Rounding | None = ROUND
 
 
-class MemberView(View):
+class Member(View):
     """One motion."""
 
-    model: ModelView
-    method: str
-    period: float | None
-    accuracy: AccuracyView
-    work: WorkView
-    ended: str
+    model: Model
+    method: str = Field(description="Kind of the method that computed the samples.")
+    period: Seconds[float] | None = Field(description="Of the angular velocity in the body.")
+    accuracy: Accuracy
+    work: Work
+    ended: str = Field(description="horizon, or the event that ended the motion before it.")
 
 
 class EnsembleAnswer(Envelope):
     """Samples of every motion."""
 
-    error: float = Field(description="Largest stated error of any member.")
+    error: Ratio[float] = Field(description="Largest stated error of any member.")
     seed: int | None = Field(description="Of the sample, null if the starts were given.")
-    members: list[MemberView]
-    time: list[float]
-    angular_velocity: list[list[Vector]] = Field(description="(member, time, component), in body axes (rad/s).")
+    members: list[Member] = Field(description="In the order of the starts.")
+    time: list[Seconds[float]] = Field(description="Of the samples of every member.")
+    angular_velocity: list[list[AngularVelocityRow[float]]] = Field(
+        description="By member, time and component, in body axes."
+    )
 
 
 def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
@@ -82,35 +98,29 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
     many = ensemble(
         body, _starts(question, body), times, accuracy=question.accuracy, method=question.method, budget=budget
     )
-    samples, added = many.angular_velocity, [0.0] * len(many.members)
-    by_rounding = []
-    outside: list[Notice] = []
     if question.round is not None:
-        for k, member in enumerate(many.members):
-            stated = member.accuracy
-            samples[k], added[k] = rounded(samples[k], question.round, stated.error + (stated.inherited or 0.0))
-            by_rounding += [(k, notice) for notice in notices_of(stated, added[k])]
+        many = many.rounded(question.round)
+    outside: list[Notice] = []
     members = [
         {
             "model": member.model,
             "method": member.method,
             "period": in_range("period", member.period, outside),
-            "accuracy": covering(member.accuracy, more),
+            "accuracy": member.accuracy,
             "work": member.work,
             "ended": member.ended,
         }
-        for member, more in zip(many.members, added, strict=True)
+        for member in many.members
     ]
     return {
-        "error": max(member.accuracy.error + more for member, more in zip(many.members, added, strict=True)),
+        "error": many.error,
         "seed": None if question.sample is None else question.sample.seed,
         "members": members,
         "time": many.time,
-        "angular_velocity": samples,
+        "angular_velocity": many.angular_velocity,
         "warnings": (
-            *(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+            *inherited_notices(body),
             *many.warnings,
-            *((many.merged(by_rounding),) if by_rounding else ()),
             *outside[:1],
         ),
     }
@@ -182,15 +192,5 @@ ENSEMBLE = (
         CalibratedCost("rotation_ensemble", ensemble_counts),
         is_small_ensemble,
         ensemble_probe,
-        examples={
-            "sample": Example(
-                "three of the source's random starts",
-                {
-                    "body": SOURCE_BODY,
-                    "sample": {"energy": 1.0, "count": 3, "seed": 0},
-                    "times": {"start": 0.0, "stop": 20.0, "count": 11},
-                },
-            ),
-        },
     ),
 )

@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Generic, Literal
 
 import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
 from core.bodies.principal_inertia import Symmetry
-from core.quantities import AngularRate, AngularVelocity
+from core.quantities import AngularRate, AngularVelocity, Unit
 from core.rotation.precession.measurement import Measure, MeasuredPeriod, measure_period
 from core.rotation.precession.precession import Precession, Regime, precession
-from core.rotation.stability.stability import Flip, stability
+from core.rotation.stability.stability import stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, T_HANDLE
-from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Request, Span, Vector, View
+from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
+from service.routing import Answer, PostRoute
+from service.schemas import (
+    Envelope,
+    N,
+    PerSecond,
+    Radians,
+    RadiansPerSecond,
+    Request,
+    Seconds,
+    Span,
+    UnitVector,
+    View,
+)
 
 
 class PrecessionRequest(Request):
@@ -32,31 +43,40 @@ class PrecessionRequest(Request):
     )
 
 
-class PrecessionAnswer(Envelope):
+class PrecessionFigures(Envelope, Generic[N]):
     """Rates and angles; null where the motion has no such thing."""
 
-    symmetry: Symmetry
+    symmetry: Symmetry = Field(description="Which of the principal moments are equal.")
     regime: Regime = Field(description="Of the angular velocity in the body.")
-    axis: Vector | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
-    body_rate: float | None = Field(description="(I3 - I)/I w3, signed (rad/s).")
-    space_rate: float | None = Field(description="L/I (rad/s).")
-    period: float | None = Field(description="Of the angular velocity in the body (s).")
-    flip_interval: float | None = Field(description="Between sign changes along the middle axis (s).")
-    axis_to_angular_momentum: float | None = Field(description="rad")
-    axis_to_angular_velocity: float | None = Field(description="Half-angle of the body cone (rad).")
-    angular_momentum_to_angular_velocity: float | None = Field(description="Half-angle of the space cone (rad).")
+    axis: UnitVector[N] | None = Field(description="Axis of symmetry, or the one that is circled, in body axes.")
+    body_rate: RadiansPerSecond[N] | None = Field(
+        description="(I3 - I)/I w3, signed: 0 for a spin across the axis, null for one along it."
+    )
+    space_rate: RadiansPerSecond[N] | None = Field(description="L/I.")
+    period: Seconds[N] | None = Field(description="Of the angular velocity in the body.")
+    flip_interval: Seconds[N] | None = FLIP_INTERVAL
+    middle_axis_tilt: tuple[Radians[N], Radians[N]] | None = MIDDLE_AXIS_TILT
+    tumbles: bool = TUMBLES
+    axis_to_angular_momentum: Radians[N] | None = Field(description="Angle from the axis to the angular momentum.")
+    axis_to_angular_velocity: Radians[N] | None = Field(description="Half-angle of the body cone.")
+    angular_momentum_to_angular_velocity: Radians[N] | None = Field(description="Half-angle of the space cone.")
     order_of_directions: str | None = Field(description="Which of the three directions lies between the others.")
-    precession_per_period: float | None = Field(description="Not reduced modulo 2 pi (rad).")
-    mean_precession_rate: float | None = Field(description="Of the axis about the angular momentum (rad/s).")
+    precession_per_period: Radians[N] | None = Field(description="Not reduced modulo 2 pi.")
+    mean_precession_rate: RadiansPerSecond[N] | None = Field(description="Of the axis about the angular momentum.")
     absent: dict[str, str] = Field(description="Why a figure is null.")
-    measured: MeasuredPeriod | None = None
 
 
-RATE: Any = Field(default=1.0, description="About each principal axis in turn (rad/s).")
+class PrecessionAnswer(PrecessionFigures[float]):
+    """Rates and angles; null where the motion has no such thing."""
+
+    measured: MeasuredPeriod | None = Field(default=None, description="The period by an integrator, if asked for.")
+
+
+RATE: Any = Field(default=1.0, description="About each principal axis in turn.")
 DISTURBANCE: Any = Field(
     default=None,
     description="Rates along the axes of smallest and largest moment, added to the rotation about the middle axis: "
-    "the interval of its flips is then answered (rad/s).",
+    "the interval between sign changes of the component along that axis is then answered.",
 )
 
 
@@ -68,29 +88,43 @@ class StabilityRequest(Request):
     disturbance: tuple[AngularRate, AngularRate] | None = DISTURBANCE
 
 
-class EquilibriumView(View):
+class Equilibrium(View, Generic[N]):
     """A constant angular velocity, and what becomes of one near it."""
 
-    axis: Vector | None = Field(description="In body axes; null for the state of rest.")
-    moment: float | None
-    eigenvalues: list[tuple[float, float]] | None = Field(description="Real and imaginary parts (1/s).")
-    kind: Literal["center", "saddle", "degenerate"]
+    axis: UnitVector[N] | None = Field(description="In body axes; null for the state of rest.")
+    moment: Annotated[N, Unit("kg m^2")] | None = Field(description="Of inertia about the axis.")
+    eigenvalues: list[tuple[PerSecond[N], PerSecond[N]]] | None = Field(description="Real and imaginary parts.")
+    kind: Literal["center", "saddle", "degenerate"] = Field(description="Of the fixed point, by its eigenvalues.")
     stable: bool = Field(description="In the sense of Lyapunov, of the angular velocity.")
-    growth_rate: float | None = Field(description="Exponential rate of a small disturbance (1/s).")
-    drift_rate: float | None = Field(description="Linear rate per unit of disturbance (1/s).")
-    linearly_stable: bool
+    growth_rate: PerSecond[N] | None = Field(description="Exponential rate of a small disturbance.")
+    drift_rate: PerSecond[N] | None = Field(description="Linear rate per unit of disturbance.")
+    linearly_stable: bool = Field(description="Whether no eigenvalue has a positive real part.")
     attitude: Literal["orbital", "unstable"] = Field(description="In which sense the attitude is stable.")
-    survives_dissipation: bool
-    reason: str
+    survives_dissipation: bool = Field(description="Whether it stays stable where energy is lost.")
+    reason: str = Field(description="Why, in one sentence.")
 
 
-class StabilityAnswer(Envelope):
+class Flip(View, Generic[N]):
+    """What becomes of a disturbed rotation about the middle axis."""
+
+    disturbance: tuple[RadiansPerSecond[N], RadiansPerSecond[N]] = Field(
+        description="Rates along the axes of smallest and largest moment."
+    )
+    interval: Seconds[N] | None = Field(description="Between sign changes of the component along the middle axis.")
+    reason: str = Field(description="Why, in one sentence.")
+
+
+class Equilibria(Envelope, Generic[N]):
+    """Every equilibrium of a free body at one rate: about its axes in ascending order of moments, and at rest."""
+
+    symmetry: Symmetry = Field(description="Which of the principal moments are equal.")
+    rate: RadiansPerSecond[N] = Field(description="As asked.")
+    equilibria: list[Equilibrium[N]] = Field(description="About the axes in ascending order of moments, and at rest.")
+    flip: Flip[N] | None = Field(description="Of the disturbance; null without one.")
+
+
+class StabilityAnswer(Equilibria[float]):
     """Every equilibrium of a free body at one rate."""
-
-    symmetry: Symmetry
-    rate: float
-    equilibria: list[EquilibriumView]
-    flip: Flip | None
 
 
 def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
@@ -137,29 +171,6 @@ PRECESSION = (
         CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
         precession_probe,
-        examples={
-            "coin": Example(
-                "a spinning coin",
-                {
-                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
-                    "angular_velocity": [1.0, 1.0, 1.0],
-                },
-            ),
-            "t-handle": Example("a T-handle", {"body": T_HANDLE, "angular_velocity": [1.0, 10.0, 1.0]}),
-            "source": Example(
-                "the source's experiment: forward Euler and the first return within 0.035",
-                {
-                    "body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]},
-                    "angular_velocity": [1.0, 1.0, 1.0],
-                    "measure": {
-                        "method": {"kind": "explicit-euler", "step": 0.0075037518759379685},
-                        "duration": 15.0,
-                        "samples": 2000,
-                        "tolerance": 0.035,
-                    },
-                },
-            ),
-        },
     ),
     PostRoute(
         "/v1/rotation/stability",
@@ -171,13 +182,5 @@ PRECESSION = (
         answer_stability,
         CalibratedCost("stability", counts),
         is_small,
-        examples={
-            "t-handle": Example(
-                "a T-handle, and how often it flips", {"body": T_HANDLE, "rate": 10.0, "disturbance": [1.0, 1.0]}
-            ),
-            "coin": Example(
-                "two equal moments", {"body": {"kind": "principal-moments", "moments": [1.0, 1.0, 2.0]}, "rate": 1.0}
-            ),
-        },
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Generic, Literal
 
 import numpy as np
 from pydantic import Field
@@ -11,42 +11,57 @@ from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.quantities import AngularVelocity, Energy
+from core.rotation.equal_moments import curve_notices
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from core.rotation.surfaces.initial_states import initial_states
-from core.rotation.surfaces.polhodes import Polhode, polhode, separatrix
-from core.rotation.torque_free import pinned_notices
+from core.rotation.surfaces.polhodes import polhode, separatrix
+from core.rotation.torque_free import inherited_notices
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.bodies import FEW_SAMPLES, counts, is_small, properties_of
-from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Matrix, Request, Vector, View, fields_of
+from service.routing import Answer, PostRoute
+from service.schemas import (
+    AngularMomentumMagnitude,
+    AngularVelocityRow,
+    Envelope,
+    Joules,
+    Matrix,
+    N,
+    Radians,
+    RadiansPerSecond,
+    Ratio,
+    Request,
+    View,
+    fields_of,
+)
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
 FINEST_PRICED = 1000
 COARSE, FEW_POINTS = 6, 512
 """Resolution and points of curves up to which a surface may be begun in the event loop."""
 Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
+SEED: Any = Field(default=0, description="Of the draw; equal seeds give equal starts.")
 
 
 class Drawn(Request):
     """How many random starts to draw, uniformly over the scaled sphere, and the seed of the draw."""
 
-    count: Count
-    seed: Seed = 0
+    count: Count = Field(description="Number of starts.")
+    seed: Seed = SEED
 
 
 class EllipsoidRequest(Request):
     """A body and the energy of its rotation, or a state that has it."""
 
     body: Body
-    energy: Energy | None = Field(default=None, description="Kinetic energy (J); this or angular_velocity.")
+    energy: Energy | None = Field(default=None, description="Kinetic energy; this or angular_velocity.")
     angular_velocity: AngularVelocity | None = Field(
-        default=None, description="A state of that energy (rad/s); its polhode is drawn unless polhodes is given."
+        default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
     )
     resolution: Count = Field(default=16, description="Parts of an icosahedron's edge, or points from pole to pole.")
-    layout: Literal["triangles", "grid"] = "triangles"
+    layout: Literal["triangles", "grid"] = Field(default="triangles", description="How the surface is written.")
     polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through random starts.")
     separatrix: bool = Field(default=False, description="Draw the separatrix.")
     points: Count = Field(
@@ -54,68 +69,72 @@ class EllipsoidRequest(Request):
     )
 
 
-class QualityView(View):
+class MeshQuality(View, Generic[N]):
     """How well the triangles stand for the ellipsoid."""
 
-    watertight: bool
-    euler_characteristic: int
-    volume_ratio: float = Field(description="Volume inside the triangles over that of the ellipsoid.")
-    smallest_angle: float = Field(description="Of any triangle (rad).")
-    longest_edge: float = Field(description="Of any triangle (rad/s).")
+    watertight: bool = Field(description="Whether every edge has two triangles.")
+    euler_characteristic: int = Field(description="Vertices minus edges plus faces; 2 for a sphere.")
+    volume_ratio: Ratio[N] = Field(description="Volume inside the triangles over that of the ellipsoid.")
+    smallest_angle: Radians[N] = Field(description="Of any triangle.")
+    longest_edge: RadiansPerSecond[N] = Field(description="Of any triangle.")
 
 
-class MeshView(View):
+class SurfaceMesh(View, Generic[N]):
     """Triangles, counter-clockwise seen from outside."""
 
-    vertices: list[Vector]
-    faces: list[Annotated[list[int], Field(min_length=3, max_length=3)]]
-    quality: QualityView
+    vertices: list[AngularVelocityRow[N]] = Field(description="In body axes.")
+    faces: list[Annotated[list[int], Field(min_length=3, max_length=3)]] = Field(description="Indices of vertices.")
+    quality: MeshQuality[N]
 
 
-class GridView(View):
+class SurfaceGrid(View, Generic[N]):
     """Coordinates over longitude (down) and colatitude (along), both ends included."""
 
-    x: list[list[float]]
-    y: list[list[float]]
-    z: list[list[float]]
+    x: list[list[RadiansPerSecond[N]]] = Field(description="Along the first body axis.")
+    y: list[list[RadiansPerSecond[N]]] = Field(description="Along the second body axis.")
+    z: list[list[RadiansPerSecond[N]]] = Field(description="Along the third body axis.")
 
 
-class PolhodeView(View):
+class Polhode(View, Generic[N]):
     """One curve; the last point is the first if it is closed."""
 
-    regime: str
-    closed: bool
-    angular_momentum: float | None = Field(description="Magnitude, the same at every point (kg m^2/s).")
-    points: list[Vector]
+    regime: str = Field(description="About which axis the curve runs.")
+    closed: bool = Field(description="Whether the last point is the first.")
+    angular_momentum: AngularMomentumMagnitude[N] | None = Field(description="Magnitude, the same at every point.")
+    points: list[AngularVelocityRow[N]] = Field(description="In body axes.")
 
 
-class EllipsoidAnswer(Envelope):
-    """The surface w.I.w = 2E in body axes (rad/s)."""
+class EllipsoidSurface(Envelope, Generic[N]):
+    """The surface w.I.w = 2E in body axes."""
 
-    energy: float
-    semi_axes: Vector = Field(description="sqrt(2E/I) along each of `axes` (rad/s).")
-    axes: Matrix = Field(description="Columns: the body axes if principal, else the principal axes.")
-    mesh: MeshView | None = None
-    grid: GridView | None = None
-    polhodes: list[PolhodeView] | None = None
-    separatrix: list[PolhodeView] | None = Field(default=None, description="Empty if two moments are equal.")
+    energy: Joules[N] = Field(description="Kinetic energy of every state on the surface.")
+    semi_axes: AngularVelocityRow[N] = Field(description="sqrt(2E/I) along each of `axes`.")
+    axes: Matrix[Ratio[N]] = Field(description="Columns: the body axes if principal, else the principal axes.")
+    mesh: SurfaceMesh[N] | None = Field(default=None, description="The surface as triangles.")
+    grid: SurfaceGrid[N] | None = Field(default=None, description="The surface as a grid.")
+    polhodes: list[Polhode[N]] | None = Field(default=None, description="Through the starts, in their order.")
+    separatrix: list[Polhode[N]] | None = Field(default=None, description="Empty if two moments are equal.")
+
+
+class EllipsoidAnswer(EllipsoidSurface[float]):
+    """The surface w.I.w = 2E in body axes."""
 
 
 class StatesRequest(Request):
     """A body, an energy, and how many starts to draw."""
 
     body: Body
-    energy: Energy
-    count: Count
-    seed: Seed = 0
+    energy: Energy = Field(description="Kinetic energy of every start.")
+    count: Count = Field(description="Number of starts.")
+    seed: Seed = SEED
 
 
 class StatesAnswer(Envelope):
     """Angular velocities of one energy, in body axes."""
 
-    angular_velocities: list[Vector]
-    energy: float
-    seed: int
+    angular_velocities: list[AngularVelocityRow[float]] = Field(description="One row per start.")
+    energy: Joules[float] = Field(description="As asked.")
+    seed: int = Field(description="As asked.")
 
 
 def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
@@ -126,7 +145,7 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
         "energy": surface.energy,
         "semi_axes": surface.semi_axes,
         "axes": surface.axes,
-        "warnings": tuple(notice.inside("body") for notice in (*body.warnings, *pinned_notices(body))),
+        "warnings": inherited_notices(body),
     }
     if question.layout == "triangles":
         mesh = surface.triangles(question.resolution)
@@ -136,11 +155,13 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
         answer["grid"] = {"x": x, "y": y, "z": z}
     if question.polhodes is not None:
         starts = initial_states(body, surface.energy, question.polhodes.count, question.polhodes.seed)
-        answer["polhodes"] = [_curve(polhode(body, start, question.points)) for start in starts]
+        answer["polhodes"] = [fields_of(polhode(body, start, question.points)) for start in starts]
     elif question.angular_velocity is not None:
-        answer["polhodes"] = [_curve(polhode(body, np.array(question.angular_velocity), question.points))]
+        answer["polhodes"] = [fields_of(polhode(body, np.array(question.angular_velocity), question.points))]
     if question.separatrix:
-        answer["separatrix"] = [_curve(curve) for curve in separatrix(body, surface.energy, question.points)]
+        answer["separatrix"] = [fields_of(curve) for curve in separatrix(body, surface.energy, question.points)]
+    if "polhodes" in answer or "separatrix" in answer:
+        answer["warnings"] += curve_notices(body.principal_of_motion)
     return answer
 
 
@@ -159,25 +180,30 @@ def _surface(question: EllipsoidRequest, body: MassProperties) -> EnergyEllipsoi
     return EnergyEllipsoid.through(body, np.array(question.angular_velocity))
 
 
-def _curve(curve: Polhode) -> dict[str, Any]:
-    return fields_of(curve)
-
-
-def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a surface, or refuse more points than one answer may have."""
+def curves_drawn(question: Any) -> int:
+    """Return how many curves a question asks for."""
     drawn = question.polhodes.count if question.polhodes is not None else 0
-    curves = (drawn or (question.angular_velocity is not None)) + 2 * question.separatrix
-    points = curves * question.points
+    return int((drawn or (question.angular_velocity is not None)) + 2 * question.separatrix)
+
+
+def curve_points(question: Any, budget: Budget) -> int:
+    """Return how many points the curves of a question have, or refuse more than one answer may have."""
+    points: int = curves_drawn(question) * question.points
     if points > budget.samples:
         path = ("polhodes", "count") if question.polhodes is not None else ("points",)
         remedy = "ask for fewer curves, or for fewer points on each"
         raise BudgetExceeded("points", points, budget.samples, path=path, remedy=remedy)
+    return points
+
+
+def ellipsoid_counts(question: EllipsoidRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a surface, or refuse more points than one answer may have."""
     # Finer surfaces are refused, at no cost.
     squares = min(question.resolution, FINEST_PRICED) ** 2
     return {
         **counts(question, budget),
-        "curves": curves,
-        "curve points": points,
+        "curves": curves_drawn(question),
+        "curve points": curve_points(question, budget),
         f"squares of {question.layout}": squares,
     }
 
@@ -215,8 +241,6 @@ def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
     return counts(question, budget) | {"numbers": 3 * question.count}
 
 
-SOURCE_BODY = {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}
-
 SURFACES = (
     PostRoute(
         "/v1/rotation/energy-ellipsoid",
@@ -231,29 +255,6 @@ SURFACES = (
         ellipsoid_probe,
         description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
         representations={SVG: ellipsoid_figure},
-        examples={
-            "triangles": Example(
-                "a coarse mesh with five polhodes and the separatrix",
-                {
-                    "body": SOURCE_BODY,
-                    "energy": 1.0,
-                    "resolution": 2,
-                    "polhodes": {"count": 5, "seed": 1},
-                    "separatrix": True,
-                    "points": 16,
-                },
-            ),
-            "grid": Example(
-                "the source's grid and the polhode through a state",
-                {
-                    "body": SOURCE_BODY,
-                    "angular_velocity": [0.4, 1.0, 0.7],
-                    "resolution": 6,
-                    "layout": "grid",
-                    "points": 16,
-                },
-            ),
-        },
     ),
     PostRoute(
         "/v1/rotation/initial-states",
@@ -265,10 +266,5 @@ SURFACES = (
         states,
         CalibratedCost("initial_states", states_counts),
         lambda question: question.count <= FEW_SAMPLES and is_small(question),
-        examples={
-            "thirty": Example(
-                "the source's thirty starts", {"body": SOURCE_BODY, "energy": 1.0, "count": 30, "seed": 0}
-            )
-        },
     ),
 )

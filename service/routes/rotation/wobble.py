@@ -7,12 +7,12 @@ from typing import Annotated
 from pydantic import Field
 
 from core.errors import InvalidParameter
-from core.quantities import Quantity
+from core.quantities import Quantity, Unit
 from core.rotation.wobble import Day, EarthFigures, from_ellipticity, from_period
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, one
-from service.routing import Answer, Example, PostRoute
-from service.schemas import Envelope, Request
+from service.routing import Answer, PostRoute
+from service.schemas import Envelope, Ratio, Request
 
 
 class WobbleRequest(Request):
@@ -30,12 +30,12 @@ class WobbleRequest(Request):
 class WobbleAnswer(Envelope):
     """A wobble and the body that has it."""
 
-    period: float
-    day: Day
-    rotations: float = Field(description="The period in rotations of the body, 1/asymmetry.")
-    asymmetry: float = Field(description="(I1 - I)/I")
-    ellipticity: float = Field(description="a/c for a scaled spherically symmetric density.")
-    flattening: float = Field(description="(a - c)/a")
+    period: Annotated[float, Unit("d")] = Field(description="In days of the kind `day`.")
+    day: Day = Field(description="Kind of day in which the period is given.")
+    rotations: Ratio[float] = Field(description="The period in rotations of the body, 1/asymmetry.")
+    asymmetry: Ratio[float] = Field(description="(I1 - I)/I")
+    ellipticity: Ratio[float] = Field(description="a/c for a scaled spherically symmetric density.")
+    flattening: Ratio[float] = Field(description="(a - c)/a")
     earth: EarthFigures = Field(description="The Earth's measured figures, and why they differ from a rigid body's.")
 
 
@@ -61,9 +61,5 @@ WOBBLE = (
         wobble,
         CalibratedCost("wobble", one),
         lambda question: True,
-        examples={
-            "chandler": Example("the source's 430 days", {"period": 430.0, "day": "sidereal"}),
-            "shape": Example("back from the shape", {"ellipticity": 1.00336409, "day": "solar"}),
-        },
     ),
 )

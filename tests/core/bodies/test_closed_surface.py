@@ -59,7 +59,7 @@ def test_corners_of_each_triangle_s_own_are_joined_by_their_places(which: int, r
 
 @settings(deadline=None, derandomize=True, max_examples=60)
 @given(shape, st.randoms(use_true_random=False))
-def test_every_kind_of_damage_is_told_with_its_face(which: int, random) -> None:
+def test_every_kind_of_damage_is_reported_with_its_face(which: int, random) -> None:
     vertices, faces = SHAPES[which]
     n = random.randrange(len(faces))
     with pytest.raises(OpenMesh, match="3 of") as hole:
@@ -85,7 +85,7 @@ def test_every_kind_of_damage_is_told_with_its_face(which: int, random) -> None:
     assert missing.value.path == ("faces", n, 2)
 
 
-def test_two_bodies_that_touch_in_an_edge_are_told_apart_from_a_hole() -> None:
+def test_two_bodies_that_touch_in_an_edge_are_distinguished_from_a_hole() -> None:
     vertices, faces = SHAPES[0]
     # A second tetrahedron on the other side of the edge from vertex 0 to vertex 1.
     more = np.vstack([vertices, [[0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]])

@@ -155,7 +155,7 @@ def test_a_part_needs_mass_and_centre_of_mass(body: Any, missing: str) -> None:
     assert "inertia-tensor" in str(refused.value.remedy)
 
 
-def test_what_is_wrong_with_a_part_is_told_with_its_place() -> None:
+def test_errors_of_a_part_have_its_path() -> None:
     with pytest.raises(InvalidParameter) as refused:
         joined(Part(BALL), Part(Rod(length=1.0, density=1.0)))
     assert refused.value.path == ("parts", 1, "body", "density")

@@ -75,7 +75,7 @@ def test_a_rotation_takes_body_to_space() -> None:
 
 @settings(deadline=None, max_examples=40)
 @given(quaternion, st.lists(number, min_size=6, max_size=6))
-def test_a_turned_tensor_keeps_its_invariants(q: list[float], entries: list[float]) -> None:
+def test_a_rotated_tensor_has_the_same_invariants(q: list[float], entries: list[float]) -> None:
     xx, yy, zz, xy, xz, yz = map(Fraction, entries)
     tensor = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
     turned = exact.rotated(tensor, exact.rotation(q))

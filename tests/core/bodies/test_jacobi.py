@@ -92,7 +92,7 @@ well = st.tuples(*3 * [st.floats(-0.3, 0.3)])
 
 @settings(deadline=None, derandomize=True, max_examples=150)
 @given(grades, well)
-def test_small_eigenvalues_of_a_graded_positive_tensor_keep_their_own_digits(scale, cross) -> None:
+def test_small_eigenvalues_of_a_graded_positive_tensor_are_accurate_relative_to_their_size(scale, cross) -> None:
     """Demmel and Veselic: tensor D A D, A near to 1, D of any grades; the error is relative to each eigenvalue."""
     unit = symmetric([1.0, 1.0, 1.0, *cross])
     a = unit * np.outer(scale, scale)

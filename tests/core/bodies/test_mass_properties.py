@@ -1,4 +1,4 @@
-"""Parallel axes against rational arithmetic, what is unknown, what is said beside the figures."""
+"""Parallel axes against rational arithmetic, unknown properties, and warnings."""
 
 from __future__ import annotations
 
@@ -9,8 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.bodies.composite import Composite, Part
 from core.bodies.mass_properties import Condition, MassProperties, diagonal
-from core.bodies.measured import PointMasses
+from core.bodies.measured import SUMMED_EXACTLY, InertiaTensor, PointMasses, PrincipalMoments
+from core.bodies.mesh import Mesh
+from core.bodies.solids import Cuboid
+from core.certified.exact_mass import ExactMass
 from core.errors import InvalidParameter, NotApplicable
 from core.notices import Notice
 
@@ -22,7 +26,7 @@ def body(center: tuple[float, float, float] = (1.0, -2.0, 0.5)) -> MassPropertie
     return MassProperties.from_exact(THIRD, [Fraction(x) for x in center], TENSOR)  # type: ignore[arg-type]
 
 
-def test_a_fraction_is_kept_to_106_bits() -> None:
+def test_a_fraction_is_stored_with_106_bits() -> None:
     found = body()
     assert abs(found.exact_mass - THIRD) < THIRD / 2**106
     assert abs(found.exact_inertia[0][1] - Fraction(1, 7)) < Fraction(1, 7) / 2**106
@@ -88,7 +92,7 @@ def test_the_report_has_a_condition_for_the_mass() -> None:
     assert "0.333333 kg" in report["positive-mass"].detail
 
 
-def test_a_tensor_of_no_body_is_judged_at_its_field() -> None:
+def test_an_unphysical_tensor_is_reported_at_its_field() -> None:
     judged = diagonal((2.0, 1.0, 0.5)).judged("moments")
     assert [(notice.code, notice.path) for notice in judged.warnings] == [("unphysical-inertia", ("moments",))]
     assert "2 <= 0.5 + 1" in judged.warnings[0].detail
@@ -112,3 +116,54 @@ def test_a_product_of_inertia_below_every_double_is_zero() -> None:
     assert not found.inertia[np.triu_indices(3, 1)].any()
     assert found.center_of_mass is not None
     assert not found.center_of_mass.any()
+
+
+def test_it_is_known_which_figures_are_exact():
+    cuboid = Cuboid(edges=(0.1, 0.2, 0.3), mass=1.0)
+    few = PointMasses(1.0, [[1, 0, 0], [-1, 0, 0], [0, 2, 0], [0, -2, 0]])
+    many = PointMasses(1.0, np.random.default_rng(1).normal(size=(SUMMED_EXACTLY + 1, 3)))
+    tetrahedron = Mesh(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], mass=1.0
+    )
+    for body in (PrincipalMoments((1.0, 2.0, 3.0)), InertiaTensor(((1.0, 0.1, 0.0), (0.1, 2.0, 0.0), (0.0, 0.0, 2.5)))):
+        assert body.mass_properties().rounding.share == 0.0
+    for body in (cuboid, few, Composite((Part(cuboid), Part(few, position=(0.0, 0.0, 1.0))))):
+        rounding = body.mass_properties().rounding
+        assert rounding.exact_zeros
+        assert 0.0 < rounding.share < 2.0**-100
+    for body in (many, tetrahedron, Composite((Part(cuboid), Part(tetrahedron)))):
+        rounding = body.mass_properties().rounding
+        assert not rounding.exact_zeros
+        assert 2.0**-101 < rounding.share < 2.0**-90
+    # A hole that leaves little of a mesh leaves its rounding.
+    inside = Mesh(0.999 * tetrahedron.vertices, tetrahedron.faces, density=-6.0)
+    left = Composite((Part(tetrahedron), Part(inside))).mass_properties().rounding
+    assert left.share > 50.0 * tetrahedron.mass_properties().rounding.share
+
+
+def test_moments_too_near_for_pairs_of_doubles_are_not_called_equal():
+    needle = Cuboid(edges=(1e30, 1.0, 2.0), mass=1.0).mass_properties()
+    assert not needle.rounding.exact_zeros
+    assert not Cuboid(edges=(1e30, 1.0, 2.0), mass=1.0).mass_properties().principal.rounding.exact_zeros
+    assert Cuboid(edges=(1e30, 2.0, 2.0), mass=1.0).mass_properties().rounding.exact_zeros
+
+
+def test_axes_about_a_pin_are_exact_where_the_centre_of_mass_lies_on_one():
+    part = Cuboid(edges=(0.1, 0.2, 0.3), mass=1.0)
+    on_axis = Composite((Part(part, position=(0.0, 0.0, 1.0)),), about="origin").mass_properties()
+    beside = Composite((Part(part, position=(0.0, 0.5, 1.0)),), about="origin").mass_properties()
+    assert on_axis.principal_of_motion.rounding.exact_zeros
+    assert not beside.principal_of_motion.rounding.exact_zeros
+
+
+@settings(deadline=None, derandomize=True, max_examples=60)
+@given(st.integers(2, 40), st.integers(0, 2**32), st.sampled_from((1e-140, 1.0, 1e140)))
+def test_few_points_summed_exactly(count, seed, size):
+    rng = np.random.default_rng(seed)
+    masses, positions = rng.uniform(0.1, 3.0, count), size * rng.normal(size=(count, 3))
+    found = PointMasses(masses.tolist(), positions).mass_properties()
+    exact = ExactMass.of_point_masses(masses.tolist(), positions.tolist())
+    assert found.exact_mass == pytest.approx(exact.mass, rel=1e-30)
+    for row, wanted in zip(found.exact_inertia, exact.inertia, strict=True):
+        for x, y in zip(row, wanted, strict=True):
+            assert abs(x - y) <= Fraction(2) ** -105 * abs(y)

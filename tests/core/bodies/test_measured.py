@@ -15,7 +15,11 @@ from numpy.typing import NDArray
 from core.bodies.exact import SMALLEST
 from core.bodies.mass_properties import diagonal
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
+from core.certified.exact_inertia import ExactInertia
+from core.certified.free_rotation import CertifiedRotation
 from core.errors import InvalidParameter, MechanicsError, UnphysicalInertia
+from core.rotation.precession.precession import precession
+from core.rotation.torque_free import TorqueFree
 
 PAIR = Fraction(1, 10**29)
 """What a value and a tail are right to, as a share of the largest component."""
@@ -232,18 +236,58 @@ def test_moments_stay_in_their_order_and_a_triple_of_no_body_is_answered_with_a_
     "given",
     [(2, 3, 4), [2.0, 3.0, 4.0], (np.float32(2), 3.0, 4.0), (Fraction(2), 3, 4.0), (2**53 + 1, 2**60, 2**60)],
 )
-def test_moments_of_any_type_are_kept_as_doubles(given: Any) -> None:
+def test_moments_of_any_type_become_doubles(given: Any) -> None:
     found, again = (PrincipalMoments(x).mass_properties() for x in (given, tuple(float(x) for x in given)))
     for properties in (found, again, diagonal(given)):
         assert properties.inertia.dtype == properties.principal.moments.dtype == np.float64
         assert properties.principal.moments.tolist() == [float(x) for x in given]
 
 
-@pytest.mark.parametrize("bad", [0.0, -1.0, NAN, float("inf"), True, "1", None])
+@pytest.mark.parametrize("bad", [-1.0, -5e-324, NAN, float("inf"), True, "1", None])
 def test_moments_that_are_refused(bad: Any) -> None:
     with pytest.raises(InvalidParameter) as caught:
         PrincipalMoments((1.0, bad, 1.0))
     assert caught.value.path == ("moments", 1)
+
+
+@pytest.mark.parametrize("moments", [(0.0, 0.0, 1.0), (0.0, -0.0, 0.0), (1.0, 0.0, 0.0)])
+def test_two_moments_of_zero_are_refused(moments: Any) -> None:
+    with pytest.raises(InvalidParameter) as caught:
+        PrincipalMoments(moments)
+    assert caught.value.path == ("moments",)
+    assert "thin rod" in str(caught.value.remedy)
+
+
+@settings(deadline=None, max_examples=60, derandomize=True)
+@given(
+    size=st.floats(1e-100, 1e100),
+    along=st.integers(0, 2),
+    spin=st.tuples(*[st.sampled_from([-1.5, -0.0, 0.0, 2.0])] * 3),
+)
+def test_a_thin_rod_has_mass_properties_and_turns_across_itself_alone(size: float, along: int, spin: Any) -> None:
+    moments: Any = tuple(0.0 if k == along else size for k in range(3))
+    found = PrincipalMoments(moments).mass_properties()
+    # The same rod as two point masses, half the moment each at one metre from the middle.
+    ends: Any = tuple(tuple(side if k == along else 0.0 for k in range(3)) for side in (-1.0, 1.0))
+    points = PointMasses((size / 2, size / 2), ends).mass_properties()
+    assert found.symmetry == points.symmetry == "linear"
+    assert found.validity.physical
+    assert found.principal.moments.tolist() == pytest.approx(points.principal.moments.tolist(), rel=1e-15)
+    exact = ExactInertia.of_moments(moments)
+    if spin[along] == 0.0:
+        for body in (found, points):
+            rotation = TorqueFree(body, np.array(spin)).closed_form()
+            assert rotation.sample(np.array([3.0])).tolist() == [list(spin)]
+        assert CertifiedRotation.of(exact, spin).regime in ("steady", "rest")
+        return
+    for turned in (
+        lambda: TorqueFree(found, np.array(spin)),
+        lambda: TorqueFree(points, np.array(spin)),
+        lambda: precession(found, spin),
+        lambda: CertifiedRotation.of(exact, spin),
+    ):
+        with pytest.raises(InvalidParameter, match="three moments of inertia greater than 0"):
+            turned()
 
 
 @settings(deadline=None, max_examples=60)

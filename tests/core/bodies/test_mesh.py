@@ -65,14 +65,14 @@ def test_leaves_and_needles(edges: tuple[float, float, float]) -> None:
 
 
 def askew(thickness: float) -> tuple[Vertices, Faces]:
-    """Return a leaf that lies in no plane of coordinates, its corners rounded to doubles."""
+    """Return a thin plate that is parallel to no coordinate plane, its corners rounded to doubles."""
     vertices, faces = cuboid((1.0, 1.3, thickness))
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     return (np.array(vertices) @ (turn * np.linalg.det(turn)).T).tolist(), faces
 
 
 @pytest.mark.parametrize("thickness", [1e-3, 1e-6, 1e-9, 1e-12, 1e-14, 1e-15])
-def test_a_leaf_askew_is_as_right_as_is_said(thickness: float) -> None:
+def test_an_oblique_thin_plate_is_as_accurate_as_stated(thickness: float) -> None:
     vertices, faces = askew(thickness)
     found = Mesh(vertices, faces, density=1.0).mass_properties()
     volume, _, inertia = exact_properties(vertices, faces)
@@ -198,7 +198,7 @@ def test_a_vertex_that_no_face_uses_does_not_matter() -> None:
     assert np.array_equal(found.inertia, Mesh(vertices, faces, density=1.0).mass_properties().inertia)
 
 
-def test_the_report_tells_what_was_checked_and_what_was_not() -> None:
+def test_the_report_lists_checked_and_unchecked_conditions() -> None:
     report = Mesh(*cuboid((1, 2, 3)), mass=1.0).mass_properties().validity.report
     details = {condition.name: condition.detail for condition in report}
     assert "18 edges" in details["closed-surface"]

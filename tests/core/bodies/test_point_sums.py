@@ -76,7 +76,7 @@ def test_second_moments_about_any_point(given_points, middle) -> None:
     assert np.array_equal(out, out.transpose(0, 2, 1))
 
 
-def test_points_far_from_the_origin_keep_what_lies_between_them() -> None:
+def test_points_far_from_the_origin_lose_no_digits() -> None:
     masses, far = np.array([1.0, 3.0]), 2.0**60
     positions = np.array([[far, 0.0, 0.0], [far, 0.0, 0.0]])
     tails = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.bodies.principal_inertia import PrincipalInertia
+from core.bodies.principal_inertia import GIVEN, ROUNDED_ONCE, PrincipalInertia, summed
 from core.errors import InvalidParameter
 
 CONTEXT = mp.mp.clone()
@@ -164,3 +164,42 @@ def test_moments_beyond_the_range_of_doubles_are_refused() -> None:
     with pytest.raises(InvalidParameter, match="range of doubles"):
         PrincipalInertia.of(tensor)
     assert PrincipalInertia.of(tensor / 4).moments[2] == pytest.approx(1.5 / 4 * 1.7e308, rel=1e-15)
+
+
+def test_moments_that_are_given_differ_if_they_are_not_the_same() -> None:
+    found = PrincipalInertia.of(np.diag([1.0, 1.0 + 2.0**-52, 2.0]))
+    assert found.rounding == GIVEN
+    assert found.apart == (True, True)
+    assert found.nearly_equal
+    assert PrincipalInertia.of(np.diag([2.0, 1.0, 2.0])).apart == (True, False)
+    # Of a tail alone, too.
+    tailed = PrincipalInertia.of(np.diag([1.0, 1.0, 2.0]), np.diag([0.0, 1e-30, 0.0]))
+    assert tailed.apart == (True, True)
+    assert not PrincipalInertia.of(np.diag([1.0, 1.5, 2.0])).nearly_equal
+
+
+@pytest.mark.parametrize(("bits", "apart"), [(60, True), (94, True), (98, False), (104, False)])
+def test_derived_moments_differ_beyond_their_resolution(bits: int, apart: bool) -> None:
+    g = 2.0**-bits
+    found = PrincipalInertia.of(np.array([[1.0, g, 0.0], [g, 1.0, 0.0], [0.0, 0.0, 2.0]]))
+    assert not found.rounding.exact_zeros
+    assert found.apart == (apart, True)
+    # Diagonal sums are derived as well, though their axes are those of the body.
+    summed_up = PrincipalInertia.of(np.eye(3), np.diag([0.0, g, 2.0 * g]), summed(10))
+    assert summed_up.apart == (apart, apart)
+    assert PrincipalInertia.of(np.eye(3), np.diag([0.0, g, 2.0 * g]), ROUNDED_ONCE).apart == (True, True)
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1.0, 1e150])
+def test_a_start_along_an_axis_of_a_tensor_is_recognised_exactly(scale: float) -> None:
+    # Moments 11, 12, 18 along (4, -1, 8)/9, (-4, -8, 1)/9, (7, -4, -4)/9, times 81.
+    axes = np.array([[4, -4, 7], [-1, -8, -4], [8, 1, -4]], dtype=float)
+    tensor = scale * (axes @ np.diag([11.0, 12.0, 18.0]) @ axes.T)
+    known = PrincipalInertia.of(scale * np.round(tensor / scale)).tensor
+    assert known is not None
+    if scale == 1.0:
+        for axis in axes.T:
+            assert known.turns_steadily(3e-150 * axis / 3e-150)
+            assert not known.turns_steadily(axis + np.array([0.0, 2.0**-50, 0.0]))
+    assert not known.turns_steadily(np.array([1.0, 2.0, 3.0]))
+    assert known.turns_steadily(np.zeros(3))

@@ -1,4 +1,4 @@
-"""Sums over faces against integrals of polynomials in rational arithmetic, and surfaces told apart by search.
+"""Sums over faces against integrals of polynomials in rational arithmetic, and surfaces distinguished by search.
 
 The oracle integrates over faces, the code over tetrahedra (`tests.core.bodies.polyhedra`). u^2 = 2^-106.
 """
@@ -23,7 +23,7 @@ closed = st.one_of(
     st.tuples(st.lists(vertex, min_size=4, max_size=4), st.just(TETRAHEDRON)),
     st.tuples(st.lists(vertex, min_size=8, max_size=8), st.just(CUBOID)),
 )
-"""Closed by their indices, wherever their corners lie, and whichever way round: integrals are signed."""
+"""Closed by their indices, with corners anywhere and either orientation: integrals are signed."""
 
 POWERS = ((2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1))
 
@@ -84,7 +84,7 @@ def area_squared(corners: np.ndarray) -> Fraction:
 
 @settings(deadline=None, derandomize=True, max_examples=150)
 @given(st.data())
-def test_surfaces_are_told_apart_by_their_vertices(data: st.DataObject) -> None:
+def test_surfaces_are_distinguished_by_their_vertices(data: st.DataObject) -> None:
     n = data.draw(st.integers(3, 14))
     corners = st.lists(st.integers(0, n - 1), min_size=3, max_size=3, unique=True)
     faces = data.draw(st.lists(corners, min_size=1, max_size=8))

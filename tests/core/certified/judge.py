@@ -1,4 +1,4 @@
-"""The double kernels judged by ball arithmetic: true errors in ulps, and whether the stated error was ever too small.
+"""The double kernels compared with ball arithmetic: true errors in ulps, and whether a stated error was too small.
 
     python -m tests.core.certified.judge 20000
 
@@ -32,7 +32,7 @@ UNIT_ROUNDOFF = 2.0**-53
 DIGITS = 40
 
 OWN_ERROR = 4 * 0.51 * 10.0 ** (1 - DIGITS)
-"""What the judge's own numerals may be wrong by, each by 0.51 units of its last digit."""
+"""Error of the reference numerals, each 0.51 units of its last digit."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def _at_times(
 ) -> Case:
     motion = FreeRotation(PrincipalInertia.of(np.diag(np.array(moments))), np.array(rates))
     try:
-        unit = motion.period or 1.0 / max(motion.motion.p, motion.largest_rate)
+        unit = motion.period or 1.0 / max(motion.motion.p, motion.largest_norm)
     except AccuracyUnreachable:
         unit = 1.0 / max(map(abs, rates))
     times = [0.0, unit * periods, -unit * periods * rng.random(), unit * rng.uniform(-1, 1)]
@@ -190,7 +190,7 @@ def _long_horizon(rng: Random) -> State:
 
 
 def _to_the_last_digit(rng: Random) -> State:
-    """So far that the phase is hardly told from its neighbours, in periods or, nearly symmetric, in turns."""
+    """Times so long that the phase is barely resolved, in periods or, for nearly symmetric bodies, in turns."""
     moments, rates = (_body(rng), _rates(rng))
     periods = 2.0 ** rng.uniform(40, 48)
     if rng.random() < 0.5:

@@ -77,7 +77,7 @@ def test_numerals(number: str, written: str):
     assert float(written) == pytest.approx(float(number), rel=1e-3)
 
 
-def test_what_cannot_be_told_from_zero_is_given_to_a_place_or_not_at_all():
+def test_numbers_indistinguishable_from_zero_are_printed_to_the_floor_or_not_at_all():
     with precision(100):
         around = arb(0, "1e-25")
         with pytest.raises(Undetermined):

@@ -31,7 +31,7 @@ def test_the_nearest_body_axis_decides_and_of_equal_ones_the_first(vector) -> No
     assert found[sizes.index(max(sizes))] > 0
 
 
-def test_a_tie_is_told_from_a_difference_by_more_bits() -> None:
+def test_more_bits_distinguish_a_tie_from_a_difference() -> None:
     tie = arb("0.5 +/- 1e-30"), arb("-0.5 +/- 1e-30"), arb(0)
     with precision(64), pytest.raises(Undetermined):
         oriented(tie)
@@ -47,5 +47,5 @@ def test_a_sign_in_doubt_is_left_open() -> None:
         oriented((arb("0 +/- 1"), arb(0), arb(0)))
 
 
-def test_the_last_place_lies_as_many_digits_below_one_as_are_carried() -> None:
+def test_the_floor_of_a_unit_vector_is_a_multiple_of_the_digits() -> None:
     assert floor_of_directions(16) == -16 * FLOOR_IN_DIGITS

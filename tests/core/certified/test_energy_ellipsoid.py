@@ -92,7 +92,7 @@ def test_a_steady_rotation_draws_one_point():
 
 
 @pytest.mark.parametrize("inertia", [ExactInertia.of_moments([14, 24, 21]), OBLIQUE], ids=["diagonal", "oblique"])
-def test_the_separatrix_lies_on_both_ellipsoids_and_crosses_at_the_middle_axis(inertia):
+def test_the_separatrix_is_on_both_ellipsoids_and_crosses_at_the_middle_axis(inertia):
     surface = CertifiedEllipsoid.of(inertia, "0.7")
     curves = surface.separatrix(12, 50)
     with mp.workdps(60):

@@ -66,7 +66,7 @@ def test_what_is_no_body_is_refused(body, path):
     assert caught.value.path == path
 
 
-def test_what_cannot_be_exact_says_so():
+def test_inputs_that_cannot_be_exact_are_rejected():
     for body in ({"kind": "ball", "radius": 1, "density": 1}, {"kind": "mesh"}, {}):
         with pytest.raises(NotApplicable):
             exact_body(body)

@@ -24,7 +24,7 @@ from core.errors import InvalidParameter
         (Fraction(1, 3), Fraction(1, 3)),
     ],
 )
-def test_a_number_is_what_it_says(given_as, is_):
+def test_numbers_are_exact(given_as, is_):
     assert exact(given_as, "x") == is_
 
 

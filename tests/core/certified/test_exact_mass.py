@@ -38,7 +38,7 @@ def test_point_masses_give_their_tensor_exactly():
             assert inertia.tensor[i][j] == expected
 
 
-def test_point_masses_about_the_origin_keep_their_offset():
+def test_point_masses_about_the_origin_have_an_offset():
     points = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
     assert ExactMass.of_point_masses(1, points, "origin").of_motion.tensor[0] == (2, 0, 0)
     assert ExactMass.of_point_masses("1", points).inertia[0] == (Fraction(4, 3), Fraction(1, 3), Fraction(1, 3))

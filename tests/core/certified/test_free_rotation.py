@@ -83,7 +83,7 @@ def test_a_thousand_digits(moments, rates, digits):
         assert distance(turned, attitudes) < mpf(10) ** (1 - digits)
 
 
-def test_a_decimal_string_means_what_it_says():
+def test_a_decimal_string_is_exact():
     as_text = CertifiedRotation.of_moments(["0.1", "0.2", "0.25"], ["0.3", "1", "0.1"])
     as_doubles = CertifiedRotation.of_moments([0.1, 0.2, 0.25], [0.3, 1.0, 0.1])
     first, second = (motion.angular_velocity(["1.1"], 30)[0] for motion in (as_text, as_doubles))
@@ -143,7 +143,7 @@ def test_oblique_axes_change_the_description_not_the_motion(moments, rates, turn
     assert plain.regime == seen.regime
 
 
-def test_irrational_moments_keep_energy_and_momentum_in_space():
+def test_irrational_moments_conserve_energy_and_momentum_in_space():
     tensor = [["2", "1", "1"], ["1", "3", "0.5"], ["1", "0.5", "4"]]
     motion = CertifiedRotation.of(ExactInertia.of_tensor(tensor), ["0.1", "1", "0.3"])
     assert motion.inertia.rational_moments is None

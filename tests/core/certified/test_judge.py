@@ -1,4 +1,4 @@
-"""The double kernels before the judge: the named cases and a first part of its random and extreme ones."""
+"""The double kernels against ball arithmetic: the named cases and some of the random and extreme ones."""
 
 import statistics
 
@@ -25,7 +25,7 @@ def test_no_statement_of_error_is_below_the_true_error(verdicts):
 
 
 def test_worst_errors_of_the_double_kernels(verdicts):
-    # Over a hundred thousand motions the worst are 4.93 and 11.08 (benchmarks/results/judge.json).
+    # Over a hundred thousand motions the worst are 4.93 and 10.81 (benchmarks/results/judge.json).
     assert max(v.error for v in verdicts) <= 5 * UNIT_ROUNDOFF
     assert max(v.attitude_error or 0.0 for v in verdicts) <= 12 * UNIT_ROUNDOFF
     assert statistics.median(v.error for v in verdicts) <= 1.6 * UNIT_ROUNDOFF
@@ -36,7 +36,7 @@ def test_statements_are_not_idle(verdicts):
     assert statistics.median(ratios) <= 6
 
 
-def test_the_judge_catches_what_is_wrong():
+def test_the_comparison_finds_wrong_results():
     case = Case("a body of another shape", (1.0, 2.0, 3.0), (0.1, 1.0, 0.1), (0.0, 3.0))
     fair = judged(case)
     assert fair is not None

@@ -60,7 +60,7 @@ def test_symmetric_bodies(moments, rates, body_rate, oblique):
         assert found.mean_precession_rate == found.space_rate
 
 
-def test_what_does_not_precess_says_so():
+def test_steady_rotation_and_separatrix_have_no_period():
     still = certified_precession(CertifiedRotation.of_moments([1, 2, 3], [0, 1, 0]), 16)
     assert (still.regime, still.period, still.mean_precession_rate, still.body_rate) == ("steady", None, None, None)
     once = certified_precession(CertifiedRotation.of_moments([14, 21, 24], [6, 1, 7]), 16)

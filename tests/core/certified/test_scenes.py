@@ -157,7 +157,7 @@ def flat(value):
     return [value]
 
 
-def test_a_decimal_string_means_what_it_says():
+def test_a_decimal_string_is_exact():
     scene = exact_scene(
         UnwindingShafts, {**SHAFTS, "slopes": ["0.5", "0.5"], "gravity": "9.81", "masses": ["0.1", "0.1"]}
     )

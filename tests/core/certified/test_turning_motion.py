@@ -32,7 +32,7 @@ def built(moments, rates) -> TurningMotion:
 
 
 def contains(ball: arb, want: Fraction | mpmath.mpf, width: int = 180) -> None:
-    """The truth lies in the ball, to the digits to which it is known, and the ball is narrow."""
+    """The ball contains the true value, as far as its digits are known, and is narrow."""
     text = arb(mpmath.nstr(want, 58)) if isinstance(want, mpmath.mpf) else arb(want.numerator) / want.denominator
     slack = arb(0, abs(text) * arb(10) ** -50 + arb(10) ** -55) if isinstance(want, mpmath.mpf) else arb(0)
     assert ball.overlaps(text + slack)

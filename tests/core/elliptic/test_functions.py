@@ -77,7 +77,7 @@ def test_detest_b5():
     )
 
 
-def test_shape_is_kept():
+def test_the_result_has_the_shape_of_the_argument():
     assert [part.shape for part in jacobi(np.zeros((2, 3)), 0.3, 0.7)] == [(2, 3)] * 3
 
 
@@ -133,7 +133,7 @@ def test_sine_and_cosine_of_a_quarter_round_once(r, part):
 
 @given(st.floats(-690, 690) | st.floats(-1, 1) | st.floats(-300, 0).map(lambda e: 10.0**e), part_of_ulp)
 @settings(deadline=None, derandomize=True, max_examples=500)
-def test_hyperbolic_functions_keep_every_digit(x, part):
+def test_hyperbolic_functions_have_full_relative_precision(x, part):
     tail = tail_of(x, part)
     with mpmath.workdps(60):
         whole = mpmath.mpf(x) + mpmath.mpf(tail)
@@ -174,7 +174,7 @@ def theta_series(sine, cosine, z, q) -> tuple:
 def test_circular_theta_functions(q, r):
     s, c = math.sin(0.5 * math.pi * r), math.cos(0.5 * math.pi * r)
     with mpmath.workdps(50):
-        # s and c as given lie on a circle that is off by their roundings.
+        # The point (s, c) is on the unit circle to within their rounding.
         z, size = mpmath.atan2(s, c), mpmath.hypot(s, c)
         first, second, third, fourth = theta_series(mpmath.sin, mpmath.cos, z, mpmath.mpf(q))
         for got, want in zip(

@@ -131,7 +131,7 @@ def test_moduli_are_complementary(least: float, near_one: bool) -> None:
     kh, kl, ch, cl = moduli(m, m1)
     k2, c2 = (Fraction(kh) + Fraction(kl)) ** 2, (Fraction(ch) + Fraction(cl)) ** 2
     exact = Fraction(least)
-    # A root is right to 3 u^2, its square to twice that, beside what lies below the smallest double.
+    # A root is right to 3 u^2, its square to twice that, apart from underflow.
     lost = 4 * Fraction(5e-324)
     for got, want in ((c2, exact), (k2, 1 - exact)) if m1 < m else ((k2, exact), (c2, 1 - exact)):
         assert abs(got - want) <= 7 * Fraction(SQUARE) * want + lost

@@ -50,7 +50,7 @@ def test_a_member_s_fault_names_the_member():
     assert caught.value.path == ("angular_velocities", 1)
 
 
-def test_what_many_members_say_is_said_once():
+def test_warnings_of_many_members_are_merged():
     starts = np.concatenate([np.eye(3), [[1.0, 0.5, 0.2], [0.2, 1.0, 0.3], [0.1, 0.2, 1.0]]])
     body, times = diagonal((1.0, 2.0, 3.0)), np.linspace(0, 10, 11)
     many = ensemble(body, starts, times, method=ExplicitEuler(0.01))

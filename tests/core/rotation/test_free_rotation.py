@@ -1,6 +1,7 @@
 """The closed form against the independent oracle (mpmath, Landen ladders, exact rational set-up) on all its cases."""
 
 import math
+from itertools import permutations
 
 import mpmath
 import numpy as np
@@ -8,9 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.bodies.mass_properties import PrincipalInertia
+from core.bodies.mass_properties import PrincipalInertia, diagonal
+from core.certified.free_rotation import CertifiedRotation
 from core.errors import AccuracyUnreachable, InvalidParameter
 from core.rotation.free_rotation import FreeRotation
+from core.rotation.precession.precession import precession
+from core.rotation.torque_free import TorqueFree
 from tests.oracles.cases import T_HANDLE, T_HANDLE_ORIGIN, Case, cases
 from tests.oracles.free_rotation import (
     flip_interval,
@@ -125,7 +129,7 @@ def test_energy_and_momentum_stay_for_any_body_and_start(moments, start, time):
     for power in (1, 2):
         now, then = (i**power * w * w).sum(axis=1)
         # Each component is right to a few units of the largest rate, which may carry the largest moment.
-        slack = 2 * (i**power).max() * motion.largest_rate**2 * motion.error(np.array([time]))
+        slack = 2 * (i**power).max() * motion.largest_norm**2 * motion.error(np.array([time]))
         assert abs(now - then) <= 2 * slack + 1e-300
 
 
@@ -139,7 +143,7 @@ def test_going_on_from_where_one_is_gives_the_same_motion(moments, start, first,
     # The way-point is rounded, so what half an ulp there does is inherited; first + second is rounded too.
     times = np.array([first + second])
     allowed = 4 * onwards.inherited(times, 2.0**-50) + 4 * whole.inherited(times, 2.0**-52) + 4 * whole.error(times)
-    assert gap <= allowed * whole.largest_rate + 1e-300
+    assert gap <= allowed * whole.largest_norm + 1e-300
 
 
 def test_beyond_what_can_be_right_is_refused():
@@ -159,7 +163,7 @@ def test_a_precession_slower_than_doubles_count_is_still_right(tiny):
     motion = rotation((1, 1, 2), (1.0, 1.0, tiny))
     times = np.array([0.0, 1e5, 1e300])
     want = reference_angular_velocity((1, 1, 2), (1.0, 1.0, tiny), list(times))
-    assert true_error(motion.sample(times), want) <= motion.error(times) * motion.largest_rate
+    assert true_error(motion.sample(times), want) <= motion.error(times) * motion.largest_norm
 
 
 def test_a_line_of_matter_has_no_free_rotation():
@@ -167,24 +171,44 @@ def test_a_line_of_matter_has_no_free_rotation():
         rotation((0.0, 1.0, 1.0), (1, 1, 1))
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("moments", [*permutations((1.0, 2.0, 3.0)), (1.0, 1.0, 2.0), (2.0, 1.0, 2.0), (1.0, 1.0, 1.0)])
+def test_a_steady_spin_is_called_unstable_as_its_growing_neighbours_say(moments, axis):
+    """Against the linearised equation: lambda^2 = (I - J)(K - I)/(J K) and, where it vanishes, the drift of a rate."""
+    own, others = moments[axis], [moments[k] for k in range(3) if k != axis]
+    square = (own - others[0]) * (others[1] - own)
+    unstable = square > 0 or (square == 0 and len(set(moments)) == 2)
+    start = [-2.5 if k == axis else 0.0 for k in range(3)]
+    system = TorqueFree(diagonal(moments), np.array(start))
+    model = system.closed_form().model
+    assert model.regime == ("unstable steady rotation" if unstable else "steady rotation")
+    assert ("unstable" in model.why) == unstable
+    codes = ["unstable-axis"] if unstable else []
+    assert [notice.code for notice in system.warnings] == codes
+    assert [notice.code for notice in precession(diagonal(moments), tuple(start)).warnings] == codes
+    exact = CertifiedRotation.of_moments(moments, start)
+    assert exact.model == model
+    assert exact.warnings == system.warnings
+
+
 def oblique(tensor, angular_velocity) -> FreeRotation:
     return FreeRotation(PrincipalInertia.of(np.array(tensor, dtype=float)), np.array(angular_velocity, dtype=float))
 
 
 @pytest.mark.parametrize(
-    ("tensor", "start"),
+    ("tensor", "start", "stable"),
     [
-        ([[1.5, -0.5, 0], [-0.5, 1.5, 0], [0, 0, 2]], [-1, 1, 0]),
-        ([[1.5, -0.5, 0], [-0.5, 1.5, 0], [0, 0, 2]], [1, 1, 0]),
-        ([[2, 0.5, 0.5], [0.5, 2, 0.5], [0.5, 0.5, 2]], [1, -1, 0]),
-        ([[2, 0.5, 0.5], [0.5, 2, 0.5], [0.5, 0.5, 2]], [1, 1, -2]),
-        ([[9.5, 1, 1], [1, 11, 2], [1, 2, 11]], [1, 2, 2]),
+        ([[1.5, -0.5, 0], [-0.5, 1.5, 0], [0, 0, 2]], [-1, 1, 0], False),
+        ([[1.5, -0.5, 0], [-0.5, 1.5, 0], [0, 0, 2]], [1, 1, 0], True),
+        ([[2, 0.5, 0.5], [0.5, 2, 0.5], [0.5, 0.5, 2]], [1, -1, 0], False),
+        ([[2, 0.5, 0.5], [0.5, 2, 0.5], [0.5, 0.5, 2]], [1, 1, -2], False),
+        ([[9.5, 1, 1], [1, 11, 2], [1, 2, 11]], [1, 2, 2], True),
     ],
 )
-def test_a_spin_along_or_across_an_oblique_axis_of_symmetry_is_steady(tensor, start):
+def test_a_spin_along_or_across_an_oblique_axis_of_symmetry_is_steady(tensor, start, stable):
     """The axes are irrational, so components that are zero, and moments that are equal, come out as rounding."""
     motion = oblique(tensor, start)
-    assert motion.model.regime == "steady rotation"
+    assert motion.model.regime == ("steady rotation" if stable else "unstable steady rotation")
     assert motion.period is None
     assert motion.flip_interval is None
     times = np.array([0.0, 1.0, 1e4])
@@ -221,7 +245,7 @@ def test_statement_knows_that_a_small_derived_moment_is_less_certain():
     # At 60 digits, from the eigenvalues and eigenvectors of the exact tensor.
     want = np.array([319548.09364619812, -3750658.9311049625, 2873514.8561610978])
     times = np.array([1672.19587116517])
-    error = np.linalg.norm(motion.sample(times)[0] - want) / motion.largest_rate
+    error = np.linalg.norm(motion.sample(times)[0] - want) / motion.largest_norm
     assert 1e-9 < error < motion.error(times)
 
 

@@ -1,4 +1,4 @@
-"""Ranges of energy and angular momentum; a body held away from its centre of mass is said not to be free."""
+"""Ranges of energy and angular momentum; the warning `not-free` for a body pinned away from its centre of mass."""
 
 import numpy as np
 import pytest
@@ -36,14 +36,14 @@ def test_points_held_at_their_center_of_mass_are_free(size):
     assert codes(PointMasses(1.0, ring, about="origin")) == []
 
 
-def test_a_composite_is_judged_the_same_way():
+def test_a_composite_is_validated_the_same_way():
     parts = (Part(Ball(radius=1.0, mass=1.0), (0.0, 0.0, 1.0)), Part(Ball(radius=1.0, mass=2.0)))
     assert codes(Composite(parts, about="origin")) == [("not-free", ("body", "about"))]
     assert codes(Composite(parts)) == []
     assert codes(Composite(parts[1:], about="origin")) == []
 
 
-def test_free_bodies_have_nothing_to_be_told():
+def test_free_bodies_have_no_warnings():
     assert codes(t_handle_points()) == []
     assert codes(PrincipalMoments((1.0, 2.0, 2.5))) == []
 

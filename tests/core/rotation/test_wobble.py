@@ -39,7 +39,7 @@ def test_earth_s_figures_agree_with_each_other():
 def test_there_and_back(period, day):
     there = from_period(period, day)
     assert there.flattening == pytest.approx(1 - 1 / there.ellipticity, rel=1e-9, abs=1e-15)
-    # a/c - 1 has lost what lies below an ulp of one.
+    # a/c - 1 has lost the digits below an ulp of one.
     back = from_ellipticity(there.ellipticity, day)
     assert back.period == pytest.approx(period, rel=4e-16 * there.rotations + 1e-14)
 

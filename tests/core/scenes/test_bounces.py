@@ -32,7 +32,7 @@ class Arc:
 
     masses: tuple[Fraction, Fraction]
     factors: tuple[Fraction, Fraction]
-    pulls: tuple[Fraction, Fraction]
+    slope_accelerations: tuple[Fraction, Fraction]
     unwinding: tuple[Fraction, Fraction]
     e: Fraction
     time: Fraction
@@ -48,13 +48,13 @@ class Arc:
     @property
     def length(self) -> Fraction:
         """Until slackness sigma' t - Gamma t^2/2 is nothing again."""
-        gamma = sum(a - b for a, b in zip(self.pulls, self.unwinding, strict=True))
+        gamma = sum(a - b for a, b in zip(self.slope_accelerations, self.unwinding, strict=True))
         return 2 * self.opening / gamma
 
     def next(self) -> Arc:
         t = self.length
-        x = [p + t * (q + a * t / 2) for p, q, a in zip(self.x, self.v, self.pulls, strict=True)]
-        v = [q + a * t for q, a in zip(self.v, self.pulls, strict=True)]
+        x = [p + t * (q + a * t / 2) for p, q, a in zip(self.x, self.v, self.slope_accelerations, strict=True)]
+        v = [q + a * t for q, a in zip(self.v, self.slope_accelerations, strict=True)]
         s = [p + t * (q + a * t / 2) for p, q, a in zip(self.s, self.r, self.unwinding, strict=True)]
         r = [q + a * t for q, a in zip(self.r, self.unwinding, strict=True)]
         closing = sum(v) - sum(r)
@@ -72,14 +72,23 @@ class Arc:
             return tuple(map(exact, numbers))
 
         constants = Constants(
-            balls(self.masses), (exact(1.0), exact(1.0)), balls(self.factors), balls(self.pulls), (ZERO, ZERO)
+            balls(self.masses),
+            (exact(1.0), exact(1.0)),
+            balls(self.factors),
+            balls(self.slope_accelerations),
+            (ZERO, ZERO),
         )
         slips = [v - r for v, r in zip(self.v, self.r, strict=True)]
         state = State(
             exact(self.time), balls(self.x), balls(self.v), balls(self.s), balls(self.r), ZERO, exact(self.opening),
             balls(slips),
         )  # fmt: skip
-        return Sequence(constants, state, Drive("slack", ZERO, balls(self.pulls), balls(self.unwinding)), exact(self.e))
+        return Sequence(
+            constants,
+            state,
+            Drive("slack", ZERO, balls(self.slope_accelerations), balls(self.unwinding)),
+            exact(self.e),
+        )
 
 
 @st.composite
@@ -165,7 +174,7 @@ def test_the_first_arc_that_leaves_a_margin_is_the_first_of_all(arc: Arc, shaft:
         margins = [(start.positions[shaft], start.velocities[shaft], acceleration, gain)]
         found = sequence.first_arc(margins, [], leaves)
         for n in range(25):
-            low = arc.x[shaft], arc.v[shaft], arc.pulls[shaft], arc.length
+            low = arc.x[shaft], arc.v[shaft], arc.slope_accelerations[shaft], arc.length
             if lowest(*low) < 0:
                 assert found is not None
                 assert found[0] == n

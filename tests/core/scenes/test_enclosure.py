@@ -99,7 +99,7 @@ def test_rounding_keeps_account() -> None:
 
 
 @pytest.mark.parametrize("text", ["1e400", "-1e309", "1e-308", "-1e-400"])
-def test_what_no_normal_double_holds_is_left_out_and_told_with_its_place(text: str) -> None:
+def test_values_outside_the_normal_doubles_are_left_out_and_reported_with_their_path(text: str) -> None:
     rounding = Rounding()
     assert rounding({"deep": [arb(1), arb(text)]}, ("answer",)) == {"deep": [1.0, None]}
     (notice,) = rounding.notices
@@ -107,7 +107,7 @@ def test_what_no_normal_double_holds_is_left_out_and_told_with_its_place(text: s
     assert "answer/deep/1" in notice.detail
 
 
-def test_the_smallest_normal_double_is_kept() -> None:
+def test_the_smallest_normal_double_is_accepted() -> None:
     rounding = Rounding()
     assert rounding(exact(SMALLEST_NORMAL)) == 2.0**-1022
     assert not rounding.notices

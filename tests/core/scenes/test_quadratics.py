@@ -71,7 +71,7 @@ def test_rational_roots_are_enclosed(first: Fraction, second: Fraction, lead: Fr
     with precision(BITS):
         found = real_roots(exact(a), exact(-a * (first + second)), exact(a * first * second))
         if first == second:
-            # The discriminant cannot be told from zero: one ball, or two, around the double root.
+            # The discriminant may be zero: one ball, or two, around the double root.
             assert all(abs(x - exact(first)) < arb(2) ** -100 for x in found)
             return
         assert len(found) == 2
@@ -82,7 +82,7 @@ def test_rational_roots_are_enclosed(first: Fraction, second: Fraction, lead: Fr
 @settings(deadline=None, derandomize=True, max_examples=150)
 @given(*3 * [st.fractions(-50, 50, max_denominator=100)])
 def test_a_margin_is_left_where_it_first_turns_negative(value: Fraction, rate: Fraction, bend: Fraction) -> None:
-    """By the sign of the margin in rational arithmetic, shortly before and after the time that is told."""
+    """By the sign of the margin in rational arithmetic, shortly before and after the stated time."""
 
     def margin(t: Fraction) -> Fraction:
         return value + t * (rate + bend * t / 2)

@@ -59,7 +59,7 @@ def test_the_rate_at_the_horizontal_and_the_source_s_wrong_ones() -> None:
     assert inertia == pytest.approx(2.8003916, abs=5e-8)
     for wrong in (source, inertia):
         assert abs(rate - wrong) > 0.08  # type: ignore[operator]
-    # A rod with I = M l^2/3 about its centre is another rod: the factor says so.
+    # A rod with I = M l^2/3 about its centre is another rod, with another inertia factor.
     assert figures(replace(UNIT, inertia_factor=1 / 3))["angular_velocity_at_horizontal"] == pytest.approx(
         math.sqrt(2 * g * k * 0.5 / (k * k + 1 / 3)), rel=1e-14
     )

@@ -60,7 +60,7 @@ def test_a_jerk_takes_the_energy_that_its_restitution_leaves_over(given_three, v
     r = (r[0], sum(v) - r[0] - closing)
     with precision(BITS):
         constants = constants_of(masses, factors, pulls)
-        after = state_of((0, 0), v, (0, 0), r).kicked(constants, exact(closing), exact(e))
+        after = state_of((0, 0), v, (0, 0), r).after_impulse(constants, exact(closing), exact(e))
 
         def kinetic(velocities, rates):
             return (

@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from starlette.applications import Starlette
+from starlette.routing import Mount
 
+from service import app as app_module
 from service.app import Service
 from service.http import dispatch
-from service.http.dispatch import Dispatcher
 from service.responses.json_rows import CHUNK
 from service.settings import Settings
 from tests.service import hostile
@@ -169,6 +171,16 @@ async def test_media_type_may_have_parameters(client: httpx.AsyncClient) -> None
     assert (await client.post("/v1/toy", content=json.dumps(GOOD), headers=headers)).status_code == 200
 
 
+async def test_an_unknown_path_is_answered_with_the_nearest_one(client: httpx.AsyncClient) -> None:
+    response = await client.post("/v1/toys", json=GOOD, headers={"x-request-id": "mine"})
+    document = response.json()
+    assert document["detail"] == (
+        "there is nothing at this path; did you mean /v1/toy? GET /openapi.json lists every path"
+    )
+    assert document["instance"] == "urn:polhode:request:mine"
+    assert document["request_id"] == response.headers["x-request-id"] == "mine"
+
+
 async def test_unknown_paths_and_methods(client: httpx.AsyncClient) -> None:
     for path in ("/v1", "/v1/toy/", "/V1/TOY", "/v1//toy", "/..%2f..%2fetc/passwd", "/page/", "/page/../settings.py"):
         response = await client.post(path, json=GOOD)
@@ -295,45 +307,29 @@ def test_any_bytes_in_any_parts_get_a_problem(cuts: list[int], body: bytes) -> N
     assert messages[0]["status"] in (400, 422)
 
 
-class TestBothWays:
-    """The dispatcher and FastAPI's own routing answer byte for byte the same."""
+def test_no_path_is_declared_twice(service: Service) -> None:
+    ours = [(route.method, route.path) for route in service.table]
+    theirs = [(method, route.path) for route in service.routes for method in route.methods]  # type: ignore[attr-defined]
+    assert sorted(ours) == sorted(theirs)
+    assert len(set(ours)) == len(ours)
 
-    @pytest.mark.parametrize(
-        ("method", "path", "body", "headers"),
-        [
-            ("POST", "/v1/toy", json.dumps(GOOD).encode(), JSON),
-            ("POST", "/v1/toy", json.dumps(GOOD | {"times": {"start": 0, "stop": 9, "count": 50_000}}).encode(), JSON),
-            ("POST", "/v1/toy", json.dumps(GOOD | {"behaviour": "unreachable"}).encode(), JSON),
-            ("POST", "/v1/toy", b"{", JSON),
-            ("POST", "/v1/toy", b'{"body": NaN}', JSON),
-            ("POST", "/v1/toy", b"{}", {"content-type": "text/plain"}),
-            ("POST", "/v1/toy", b" " * 8_000_001, JSON),
-            ("POST", "/v1/toy", json.dumps(GOOD).encode(), JSON | {"accept": "text/csv"}),
-            ("GET", "/healthz", b"", {}),
-            ("GET", "/readyz", b"", {}),
-            ("GET", "/openapi.json", b"", {}),
-            ("GET", "/v1/errors", b"", {}),
-            ("GET", "/", b"", {}),
-        ],
-        ids=lambda value: value[:20].decode(errors="replace") if isinstance(value, bytes) else str(value)[:20],
-    )
-    async def test_same_bytes(
-        self, service: Service, method: str, path: str, body: bytes, headers: dict[str, str]
-    ) -> None:
-        told = []
-        for app in (service, service.documented):
-            async with client_of(app) as client:
-                response = await client.request(method, path, content=body, headers=headers)
-            kept = {k: v for k, v in response.headers.items() if k not in ("x-request-id", "server-timing")}
-            told.append((response.status_code, kept, response.content))
-        assert told[0] == told[1]
 
-    def test_no_path_is_declared_twice(self, service: Service) -> None:
-        ours = [(route.method, route.path) for route in service.routes]
-        theirs = [(method, route.path) for route in service.documented.routes for method in route.methods]  # type: ignore[attr-defined]
-        assert sorted(ours) == sorted(theirs)
-        assert len(set(ours)) == len(ours)
-        assert isinstance(service.dispatcher, Dispatcher)
+async def test_the_application_may_be_mounted(service: Service, client: httpx.AsyncClient) -> None:
+    outer = Starlette(routes=[Mount("/mechanics", app=service)])
+    async with client_of(outer) as mounted:
+        for method, path, body in (("POST", "/v1/toy", GOOD), ("GET", "/v1/toy", None), ("HEAD", "/healthz", None)):
+            same = {"x-request-id": "same"}
+            inside = await mounted.request(method, "/mechanics" + path, json=body, headers=same)
+            outside = await client.request(method, path, json=body, headers=same)
+            assert (inside.status_code, inside.content) == (outside.status_code, outside.content)
+            assert inside.headers.get("allow") == outside.headers.get("allow")
+        assert (await mounted.get("/mechanics/nothing")).json()["code"] == "not-found"
+
+
+def test_the_module_has_an_application_for_servers() -> None:
+    assert isinstance(app_module.app, Service)
+    with pytest.raises(AttributeError):
+        app_module.application  # noqa: B018
 
 
 def scope(method: str, path: str, headers: dict[str, str]) -> dict[str, Any]:

@@ -1,15 +1,18 @@
-"""What is sent of an answer."""
+"""Validators, and the headers of an answer."""
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.http.etag import NOSNIFF, Representation, etag_of
+from service.http.etag import Representation, etag_of
 
 
-def test_the_section_holds_the_headers() -> None:
+def test_headers_describe_the_text() -> None:
     answer = Representation(b'{"a":1}')
-    assert answer.section == b"".join(b"%b: %b\r\n" % header for header in (*answer.headers, NOSNIFF))
-    assert dict(answer.headers)[b"content-length"] == b"7"
+    headers = dict(answer.headers)
+    assert headers[b"content-length"] == b"7"
+    assert headers[b"etag"] == answer.etag == etag_of(answer.text)
+    assert headers[b"content-type"] == b"application/json"
+    assert headers[b"x-content-type-options"] == b"nosniff"
 
 
 @given(st.lists(st.binary(max_size=9), min_size=1, max_size=3), st.lists(st.binary(max_size=9), min_size=1, max_size=3))

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
+import hashlib
 import os
+import sys
+import threading
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -103,7 +107,7 @@ async def test_the_rate_of_each_key_is_its_own(tmp_path: Path, clock: Clock) -> 
 
 def test_work_is_charged_with_what_it_came_to(clock: Clock) -> None:
     """6.5 s a minute, of which a whole minute's may be saved up."""
-    key = Key("alpha", b"", inf, 6.5, 1)
+    key = Key("alpha", inf, 6.5, 1)
     for _ in range(3):
         key.work(2.0)
     # Each took a second less than predicted.
@@ -132,52 +136,148 @@ def test_an_allowance_never_grows_beyond_its_most(clock: Clock) -> None:
     assert allowance.take(1.0) == pytest.approx(8.0)
 
 
-def test_keys_are_exchanged_while_the_service_runs(
-    tmp_path: Path, clock: Clock, caplog: pytest.LogCaptureFixture
+def known(keys: Keys, key: str) -> bool:
+    try:
+        keys.admit({b"authorization": b"Bearer " + key.encode()})
+    except Refusal as refusal:
+        if refusal.problem.type.status == 429:
+            raise
+        return False
+    return True
+
+
+def test_keys_are_exchanged_while_the_service_runs(tmp_path: Path, clock: Clock) -> None:
+    (first, one), (second, two) = new_key("alpha"), new_key("beta")
+    file = tmp_path / "keys"
+    file.write_text(one.replace("- -", "0.1 -") + "\n")
+    keys = Keys(file)
+    assert (known(keys, first), known(keys, second)) == (True, False)
+    file.write_text(f"{one.replace('- -', '0.1 -')}\n{two}\n")
+    keys.refresh()
+    assert known(keys, second)
+    # What a key has used stays used.
+    with pytest.raises(Refusal):
+        known(keys, first)
+    file.write_text(two + "\n# the other has gone\n")
+    keys.refresh()
+    assert (known(keys, first), known(keys, second)) == (False, True)
+
+
+def test_a_file_that_cannot_be_used_is_reported_and_the_keys_before_it_stay(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     (first, one), (second, two) = new_key("alpha"), new_key("beta")
     file = tmp_path / "keys"
-    file.write_text(one.replace("- -", "0.1 -"))
+    whole = f"{one}\n{two}\n"
+    file.write_text(whole)
     keys = Keys(file)
 
-    def known(key: str) -> bool:
-        try:
-            keys.admit({b"authorization": b"Bearer " + key.encode()})
-        except module.Refusal as refusal:
-            if refusal.problem.type.status == 429:
-                raise
-            return False
-        return True
+    def stay() -> bool:
+        caplog.clear()
+        keys.refresh()
+        return known(keys, first) and known(keys, second) and "the keys before it stay" in caplog.text
 
-    assert (known(first), known(second)) == (True, False)
-    file.write_text(f"{one.replace('- -', '0.1 -')}\n{two}\n")
-    clock.now += 1.5
-    assert known(second)
-    # What a key has used stays used.
-    with pytest.raises(module.Refusal):
-        known(first)
+    # Truncated in place: anywhere but at the end of a line, which is no different from a key that was removed.
+    for length in (0, 1, len(one) - 1, len(one), len(whole) - 1):
+        file.write_text(whole[:length])
+        assert stay(), length
+    # It is reported once.
+    caplog.clear()
+    keys.refresh()
+    assert not caplog.records
     file.write_text(two + "\nnonsense\n")
-    clock.now += 1.5
-    assert known(second)
-    assert "cannot be read" in caplog.text
+    assert stay()
     os.remove(file)
-    clock.now += 1.5
-    assert known(second)
+    assert stay()
     # Nobody writes to the pipe: whoever read it would wait for ever.
     os.mkfifo(file)
-    clock.now += 1.5
-    assert known(second)
+    assert stay()
     os.remove(file)
-    file.write_text("")
-    clock.now += 1.5
-    assert not known(second)
+    file.write_text(two + "\n")
+    keys.refresh()
+    assert not known(keys, first)
 
 
-def test_a_file_that_cannot_be_understood_stops_the_start(tmp_path: Path) -> None:
+async def test_the_file_is_followed_while_the_service_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "keys"
-    for text in ("alpha", "alpha 00 - -", "alpha " + "g" * 64 + " - -", "alpha " + "0" * 64 + " -1 -"):
-        file.write_text(text)
-        with pytest.raises(ValueError, match="line 1"):
-            Keys(file)
+    file.write_text(new_key("alpha")[1] + "\n")
+    keys, threads, loop = Keys(file), [], asyncio.get_running_loop()
+    read = asyncio.Event()
+
+    def noted() -> None:
+        threads.append(threading.current_thread())
+        loop.call_soon_threadsafe(read.set)
+
+    monkeypatch.setattr(module, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(keys, "refresh", noted)
+    following = asyncio.create_task(keys.follow())
+    await asyncio.wait_for(read.wait(), 20)
+    following.cancel()
+    assert threads[0] is not threading.main_thread()
+
+
+def test_a_key_among_many_is_found_in_one_step(tmp_path: Path) -> None:
+    lines = [f"key-{i} {hashlib.sha256(b'%d' % i).hexdigest()} - -" for i in range(20_000)]
+    file = tmp_path / "keys"
+    file.write_text("\n".join(lines) + "\n")
+    keys = Keys(file)
+    assert len(keys) == 20_000
+    # The last of them, within so few steps of the interpreter that it cannot have been searched for.
+    steps = 0
+
+    def counted(frame: Any, event: str, argument: Any) -> Any:
+        nonlocal steps
+        steps += 1
+        return counted
+
+    sys.settrace(counted)
+    try:
+        assert keys.admit({b"authorization": b"Bearer 19999"}).name == "key-19999"
+    finally:
+        sys.settrace(None)
+    assert 0 < steps < 100
+
+
+def test_unknown_keys_are_limited_by_address(tmp_path: Path, clock: Clock) -> None:
+    key, line = new_key("alpha")
+    file = tmp_path / "keys"
+    file.write_text(line + "\n")
+    keys = Keys(file)
+
+    def status(headers: dict[bytes, bytes], address: str) -> int:
+        try:
+            keys.admit(headers, address)
+        except Refusal as refusal:
+            return refusal.problem.type.status
+        return 200
+
+    wrong, right = {b"authorization": b"Bearer wrong"}, {b"authorization": b"Bearer " + key.encode()}
+    assert [status(wrong, "10.0.0.1") for _ in range(11)] == [401] * 10 + [429]
+    # Neither another address nor a known key from the same one is affected.
+    assert (status({}, "10.0.0.2"), status(right, "10.0.0.1")) == (401, 200)
+    clock.now += 1.0
+    assert [status(wrong, "10.0.0.1") for _ in range(2)] == [401, 429]
+    for i in range(3 * module.ADDRESSES):
+        status(wrong, str(i))
+    assert len(keys._wrong) == module.ADDRESSES
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        *(
+            (line + "\n", "line 1")
+            for line in ("alpha", "alpha 00 - -", f"alpha {'g' * 64} - -", f"alpha {'0' * 64} -1 -")
+        ),
+        (f"alpha {'0' * 64} - -", "line feed"),
+        ("# none\n", "no keys"),
+        ("", "line feed"),
+    ],
+)
+def test_a_file_that_cannot_be_used_stops_the_start(tmp_path: Path, text: str, reason: str) -> None:
+    file = tmp_path / "keys"
+    file.write_text(text)
+    with pytest.raises(ValueError, match=reason):
+        Keys(file)
     with pytest.raises(FileNotFoundError):
         Keys(tmp_path / "absent")

@@ -1,10 +1,14 @@
+"""Limits on requests: documents, bodies under way, media types."""
+
+import asyncio
 import json
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.http.limits import require_acceptable
+from service.http.limits import Bodies, ClientGone, negotiated, require_acceptable, require_readable
 from service.problems import Refusal
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
 
@@ -84,3 +88,94 @@ def test_json_is_acceptable(accept: bytes) -> None:
 
 def test_what_cannot_be_given_is_not_acceptable() -> None:
     assert code(require_acceptable, b"text/csv") == "not-acceptable"
+
+
+def test_a_long_accept_header_is_not_read() -> None:
+    long = b"text/html," * 110 + b"application/json"
+    assert code(require_acceptable, long) == code(negotiated, long, ()) == "not-acceptable"
+
+
+@pytest.mark.parametrize(
+    ("coding", "found"), [(b"chunked", None), (b"Chunked", None), (b"gzip, chunked", 501), (b"identity", 501)]
+)
+def test_transfer_codings_other_than_chunked_are_not_implemented(coding: bytes, found: int | None) -> None:
+    headers = {b"content-type": b"application/json", b"transfer-encoding": coding}
+    expected = None if found is None else "unsupported-transfer-coding"
+    assert code(require_readable, headers) == expected
+
+
+class Sender:
+    """A client that sends a body in parts, when it is told to."""
+
+    def __init__(self) -> None:
+        self.parts: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+
+    def send(self, body: bytes, more: bool = True) -> None:
+        self.parts.put_nowait({"type": "http.request", "body": body, "more_body": more})
+
+
+async def until_waiting() -> None:
+    for _ in range(10):
+        await asyncio.sleep(0)
+
+
+@pytest.mark.anyio
+class TestBodies:
+    async def test_parts_are_joined(self) -> None:
+        sender, bodies = Sender(), Bodies(10, 10, 60.0)
+        for part, more in ((b"ab", True), (b"", True), (b"c", False)):
+            sender.send(part, more)
+        assert await bodies.read(sender.parts.get, {}) == b"abc"
+        assert bodies.held == 0
+
+    async def test_what_is_unfinished_is_counted_with_the_rest_and_refused_beyond_the_limit(self) -> None:
+        answers = 40
+        bodies = Bodies(60, 100, 60.0, lambda: answers)
+        first, second, third = Sender(), Sender(), Sender()
+        reading = [asyncio.create_task(bodies.read(sender.parts.get, {})) for sender in (first, second, third)]
+        first.send(b"x" * 50)
+        await until_waiting()
+        assert bodies.held == 50
+        second.send(b"x" * 20)
+        with pytest.raises(Refusal) as caught:
+            await reading[1]
+        problem = caught.value.problem
+        assert (problem.type.code, dict(problem.headers)) == ("too-busy", {"Retry-After": "1", "Connection": "close"})
+        # Nothing is held for who was refused; the others go on.
+        assert bodies.held == 50
+        third.send(b"x" * 10, more=False)
+        assert len(await reading[2]) == 10
+        first.send(b"x", more=False)
+        assert len(await reading[0]) == 51
+        assert bodies.held == 0
+
+    @pytest.mark.parametrize("begun", [False, True])
+    async def test_a_body_that_does_not_arrive_in_time_is_refused(self, begun: bool) -> None:
+        sender, bodies = Sender(), Bodies(100, 100, 0.01)
+        if begun:
+            sender.send(b"x")
+        watching = asyncio.create_task(bodies.watch())
+        with pytest.raises(Refusal) as caught:
+            await asyncio.wait_for(bodies.read(sender.parts.get, {}), 20)
+        watching.cancel()
+        assert caught.value.problem.type.status == 408
+        assert ("Connection", "close") in caught.value.problem.headers
+        assert bodies.held == 0
+
+    async def test_who_is_in_time_is_not_cancelled_and_who_cancels_is_obeyed(self) -> None:
+        sender, bodies = Sender(), Bodies(100, 100, 60.0)
+        watching = asyncio.create_task(bodies.watch())
+        reading = asyncio.create_task(bodies.read(sender.parts.get, {}))
+        await until_waiting()
+        reading.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await reading
+        watching.cancel()
+
+    async def test_a_client_that_leaves_holds_nothing(self) -> None:
+        sender, bodies = Sender(), Bodies(100, 100, 60.0)
+        sender.send(b"x" * 9)
+        sender.parts.put_nowait({"type": "http.disconnect"})
+        with pytest.raises(ClientGone):
+            await bodies.read(sender.parts.get, {})
+        assert bodies.held == 0

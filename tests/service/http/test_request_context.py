@@ -1,10 +1,10 @@
-"""One request and its response, with a server that writes pieces by itself and without."""
+"""One request and its response."""
 
 from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import anyio
@@ -12,56 +12,28 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.http.cors import Cors
 from service.http.etag import JSON, Representation, etag_of
 from service.http.limits import ClientGone
-from service.http.request_context import PIECES, SHORT, VARY, RequestContext
+from service.http.request_context import SHORT, VARY, RequestContext
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem
 
 pytestmark = pytest.mark.anyio
 
-ORIGIN = "https://a.example"
 ANSWER = Representation(b'{"a":1}')
-
-
-class Pieces:
-    """Writes the pieces that it is told to take."""
-
-    def __init__(self, takes: Sequence[bool] = ()) -> None:
-        self.takes = iter(takes)
-        self.sent: list[dict[str, Any]] = []
-
-    async def __call__(self, parts: Sequence[bytes | memoryview]) -> bool:
-        takes = next(self.takes, True)
-        if takes:
-            self.sent.append({"type": "http.response.body", "body": b"".join(parts), "more_body": True, "direct": True})
-        return takes
 
 
 class Wire:
     """What an exchange receives and sends."""
 
-    def __init__(
-        self,
-        method: str = "POST",
-        pieces: Pieces | None = None,
-        cors: str = "",
-        stays: bool = True,
-        **headers: str,
-    ) -> None:
+    def __init__(self, method: str = "POST", stays: bool = True, **headers: str) -> None:
         self.messages: list[dict[str, Any]] = []
         self.stays = stays
         self.metrics = Metrics()
         encoded = [(name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()]
         scope: dict[str, Any] = {"type": "http", "method": method, "path": "/v1/toy", "headers": encoded}
-        if pieces is not None:
-            scope["extensions"] = {PIECES: pieces}
-            pieces.sent = self.messages
-        self.exchange = RequestContext(
-            Records(self.metrics, "none"), Cors(cors) or None, "ask_toy", scope, self.receive, self.send
-        )
+        self.exchange = RequestContext(Records(self.metrics, "none"), "ask_toy", scope, self.receive, self.send)
 
     async def receive(self) -> dict[str, Any]:
         if self.stays:
@@ -189,48 +161,24 @@ class TestInOnePiece:
         assert wire.status == problem.type.status == 429
         assert wire.headers == {
             "content-type": "application/problem+json",
-            "content-length": str(len(problem.body())),
+            "content-length": str(len(problem.body(wire.exchange.id))),
             "retry-after": "7",
         }
-        assert wire.body == (b"" if method == "HEAD" else problem.body())
+        assert wire.body == (b"" if method == "HEAD" else problem.body(wire.exchange.id))
         assert b'polhode_problems_total{code="too-busy"} 1.0' in wire.metrics.exposition()
         assert wire.counted() == {"429": "1.0"}
-
-    async def test_nothing_but_headers(self) -> None:
-        headers = ((b"access-control-max-age", b"1"),)
-        wire = Wire("OPTIONS", cors="*", origin=ORIGIN)
-        await wire.exchange.empty(headers)
-        assert (wire.status, wire.body) == (204, b"")
-        assert wire.headers["access-control-max-age"] == "1"
-        assert "content-length" not in wire.headers
-
-    async def test_every_kind_of_response_tells_origins(self) -> None:
-        ways = (
-            lambda exchange: exchange.answer(ANSWER),
-            lambda exchange: exchange.page(b"x", b"text/plain", 200),
-            lambda exchange: exchange.represented(b"x", b"image/svg+xml"),
-            lambda exchange: exchange.empty(()),
-            lambda exchange: exchange.problem(Problem(REGISTRY["not-found"], "nothing")),
-            lambda exchange: exchange.stream(iter([b"x"]), b'"x"', 10.0, [JSON]),
-        )
-        for way in ways:
-            for known in ({}, {"if_none_match": "*"}):
-                wire = Wire(cors=ORIGIN, origin=ORIGIN, **known)
-                await way(wire.exchange)
-                assert wire.headers["access-control-allow-origin"] == ORIGIN
-                assert wire.exchange.started
 
 
 SIZES = st.lists(st.sampled_from([0, 1, 2, 100, SHORT - 1, SHORT, SHORT + 1, 5 * SHORT]), max_size=12)
 
 
 class TestStream:
-    @given(SIZES, st.none() | st.lists(st.booleans(), max_size=12))
+    @given(SIZES)
     @settings(deadline=None, derandomize=True)
-    def test_all_pieces_are_sent_and_none_is_short(self, sizes: list[int], takes: list[bool] | None) -> None:
-        """Whatever the server's short cut takes or declines; the last may be short, it has no next."""
+    def test_all_pieces_are_sent_and_none_is_short(self, sizes: list[int]) -> None:
+        """The last may be short, it has no next."""
         pieces = [bytes([97 + i]) * size for i, size in enumerate(sizes)]
-        wire = Wire(pieces=None if takes is None else Pieces(takes))
+        wire = Wire()
 
         async def run() -> None:
             given = (memoryview(piece) if i % 2 else piece for i, piece in enumerate(pieces))
@@ -242,9 +190,6 @@ class TestStream:
         assert all(len(message["body"]) >= SHORT for message in wire.messages[1:-1])
         assert len(wire.messages) == 2 + sum(size >= SHORT for size in sizes)
         assert wire.counted() == {"200": "1.0"}
-        if takes is not None:
-            took = [message.get("direct", False) for message in wire.messages[1:-1]]
-            assert took == [*takes, *[True] * len(took)][: len(took)]
 
     async def test_others_run_between_the_pieces(self) -> None:
         wire, seen = Wire(), []
@@ -283,14 +228,8 @@ class TestStream:
         assert wire.messages[-1]["more_body"]
         assert wire.counted() == {}
 
-    @pytest.mark.parametrize("direct", [False, True])
-    async def test_a_client_that_takes_nothing_is_let_go(self, direct: bool) -> None:
-        class Stalled(Pieces):
-            async def __call__(self, parts: Sequence[bytes | memoryview]) -> bool:
-                await asyncio.Event().wait()
-                return True
-
-        wire = Wire(pieces=Stalled() if direct else None)
+    async def test_a_client_that_takes_nothing_is_let_go(self) -> None:
+        wire = Wire()
         send = wire.exchange._send
 
         async def stalling(message: Any) -> None:

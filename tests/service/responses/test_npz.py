@@ -17,7 +17,7 @@ from service.routing import PostRoute
 from tests.service.conftest import client_of, inline_service
 
 SERVICE = inline_service()
-QUESTIONS = [route for route in SERVICE.routes if isinstance(route, PostRoute)]
+QUESTIONS = [route for route in SERVICE.table if isinstance(route, PostRoute)]
 NPZ = {"accept": MEDIA_TYPE}
 
 pytestmark = pytest.mark.anyio

@@ -84,7 +84,7 @@ def test_angular_momentum_stands_still_in_space(moments, start, time):
     times = np.array([0.0, time])
     momentum = turning.rotation.sample(times) * np.array(moments)
     space = [matrix(q) @ m for q, m in zip(turning.sample(times), momentum, strict=True)]
-    size = np.array(moments).max() * turning.rotation.largest_rate
+    size = np.array(moments).max() * turning.rotation.largest_norm
     assert (
         np.linalg.norm(space[1] - space[0])
         <= 4 * size * (turning.error(times) + turning.rotation.error(times)) + 1e-300

@@ -52,7 +52,7 @@ def motion(moments, rates) -> Motion:
 
 @settings(deadline=None, derandomize=True, max_examples=120)
 @given(st.tuples(moment, moment, moment), st.tuples(rate, rate, rate), decades, decades)
-def test_the_start_lies_at_its_phase(moments, rates, heavy, fast) -> None:
+def test_the_start_is_at_its_phase(moments, rates, heavy, fast) -> None:
     moments = sorted(heavy * x for x in moments)
     rates = [fast * x for x in rates]
     i, w = [Fraction(x) for x in moments], [Fraction(x) for x in rates]
@@ -121,7 +121,7 @@ def test_the_start_on_the_separatrix(p, q, middle, first, second) -> None:
 
 @settings(deadline=None, derandomize=True, max_examples=60)
 @given(st.integers(-280, -40), st.floats(0.3, 0.99), st.sampled_from([-1, 1]))
-def test_the_complement_is_kept_where_the_difference_is_all_that_tells(e, wb, side) -> None:
+def test_the_complement_has_no_cancellation_if_the_difference_is_given(e, wb, side) -> None:
     """m1 = (C - A) |D_B|/((I_b - I_d) Y): with D_B given, no cancellation is left."""
     moments, rates = (14.0, 21.0, 24.0), (6.0, wb, 7.0)
     given_difference = scaled(side * 10.0**e, 0.0, 0)

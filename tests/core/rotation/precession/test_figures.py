@@ -1,4 +1,4 @@
-"""The figures of a precession are the nearest doubles, against the oracle at 50 digits, or said to be lost."""
+"""The quantities of a precession are the nearest doubles, against the oracle at 50 digits, or `UNRESOLVED`."""
 
 import math
 
@@ -68,7 +68,7 @@ def test_rates_of_symmetric_bodies_are_the_nearest_doubles(moments, start, axis)
             assert abs(got - want) <= math.ulp(got)
 
 
-def test_what_a_needle_turns_by_is_right_or_said_to_be_lost_in_a_turn():
+def test_the_angle_of_a_needle_is_accurate_or_unresolved():
     """Nearly all of a turn cancels: the body rate is nearly the spin itself."""
     for ratio in (1e-6, 1e-10, 1e-13):
         moments, start = (ratio, 1.0, 1.5), (1.0, 1e-3 * ratio, 0.0)

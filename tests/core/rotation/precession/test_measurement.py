@@ -117,7 +117,7 @@ def test_what_never_leaves_cannot_return():
         assert "nothing can return" in found.explanation
 
 
-def test_what_does_not_return_says_how_near_it_came():
+def test_a_motion_that_does_not_return_reports_its_least_distance():
     # Forward Euler gains so much in a turn that it misses this smaller ball.
     found = measure_period(top(), Measure(ExplicitEuler(STEP), 15.0, 2000, 0.03))
     assert found.time is None

@@ -149,7 +149,7 @@ def test_free_of_scale(moments, size, rate):
             assert got == pytest.approx(want * rate ** powers.get(name, 0), rel=1e-14)
 
 
-def test_what_a_double_cannot_hold_is_none_and_said():
+def test_values_outside_the_range_of_doubles_are_none_with_a_warning():
     found = of((1.0, 1.0, 1.0 + 1e-12), (1e-300, 0.0, 1e-300))
     assert found.period is None
     assert {notice.detail.split()[0] for notice in found.warnings} >= {"period", "body_rate"}
@@ -213,7 +213,7 @@ def test_a_turned_solid_moves_as_it_does_along_its_axes(kind, attitude):
         assert getattr(turned, name) == pytest.approx(getattr(straight, name), rel=1e-14), name
 
 
-def test_moments_equal_within_rounding_are_said_to_be():
+def test_moments_equal_within_rounding_give_a_warning():
     found = of((1.0, 1.0 + ULP, 2.0), (1.0, 1.0, -1.0))
     assert [notice.code for notice in found.warnings] == ["moments-equal-within-rounding"]
     assert found.body_rate == pytest.approx(-1.0, rel=1e-15)

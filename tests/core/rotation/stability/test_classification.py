@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.rotation.stability.classification import REST, classify_equilibrium, drift
+from core.rotation.stability.classification import REST, UNSTABLE_SPINS, classify_equilibrium, drift, unstable_spin
 
 ORDERS = {
     (0, 1, 2): (Fraction(2), Fraction(3), Fraction(5)),
@@ -88,7 +88,7 @@ def test_reasons_name_what_holds(ranks, axis) -> None:
 
 
 @pytest.mark.parametrize(("ranks", "axis"), CASES)
-def test_rest_is_told_apart_from_every_rotation(ranks, axis) -> None:
+def test_rest_is_distinguished_from_every_rotation(ranks, axis) -> None:
     assert classify_equilibrium(ranks, axis, False) is REST
     assert classify_equilibrium(ranks, axis, True) != REST
 
@@ -110,3 +110,13 @@ def test_drift_is_the_entry_of_the_jordan_block(equal, single, rate) -> None:
 def test_three_different_moments_and_three_equal_ones_do_not_drift() -> None:
     assert drift(Fraction(2), Fraction(1), Fraction(3), Fraction(5)) == 0
     assert drift(Fraction(2), Fraction(2), Fraction(2), Fraction(5)) == 0
+
+
+def test_an_unstable_spin_is_told_from_a_stable_one() -> None:
+    assert unstable_spin((True, True), (0.0, -2.0, 0.0)) == UNSTABLE_SPINS["saddle"]
+    assert unstable_spin((False, True), (3.0, -2.0, 0.0)) == UNSTABLE_SPINS["degenerate"]
+    assert unstable_spin((True, False), (0.0, 1.0, 0.0)) == UNSTABLE_SPINS["degenerate"]
+    for k in (0, 2):
+        assert unstable_spin((True, True), tuple(float(n == k) for n in range(3))) is None
+    assert unstable_spin((False, True), (0.0, 0.0, 1.0)) is None
+    assert unstable_spin((False, False), (1.0, 1.0, 0.0)) is None

@@ -13,6 +13,8 @@ from core.bodies.composite import Composite, Part
 from core.bodies.mass_properties import MassProperties, diagonal
 from core.bodies.measured import PointMasses
 from core.bodies.solids import Cuboid, Cylinder, Disc
+from core.certified.exact_inertia import ExactInertia
+from core.certified.stability import certified_stability
 from core.errors import InvalidParameter, NotApplicable
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.precession import precession
@@ -75,7 +77,7 @@ def test_free_of_scale(scale, rate):
     assert [e.kind for e in found.equilibria] == ["center", "saddle", "center", "degenerate"]
 
 
-def test_what_a_double_cannot_hold_is_none_and_said():
+def test_values_outside_the_range_of_doubles_are_none_with_a_warning():
     found = stability(diagonal((1e-300, 1e300, 2e300)), 1e300)
     lost = [k for k, e in enumerate(found.equilibria) if e.eigenvalues is None]
     assert lost
@@ -104,7 +106,7 @@ def test_only_the_middle_axis_is_unstable(moments):
 
 
 @pytest.mark.parametrize("moments", [(1.0, 2.0, 3.0), deck])
-def test_the_full_motion_does_what_is_said(moments):
+def test_the_full_motion_confirms_the_classification(moments):
     for k, equilibrium in enumerate(stability(diagonal(moments)).equilibria[:3]):
         start = np.full(3, 1e-6)
         start[k] = 1.0
@@ -203,7 +205,19 @@ def test_refusals(rate):
         stability(diagonal((0.0, 1.0, 1.0)))
 
 
-def test_a_body_pinned_away_from_its_centre_of_mass_is_said_not_to_be_free():
+def test_a_body_pinned_away_from_its_centre_of_mass_has_the_warning_not_free():
     body = PointMasses(1.0, [[1, 0, 0], [0, 2, 0], [0, 0, 3], [1, 1, 1]], "origin").mass_properties()
     assert "not-free" in {notice.code for notice in stability(body).warnings}
     assert "not-free" in {notice.code for notice in precession(body, np.array([1.0, 2.0, 3.0])).warnings}
+
+
+@pytest.mark.parametrize(("disturbance", "turns_over"), [((0.01, 0.01), True), ((20.0, 0.01), False)])
+def test_a_flip_is_said_of_a_body_that_turns_over_and_of_no_other(disturbance, turns_over):
+    flip = stability(diagonal((1.0, 2.0, 3.0)), 2.0, disturbance).flip
+    assert flip.interval is not None
+    assert flip.reason.startswith("it turns over every half period") == turns_over
+    assert ("never turns over" in flip.reason) != turns_over
+    exact = certified_stability(ExactInertia.of_moments((1, 2, 3)), 2, 20, disturbance).flip
+    assert exact.reason.split(";")[0] == flip.reason.split(";")[0]
+    oblique = ExactInertia.of_tensor([[2, 1, 0], [1, 3, 0], [0, 0, 5]])
+    assert certified_stability(oblique, 2, 20, disturbance).flip.reason.startswith("it turns") == turns_over

@@ -24,7 +24,7 @@ def energy_of(moments, w) -> Fraction:
 
 @given(st.tuples(positive, positive, positive), positive)
 @settings(deadline=None, derandomize=True, max_examples=60)
-def test_every_vertex_lies_on_the_surface(moments, energy):
+def test_every_vertex_is_on_the_surface(moments, energy):
     surface = EnergyEllipsoid.of(diagonal(moments), energy)
     x, y, z = surface.grid(7)
     vertices = [*surface.triangles(2).vertices, *zip(x.flat, y.flat, z.flat, strict=True)]
@@ -83,7 +83,7 @@ def test_volume_converges_with_the_square_of_the_resolution():
         assert coarse / fine == pytest.approx(4, rel=0.03)
 
 
-def test_semi_axes_keep_the_order_of_the_body_axes():
+def test_semi_axes_are_in_the_order_of_the_body_axes():
     surface = EnergyEllipsoid.of(diagonal((0.5, 8.0, 2.0)), 1.0)
     assert surface.semi_axes == pytest.approx([2.0, 0.5, 1.0])
     assert np.array_equal(surface.axes, np.eye(3))

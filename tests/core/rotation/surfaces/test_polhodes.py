@@ -32,7 +32,7 @@ def worst(moments, start, points) -> float:
 
 @given(st.tuples(positive, positive, positive), st.tuples(spin, spin, spin))
 @settings(deadline=None, derandomize=True, max_examples=150)
-def test_every_point_lies_on_both_surfaces(moments, start):
+def test_every_point_is_on_both_surfaces(moments, start):
     if not any(start):
         return
     curve = polhode(diagonal(moments), np.array(start), 24)

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.rotation.uncertainty import constant_sensitivities as moved
+from core.rotation.uncertainty import constant_sensitivities as at
 from core.rotation.uncertainty.constant_sensitivities import COUNT, add_constants, add_start, slope_of_quarter
 
 U = 2.0**-53
@@ -105,38 +105,55 @@ def test_every_constant_moves_by_its_derivative(case) -> None:
                 assert abs(got - want) <= few
             # A_d > 0 for either sense of the spin.
             for n, value in zip(
-                (moved.AMPLITUDE_C, moved.AMPLITUDE_B, moved.AMPLITUDE_D, moved.PHASE, moved.RATE, moved.MODULUS,
-                 moved.FREQUENCY, moved.POLE_C, moved.POLE_B, moved.POLE_D, moved.TIP),
+                (at.AMPLITUDE_C, at.AMPLITUDE_B, at.AMPLITUDE_D, at.PHASE, at.RATE, at.MODULUS,
+                 at.FREQUENCY, at.POLE_C, at.POLE_B, at.POLE_D, at.TIP),
                 (*wanted, frequency, *poles, tip),
                 strict=True,
             ):  # fmt: skip
                 named[n] += abs(value)
-        for n in (moved.AMPLITUDE_C, moved.AMPLITUDE_B, moved.AMPLITUDE_D, moved.PHASE, moved.RATE, moved.MODULUS,
-                  moved.POLE_C, moved.POLE_B, moved.POLE_D, moved.TIP):  # fmt: skip
+        for n in (at.AMPLITUDE_C, at.AMPLITUDE_B, at.AMPLITUDE_D, at.PHASE, at.RATE, at.MODULUS,
+                  at.POLE_C, at.POLE_B, at.POLE_D, at.TIP):  # fmt: skip
             assert abs(sums[n] - named[n]) <= len(inputs) * few
         # The slope of the quarter period is there to a few digits only.
-        assert abs(sums[moved.FREQUENCY] - named[moved.FREQUENCY]) <= len(inputs) * few + 1e-7 * named[moved.MODULUS]
+        assert abs(sums[at.FREQUENCY] - named[at.FREQUENCY]) <= len(inputs) * few + 1e-7 * named[at.MODULUS]
 
 
 @settings(deadline=None, derandomize=True, max_examples=100)
-@given(st.tuples(gap, gap, gap), st.tuples(spin, spin, spin), direction, direction, st.floats(0, 1))
-def test_what_holds_of_every_motion(moments, rates, dI, dw, turned) -> None:
-    i, w = np.array(moments), np.array(rates)
+@given(
+    st.tuples(gap, gap, gap),
+    st.tuples(spin, spin, spin),
+    direction,
+    direction,
+    st.floats(0, 1),
+    st.sampled_from([0, 2]),
+    st.sampled_from([-1, 0, 2]),
+)
+def test_what_holds_of_every_motion(moments, rates, dI, dw, turned, axis, third) -> None:
+    i, w = np.sort(np.array(moments)), np.array(rates)
+    if third >= 0:
+        i[1] = i[2 - third]
+    low, high = np.diff(i)
     sums = np.zeros(COUNT)
-    add_start(i, w, np.array([dI, dI]), np.array([dw, dw]), np.array([turned, turned]), sums)
+    add_start(i, low, high, w, axis, np.array([dI, dI]), np.array([dw, dw]), np.array([turned, turned]), sums)
     a, b = np.array(dI), np.array(dw)
     size = np.linalg.norm(w)
     h = 1e-6
     coefficients = [np.array([(x[k - 2] - x[k - 1]) / x[k] for k in range(3)]) for x in (i + h * a, i - h * a)]
     # A central difference in doubles: rounding over h, and h^2.
     force = np.abs(coefficients[0] - coefficients[1]).max() / (2 * h)
-    assert sums[moved.FORCE] == pytest.approx(2 * force, abs=1e-6)
-    assert sums[moved.START] == pytest.approx(2 * np.linalg.norm(b), rel=8 * U)
-    assert sums[moved.TURN] == 2 * turned
-    assert sums[moved.MOMENTS] == pytest.approx(2 * np.abs(a / i).max(), rel=8 * U)
+    assert sums[at.FORCE] == pytest.approx(2 * force, abs=1e-6)
+    third = {(True, False): 2, (False, True): 0}.get((low == 0.0, high == 0.0), -1)
+    others = [abs(a[k] - a[axis]) / abs(i[k] - i[axis]) for k in range(3) if i[k] != i[axis]]
+    assert sums[at.GAPS] == pytest.approx(2 * max(others, default=0.0), rel=1e-6)
+    each = np.abs(coefficients[0] - coefficients[1]) / (2 * h)
+    assert sums[at.FORCE_ALONG] == pytest.approx(2 * each[third] if third >= 0 else 0.0, abs=1e-6)
+    assert sums[at.FORCE_ACROSS] == pytest.approx(2 * max(each[k] for k in range(3) if k != third), abs=1e-6)
+    assert sums[at.START_A : at.START_C + 1] == pytest.approx(2 * np.abs(b), rel=8 * U)
+    assert sums[at.TURN] == 2 * turned
+    assert sums[at.MOMENTS] == pytest.approx(2 * np.abs(a / i).max(), rel=8 * U)
     along, across = b @ w / size, np.linalg.norm(b - (b @ w) * w / size**2)
-    assert sums[moved.ALONG] == pytest.approx(2 * abs(along), abs=16 * U)
-    assert sums[moved.CROSSWISE] == pytest.approx(2 * across, abs=16 * U)
+    assert sums[at.ALONG] == pytest.approx(2 * abs(along), abs=16 * U)
+    assert sums[at.CROSSWISE] == pytest.approx(2 * across, abs=16 * U)
 
 
 @settings(deadline=None, derandomize=True, max_examples=200)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.bodies.exact import rotation
-from core.rotation.uncertainty.projected_sensitivities import moves_along_axes, moves_of_given_moments
+from core.rotation.uncertainty.projected_sensitivities import given_moment_sensitivities, projected_sensitivities
 
 U = 2.0**-53
 STEP = mpmath.mpf(10) ** -20
@@ -45,7 +45,7 @@ def test_perturbation_of_first_order(q, low, high, velocity, entries) -> None:
         w = [mpmath.mpf(x) for x in velocity]
         moments = [mpmath.mpf(1), 1 + mpmath.mpf(low), 1 + mpmath.mpf(low) + mpmath.mpf(high)]
         components = [sum(axes[n, k] * w[n] for n in range(3)) for k in range(3)]
-        dI, dw, turns, crossed, own = moves_along_axes(
+        dI, dw, turns, crossed, own = projected_sensitivities(
             low, high, np.array([float(x) for x in components]), rounded, np.array(velocity), change[None]
         )
         moved = mpmath.matrix(change.tolist())
@@ -70,7 +70,7 @@ def test_perturbation_of_first_order(q, low, high, velocity, entries) -> None:
 def test_axes_within_equal_moments_are_free() -> None:
     change = tensor_of((0.1, 0.2, 0.3, 0.5, 0.25, -0.125))
     spin = np.array([1.0, 2.0, 4.0])
-    dI, dw, turns, crossed, _ = moves_along_axes(0.0, 2.0, spin, np.eye(3), spin, change[None])
+    dI, dw, turns, crossed, _ = projected_sensitivities(0.0, 2.0, spin, np.eye(3), spin, change[None])
     assert crossed[:, 0].tolist() == [0.5, 0.0, 0.0]
     assert dI[0].tolist() == [0.1, 0.2, 0.3]
     # The axes turn by P_12/(I_2 - I_1) and P_20/(I_0 - I_2) only.
@@ -80,7 +80,7 @@ def test_axes_within_equal_moments_are_free() -> None:
 
 
 def test_moments_and_components_that_were_given_move_alone() -> None:
-    dI, dw, turns = moves_of_given_moments(np.array([1.0, 2.0, 3.0]), np.array([0.5, 0.0, -4.0]))
+    dI, dw, turns = given_moment_sensitivities(np.array([1.0, 2.0, 3.0]), np.array([0.5, 0.0, -4.0]))
     assert dI.tolist() == [*np.diag([1.0, 2.0, 3.0]).tolist(), *np.zeros((3, 3)).tolist()]
     assert dw.tolist() == [*np.zeros((3, 3)).tolist(), *np.diag([0.5, 0.0, -4.0]).tolist()]
     assert not turns.any()

@@ -6,7 +6,7 @@ Their equation X D - D X^T = h hat(M), X orthogonal, has the solution X D = S + 
 
 an algebraic Riccati equation whose positive solution is that near the identity; then M' = X^T M (J. R. Cardoso,
 F. Silva Leite, "The Moser-Veselov equation", Linear Algebra and its Applications 360 (2003) 237). It is solved by an
-ordered Schur form, where the house iterates on a quaternion.
+ordered Schur form, where core iterates on a quaternion.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The implicit midpoint rule: what it keeps, how it is iterated, when it gives up."""
+"""The implicit midpoint rule: its invariants, its iteration, its failures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.systems.methods import ImplicitMidpoint
 from tests.core.systems.systems import oscillator, rigid_body, stiff
 
 
-def test_quadratic_invariants_are_kept_to_round_off_over_many_steps() -> None:
+def test_quadratic_invariants_are_conserved_to_round_off_over_many_steps() -> None:
     system = rigid_body((1, 2, 3), (0.1, 1, 0.1))
     run = ImplicitMidpoint(0.05).integrate(system, np.linspace(0, 5000, 101))
     assert run.work.steps == 100_000

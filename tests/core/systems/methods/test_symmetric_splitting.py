@@ -1,4 +1,4 @@
-"""Strang's composition against exponentials of matrices, and what it keeps."""
+"""Strang's composition against exponentials of matrices, and its invariants."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_it_goes_back_the_way_it_came(system) -> None:
     assert np.abs(back - system.initial_state).max() <= 160 * 5 * 4 * U
 
 
-def test_momentum_is_kept_to_rounding_and_energy_within_a_band_that_shrinks_with_the_square_of_the_step() -> None:
+def test_momentum_is_conserved_to_rounding_and_energy_within_a_band_proportional_to_the_square_of_the_step() -> None:
     system = rigid_body((1.0, 2.0, 3.0), (0.1, 1.0, 0.1))
     bands = []
     for h in (0.1, 0.05):

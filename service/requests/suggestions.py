@@ -1,0 +1,124 @@
+"""What a client probably meant by a name that is not known: a slip of a letter, or another word for the same thing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from math import isfinite
+from typing import Any
+
+LONGEST_NAME = 80
+"""Characters of a name that is compared with others; a longer one is nobody's slip."""
+
+ALIKE = 0.78
+"""Share of its letters that a name must have in common with another to be taken for a slip of it."""
+
+ALIKE_PATHS = 0.6
+"""The same of paths, which share most of their letters and of which whole parts are left out."""
+
+SYNONYMS: Mapping[str, tuple[str, ...]] = {
+    # Bodies.
+    "ball": ("sphere", "solid-sphere"),
+    "cuboid": ("box", "block", "brick", "cube", "rectangular-prism"),
+    "disc": ("disk", "thin-disk", "plate"),
+    "rod": ("bar", "stick", "needle", "thin-rod"),
+    "spherical-shell": ("hollow-sphere", "hollow-ball", "shell"),
+    "cylindrical-shell": ("hollow-cylinder", "tube", "pipe", "hoop"),
+    "torus": ("ring", "donut", "doughnut"),
+    "ellipsoid": ("spheroid",),
+    "point-masses": ("points", "particles", "point-mass", "masses"),
+    "principal-moments": ("moments", "principal", "diagonal"),
+    "inertia-tensor": ("tensor", "inertia", "inertia-matrix"),
+    "composite": ("compound", "assembly", "group", "union"),
+    "mesh": ("triangles", "polyhedron", "stl", "surface"),
+    # Methods.
+    "closed-form": ("exact", "analytic", "analytical", "jacobi"),
+    "explicit-euler": ("euler", "forward-euler", "euler-forward"),
+    "runge-kutta-4": ("rk4", "runge-kutta", "rungekutta"),
+    "implicit-midpoint": ("midpoint", "gauss-2"),
+    "symmetric-splitting": ("splitting", "strang", "symplectic", "leapfrog", "verlet"),
+    "discrete-moser-veselov": ("moser-veselov", "dmv", "variational"),
+    "dormand-prince-853": ("dop853", "dopri", "dopri8", "dormand-prince", "rk45", "rk8", "ode45"),
+    "lsoda": ("odeint", "adams", "bdf"),
+    # Quantities.
+    "angular_velocity": ("omega", "w", "omega0", "w0", "spin", "rate", "rates", "angular-rate", "angular-speed"),
+    "angular_velocities": ("omegas", "spins", "rates"),
+    "attitude": ("quaternion", "orientation", "q", "rotation"),
+    "time": ("t", "times"),
+    "times": ("t", "time", "duration"),
+    "gravity": ("g",),
+    "mass": ("m", "weight"),
+    "masses": ("m", "mass"),
+    "radius": ("r",),
+    "radii": ("r", "radius"),
+    "length": ("l",),
+    "linear_density": ("rho", "density", "lambda"),
+    "density": ("rho",),
+    "slopes": ("angles", "slope", "inclinations"),
+    "moments": ("i", "inertia", "principal-moments"),
+    "tensor": ("i", "inertia", "inertia-tensor"),
+    "position": ("x", "x0"),
+    "positions": ("x",),
+    "velocity": ("v", "v0", "speed"),
+    "velocities": ("v",),
+    "acceleration": ("a",),
+    "accelerations": ("a", "acceleration"),
+    "tension": ("t", "string-tension"),
+    "apex_tension": ("tension", "t"),
+    "hole_radius": ("radius", "r", "a"),
+    "accuracy": ("tolerance", "tol", "rtol", "precision"),
+    "tolerance": ("accuracy", "tol", "rtol"),
+    "step": ("dt", "h", "time-step", "step-size"),
+    "method": ("integrator", "solver", "algorithm"),
+}
+"""Other words for a name, exact after case and punctuation."""
+
+STEPS = ("step", "dt", "timestep", "delta", "spacing", "interval", "increment")
+"""What clients call the distance of evenly spaced times, of which the number is wanted."""
+
+FORCES = (
+    "torque", "torques", "externaltorque", "appliedtorque", "moment", "force", "forces", "gravity", "g", "friction",
+    "damping", "drag", "control",
+)  # fmt: skip
+"""What clients call that which a free rotation has not."""
+
+
+def plain(name: str) -> str:
+    """Return the letters and digits of a name, in lower case."""
+    return re.sub("[^a-z0-9]", "", name[: 2 * LONGEST_NAME].lower())
+
+
+def nearest(given: str, names: Iterable[str], alike: float = ALIKE) -> str | None:
+    """Return the name that a client probably meant, whatever its case and hyphens; None if none is near."""
+    if not given or len(given) > LONGEST_NAME:
+        return None
+    known, written = {plain(name): name for name in names}, plain(given)
+    if written in known:
+        return known[written]
+    for name in known.values():
+        if written in map(plain, SYNONYMS.get(name, ())):
+            return name
+    found = get_close_matches(written, known, 1, alike)
+    return known[found[0]] if found else None
+
+
+def nearest_path(given: str, paths: Iterable[str]) -> str | None:
+    """Return the path that a client probably meant; None if none is near."""
+    return nearest(given, paths, ALIKE_PATHS)
+
+
+def count_in_place_of_step(span: Any, step: Any) -> str:
+    """Return the remedy of evenly spaced times that are given by their distance, computed where it can be."""
+    ends = [span.get("start", 0.0), span.get("stop")] if isinstance(span, dict) else [None, None]
+    try:
+        start, stop, width = (float(x) for x in (*ends, step))
+        steps = (stop - start) / width
+    except (TypeError, ValueError, OverflowError, ZeroDivisionError):
+        steps = -1.0
+    if not (isfinite(steps) and 0.0 <= steps <= 1e9):
+        return "give count, the number of times with both ends: count = (stop - start)/step + 1"
+    count = round(steps) + 1
+    even = abs(steps - round(steps)) <= 1e-9 * max(1.0, steps)
+    spacing = f", {(stop - start) / (count - 1):g} s apart" if not even and count > 1 else ""
+    return f"give the number of times with both ends in its place: count = {count}{spacing}"

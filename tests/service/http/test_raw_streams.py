@@ -1,0 +1,245 @@
+"""What a directly connected client may send: the service under uvicorn with the parser that it is run with."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import socket
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+import uvicorn
+
+from service.responses.json_stream import Document
+from service.settings import Settings
+from tests.service.conftest import inline_toys
+from tests.service.toy_routes import GOOD
+
+pytestmark = pytest.mark.anyio
+
+BODY = json.dumps(GOOD).encode()
+HEAD = b"POST /v1/toy HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\n"
+LAST = b"GET /healthz HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n"
+OPEN = HEAD + b"transfer-encoding: chunked\r\n"
+LARGE = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 30_000}}).encode()
+MANY = 10_000_000
+"""Bytes, of which no connection may make the server keep more than a small part."""
+
+
+def ask(body: bytes = BODY, more: bytes = b"") -> bytes:
+    return HEAD + more + b"content-length: %d\r\n\r\n" % len(body) + body
+
+
+def chunked(body: bytes, more: bytes = b"", behind: bytes = b"") -> bytes:
+    parts = b"".join(b"%x\r\n%b\r\n" % (len(part), part) for part in (body[:9], body[9:]))
+    return OPEN + more + b"\r\n" + parts + b"0\r\n" + behind + b"\r\n"
+
+
+@asynccontextmanager
+async def serving(**settings: Any) -> AsyncIterator[int]:
+    """Serve the toys; gives the port."""
+    parser = Settings().http_parser
+    app = inline_toys(**settings)
+    config = uvicorn.Config(app, port=0, http=parser, lifespan="off", log_config=None, access_log=False)
+    server = uvicorn.Server(config)
+    started = asyncio.Event()
+    startup = server.startup
+
+    async def noted(*arguments: Any, **named: Any) -> None:
+        await startup(*arguments, **named)
+        started.set()
+
+    server.startup = noted  # type: ignore[method-assign]
+    task = asyncio.create_task(server.serve())
+    watching = asyncio.create_task(app._bodies.watch())
+    await started.wait()
+    try:
+        yield server.servers[0].sockets[0].getsockname()[1]
+    finally:
+        watching.cancel()
+        server.should_exit = True
+        await task
+
+
+async def heard(port: int, *pieces: bytes) -> bytes:
+    """Send pieces one by one and return all that comes back until the end."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    try:
+        for piece in pieces:
+            writer.write(piece)
+            await writer.drain()
+            await asyncio.sleep(0)
+        return await asyncio.wait_for(reader.read(), 20)
+    finally:
+        writer.close()
+
+
+def plain(received: bytes) -> bytes:
+    """Return a response without what differs from request to request."""
+    return re.sub(rb"(?<=\n)(x-request-id|server-timing|date): [^\r]*\r\n", b"", received)
+
+
+def statuses(received: bytes) -> list[int]:
+    return [int(status) for status in re.findall(rb"HTTP/1.1 (\d+) ", received)]
+
+
+H2C = b"connection: Upgrade, HTTP2-Settings\r\nupgrade: h2c\r\nhttp2-settings: AAMAAABkAAQAAP__\r\n"
+
+
+@pytest.mark.parametrize("request_", [ask, lambda more: chunked(BODY, more)], ids=["length", "chunked"])
+async def test_an_offer_of_another_protocol_is_not_taken(request_: Callable[..., bytes]) -> None:
+    """RFC 9110, 7.8: the request is answered in this one, byte for byte as without the offer."""
+    async with serving() as port:
+        offered = await heard(port, request_(more=H2C) + LAST)
+        assert plain(offered) == plain(await heard(port, request_(more=b"") + LAST))
+    assert statuses(offered) == [200, 200]
+
+
+@pytest.mark.parametrize(
+    "behind",
+    [
+        b"x-request-id: another\r\n",
+        b"accept: text/csv\r\n",
+        b"if-none-match: *\r\n",
+        b"authorization: Bearer one\r\nexpect: 100-continue\r\n",
+    ],
+)
+async def test_fields_behind_a_body_are_no_headers(behind: bytes) -> None:
+    async with serving() as port:
+        whole = chunked(BODY, behind=behind)
+        for pieces in ((whole + LAST,), (whole[:-9], whole[-9:] + LAST)):
+            assert plain(await heard(port, *pieces)) == plain(await heard(port, chunked(BODY) + LAST))
+
+
+@pytest.mark.parametrize(
+    ("opening", "more"),
+    [
+        (HEAD + b"x: ", b"y" * 1000),
+        (HEAD, b"x: y\r\n" * 200),
+        (b"GET /", b"a" * 1000),
+        (OPEN + b"\r\n1;", b"a" * 1000),
+        (OPEN + b"\r\n1\r\n{\r\n0\r\n", b"x: y\r\n" * 200),
+    ],
+    ids=["one field", "many fields", "a target", "the length of a chunk", "behind a body"],
+)
+async def test_what_does_not_end_is_refused(opening: bytes, more: bytes) -> None:
+    async with serving() as port:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(opening)
+        sent, refused = 0, asyncio.create_task(reader.read())
+        try:
+            while sent < MANY and not refused.done():
+                writer.write(more * 50)
+                await writer.drain()
+                sent += 50 * len(more)
+        except ConnectionError:
+            pass
+        assert sent < MANY
+        writer.close()
+        refused.cancel()
+        assert statuses(await heard(port, LAST)) == [200]
+
+
+async def test_whoever_pipelines_without_reading_is_not_read_for_ever() -> None:
+    loop, flood, sent = asyncio.get_running_loop(), ask(LARGE) * 20, 0
+    async with serving() as port:
+        # uvicorn cannot say in the middle of an answer that it refuses what follows; the loop closes the connection.
+        loop.set_exception_handler(lambda loop, context: None)
+        with socket.create_connection(("127.0.0.1", port)) as client:
+            client.setblocking(False)
+            try:
+                while sent < MANY:
+                    await asyncio.wait_for(loop.sock_sendall(client, flood), 2.0)
+                    sent += len(flood)
+            except (TimeoutError, ConnectionError):
+                pass
+            assert sent < MANY
+            assert statuses(await heard(port, LAST)) == [200]
+
+
+@pytest.mark.parametrize(
+    ("request_", "expected"),
+    [
+        (HEAD + b"content-length: 2\r\ncontent-length: 3\r\n\r\n{}", 400),
+        (HEAD + b"content-length: +2\r\n\r\n{}", 400),
+        (HEAD + b"content-length: 2\r\ntransfer-encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n", 400),
+        (HEAD + b"content-length : 2\r\n\r\n{}", 400),
+        (HEAD + b"x: a\r\n b\r\ncontent-length: 2\r\n\r\n{}", 400),
+        (HEAD.replace(b"\r\n", b"\n") + b"content-length: 2\n\n{}", 400),
+        (HEAD + b"x: a\0b\r\ncontent-length: 2\r\n\r\n{}", 400),
+        (OPEN + b"\r\n0x2\r\n{}\r\n0\r\n\r\n", 400),
+        (OPEN + b"\r\n2\n{}\n0\n\n", 400),
+        (OPEN + b"\r\nfffffffffffffffff\r\n{}\r\n0\r\n\r\n", 400),
+        (HEAD + b"transfer-encoding: gzip\r\n\r\n{}", 400),
+        (HEAD + b"transfer-encoding: gzip, chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n", 501),
+        (chunked(BODY, behind=b"content-type: text/plain\r\n"), 400),
+        (b"GARBAGE\r\n\r\n", 400),
+        (b"GET / HTTP/9.9\r\nhost: x\r\n\r\n", 400),
+    ],
+)
+async def test_no_request_can_be_hidden_behind_another(request_: bytes, expected: int) -> None:
+    """What two parsers could frame differently is refused, and the connection is closed."""
+    async with serving() as port:
+        received = await heard(port, request_ + LAST)
+    assert statuses(received) == [expected]
+
+
+async def test_pipelined_requests_are_answered_in_turn_and_garbage_last() -> None:
+    async with serving() as port:
+        received = await heard(port, ask() + ask(LARGE) + chunked(BODY) + b"GARBAGE\r\n\r\n" + LAST)
+    assert statuses(received) == [200, 200, 200, 400]
+
+
+async def test_half_a_body_is_refused_in_time_and_the_connection_closed() -> None:
+    async with serving(body_seconds=0.05) as port:
+        for half in (ask()[:-20], ask()[: -len(BODY)], chunked(BODY)[:-20]):
+            received = await heard(port, half)
+            assert statuses(received) == [408]
+            assert b"\r\nconnection: close\r\n" in received
+            assert b'"code":"body-too-slow"' in received
+
+
+async def test_unfinished_bodies_are_bounded_together() -> None:
+    async with serving(max_held_bytes=1_000_000) as port:
+        waiting = []
+        for _ in range(3):
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(HEAD + b"content-length: 500000\r\n\r\n" + b" " * 400_000)
+            waiting.append((reader, writer))
+        finished = [asyncio.create_task(reader.read()) for reader, _ in waiting]
+        (first, *_), _ = await asyncio.wait(finished, timeout=20, return_when=asyncio.FIRST_COMPLETED)
+        assert statuses(first.result()) == [429]
+        assert sum(one.done() for one in finished) == 1
+        for _, writer in waiting:
+            writer.close()
+
+
+@pytest.mark.parametrize("behind", [b"", ask()], ids=["alone", "another waits behind it"])
+async def test_nothing_more_is_written_for_a_client_that_has_left(
+    monkeypatch: pytest.MonkeyPatch, behind: bytes
+) -> None:
+    ended = asyncio.Event()
+    written = Document.pieces
+    taken = 0
+
+    def counted(self: Document) -> Any:
+        nonlocal taken
+        try:
+            for piece in written(self):
+                taken += 1
+                yield piece
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(Document, "pieces", counted)
+    endless = json.dumps(GOOD | {"times": {"start": 0.0, "stop": 1.0, "count": 1_000_000}}).encode()
+    async with serving() as port:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(ask(endless) + behind)
+        assert (await reader.readline()) == b"HTTP/1.1 200 OK\r\n"
+        writer.transport.abort()
+        await asyncio.wait_for(ended.wait(), 20)
+    assert taken < 150
