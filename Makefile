@@ -70,10 +70,14 @@ FUZZ ?= 2000
 # Seconds of load and faults.
 SOAK ?= 300
 
-.PHONY: fuzz schemathesis soak overload health calibration image
+.PHONY: fuzz fuzz-loop schemathesis soak overload health calibration image
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
+
+# Whether anything holds the event loop: extreme questions to every endpoint, judged by counts of work and of calls.
+fuzz-loop: environment
+	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_event_loop.py
 
 schemathesis: environment
 	$(BIN)/python -m tests.service.schema_run

@@ -28,6 +28,7 @@ ALLOWED: dict[str, set[str]] = {
 }
 ALLOWED["rotation"] = {"systems", "bodies", "elliptic"} | ALLOWED["bodies"] | ALLOWED["elliptic"]
 ALLOWED["scenes"] = {"systems", "elliptic", "balls"} | ALLOWED["systems"] | ALLOWED["elliptic"]
+ALLOWED["multibody"] = {"bodies", "balls"} | ALLOWED["bodies"]
 ALLOWED["certified"] = {"rotation", "scenes"} | ALLOWED["rotation"] | ALLOWED["scenes"]
 """What each package or module of core may import besides itself. Those in OUTER may import all of core."""
 
@@ -161,6 +162,16 @@ TESTED_IN = {
     "core/scenes/rod_motion.py": "core/scenes/test_rod_in_hole.py",
     "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
+}
+TESTED_IN |= {
+    f"core/multibody/{name}.py": f"core/multibody/test_{through}.py"
+    for through, names in {
+        "description": "coordinates inertia laws measures rolling strings",
+        "language": "reading",
+        "numerical": "packed periods returns series series_pairs vertical_symmetry",
+        "solve": "answer columns dynamics events motion uniform whole",
+    }.items()
+    for name in names.split()
 }
 """Modules of core without a test file of the same name, and the file that tests them through their callers."""
 

@@ -70,7 +70,15 @@ def to_places(values: Floats, places: int) -> Floats:
         power = 10.0 ** abs(places)
         found: Floats = np.rint(values * power) / power if places >= 0 else np.rint(values / power) * power
         return found
-    return _by_decimals(values, lambda value: round(value, places))
+    return _by_decimals(values, lambda value: _to_place(value, places))
+
+
+def _to_place(value: float, places: int) -> float:
+    """Return a number rounded to a decimal place; the largest doubles have nothing above them to be rounded to."""
+    try:
+        return round(value, places)
+    except OverflowError:
+        return value
 
 
 def to_significant(values: Floats, digits: int) -> Floats:

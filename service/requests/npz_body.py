@@ -101,9 +101,15 @@ def taking_arrays(schema: Any) -> Any:
     walked = {key: value if key == "metadata" else taking_arrays(value) for key, value in schema.items()}
     if walked.get("type") == "any" and (walked.get("metadata") or {}).get("rows"):
         return {"type": "function-plain", "function": {"type": "with-info", "function": _array_for}}
-    if walked.get("type") == "list":
+    # A union of an object and a list has to see the list, so that faults are those of one.
+    if walked.get("type") == "list" or (walked.get("type") == "union" and _has_list(schema["choices"])):
         return {"type": "function-wrap", "function": {"type": "with-info", "function": _list_for}, "schema": walked}
     return walked
+
+
+def _has_list(choices: Any) -> bool:
+    # A choice may come with a label.
+    return any((choice[0] if isinstance(choice, tuple) else choice).get("type") == "list" for choice in choices)
 
 
 def _array_for(value: Any, info: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from math import exp, log
 from typing import Annotated
 
 import numpy as np
@@ -12,14 +13,27 @@ from core.bodies import Body
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
-from core.systems.methods import ClosedFormEvaluation, Method
-from core.work_precision import DEFAULT_RUNS, Measurement, work_precision
-from service.execution.cost_model import CalibratedCost, effort, extreme, speed_of
+from core.systems.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Method, Radau
+from core.work_precision import (
+    DEFAULT_RUNS,
+    SCIPY_TOLERANCES,
+    STEPS_PER_OWN_TIME,
+    TOLERANCES,
+    Measurement,
+    check_distinct,
+    work_precision,
+)
+from service.execution.cost_model import CalibratedCost, calibration, effort, extent, extreme, speed_of
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
-from service.routing import Answer, Outline, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
+
+LADDER_RADIANS = 50.0
+"""How far the body turns in the motions on which ladders are measured."""
+
+SCIPY_KINDS = (Lsoda.kind, Radau.kind)
 
 
 class WorkPrecisionRequest(Request):
@@ -110,7 +124,8 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     runs = _runs(question)
     found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
     if question.methods is None:
-        return found | {"ladders": repeats, "ladder samples": repeats * samples}
+        found |= {"ladders": repeats, "ladder samples": repeats * samples}
+        return found | _long_ladder(question, budget.evaluations // (repeats * runs), repeats)
     speed = speed_to_follow(question.methods, question.body, speed_of(question.angular_velocity))
     for method in question.methods:
         for name, count in effort(method, question.times, speed, samples, repeats).items():
@@ -118,11 +133,33 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     return found
 
 
-def outline(question: WorkPrecisionRequest, budget: Budget) -> Outline:
-    """Return the question about the closed form at the farthest time alone."""
+def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> dict[str, float]:
+    """Return what is counted of a ladder on a motion that is longer than the one on which ladders are measured."""
+    speed = speed_of(question.angular_velocity)
+    radians = speed * extent(question.times) - LADDER_RADIANS
+    if not radians > 0.0:
+        return {}
+    counts: dict[str, float] = {}
+    for kind, cost in calibration().methods.items():
+        if kind in SCIPY_KINDS or kind == DormandPrince853.kind:
+            tolerances = SCIPY_TOLERANCES if kind in SCIPY_KINDS else TOLERANCES
+            # One that runs out of its share has spent it.
+            spent = [min(share, radians * exp(cost["evaluations"] + cost["exponent"] * log(t))) for t in tolerances]
+        else:
+            # One that would is refused before it runs.
+            steps = [cost["evaluations"] * number * radians for number in STEPS_PER_OWN_TIME]
+            spent = [count for count in steps if count <= share]
+        counts[f"evaluations of {kind}"] = repeats * sum(spent)
+    return counts
+
+
+def work_precision_probe(question: WorkPrecisionRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about the closed form at the farthest time alone."""
+    if question.methods is not None:
+        check_distinct(question.methods)
     changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
     growth = {"curves": float(_runs(question))}
-    return Outline(question.model_copy(update=changes), lambda fields: growth)
+    return PlanningProbe(answer_work_precision(question.model_copy(update=changes), budget), growth)
 
 
 def drawn(answer: Answer) -> bytes:
@@ -154,7 +191,7 @@ WORK_PRECISION = (
         WorkPrecisionAnswer,
         answer_work_precision,
         CalibratedCost("work_precision", work_precision_counts),
-        outline=outline,
+        planning_probe=work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
         representations={SVG: drawn},
     ),

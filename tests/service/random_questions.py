@@ -11,11 +11,13 @@ from math import sqrt
 from random import Random
 from typing import Any
 
-
 Question = dict[str, Any]
 STEPPING = ("explicit-euler", "runge-kutta-4", "implicit-midpoint", "symmetric-splitting", "discrete-moser-veselov")
 CHOOSING = ("dormand-prince-853", "lsoda", "radau")
-TETRAHEDRON = ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+TETRAHEDRON = (
+    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+)
 HALF_TURNS = ([1.0, 0.0, 0.0, 0.0], [0.6, 0.0, 0.8, 0.0], [1.0, 1.0, 0.0, 0.0], [0.5, -0.1, 0.3, 0.8])
 
 
@@ -31,7 +33,9 @@ def count(random: Random, most: int) -> int:
 
 def moments(random: Random) -> list[float]:
     a, b = sorted((number(random), number(random)))
-    found = random.choice([[a, b, b + a * random.random()], [a, b, b], [a, a, min(b, 2 * a)], [a, a, a], [1.0, 2.0, 3.0]])
+    found = random.choice(
+        [[a, b, b + a * random.random()], [a, b, b], [a, a, min(b, 2 * a)], [a, a, a], [1.0, 2.0, 3.0]]
+    )
     random.shuffle(found)
     return found
 
@@ -220,7 +224,8 @@ def shafts(random: Random) -> Question:
     pair = lambda low, high: [number(random, low, high), number(random, low, high)]  # noqa: E731
     found: Question = {
         "masses": random.choice([pair(0.1, 5.0), [2.0, 2.0]]), "radii": pair(0.01, 0.5),
-        "slopes": random.choice([pair(0.1, 1.4), [0.5, 0.5]]), "gravity": random.choice([9.81, number(random, 0.5, 20.0)]),
+        "slopes": random.choice([pair(0.1, 1.4), [0.5, 0.5]]),
+        "gravity": random.choice([9.81, number(random, 0.5, 20.0)]),
     }  # fmt: skip
     optional: Question = {
         "inertia_factors": random.choice([[0.5, 0.5], [1.0, 0.5], [0.0, 0.5]]),

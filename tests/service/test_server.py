@@ -137,7 +137,7 @@ def test_hostile_bytes_never_hurt(server: Server, request_bytes: bytes) -> None:
 
 
 def test_many_headers_and_a_split_request(server: Server) -> None:
-    many = b"".join(b"x-%d: %d\r\n" % (i, i) for i in range(500))
+    many = b"".join(b"x-%d: %d\r\n" % (i, i) for i in range(80))
     body = hostile.text()
     head = GOOD + many + b"connection: close\r\ncontent-length: %d\r\n\r\n" % len(body)
     received = raw(server, *[bytes([byte]) for byte in head[-40:-1]][:0], head[:50], head[50:], body[:7], body[7:])

@@ -140,7 +140,9 @@ class FreeAttitude:
         """
         if self.rotation.motion.regime == REST:
             return None
-        countable = math.log2(LARGEST_QUARTER) - math.log2(self._turns(1.0)) - 1e-9
+        turns = self._turns(1.0)
+        # Of the slowest rotations not even the turns in a second are above every double.
+        countable = math.log2(LARGEST_QUARTER) - math.log2(turns) - 1e-9 if turns > 0.0 else math.inf
         longest = min(self.rotation.longest_exponent, countable)
         return lost_after(lambda time: self.inherited(np.array([time]), uncertainty) > 1.0, longest)
 

@@ -25,6 +25,7 @@ MOST_INPUTS = 3000
 
 _MOST = 700.0
 _LEAST = 2.0**-1074
+_THINNEST = 2.0**-1000
 _PLANES = ((0, 1), (1, 2), (2, 0))
 
 
@@ -227,13 +228,14 @@ def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Mot
     (low, high), i, x = gaps, moments.tolist(), np.abs(w).tolist()
     near, far = (high, low) if d == 2 else (low, high)
     # A line of matter has no least moment, and then nothing between the others either.
-    share = i[1] * far / (i[d] * (low + high)) if far > 0.0 else 0.0
+    # That of the thinnest needle may be below every double next to the others.
+    share = i[1] * far / max(_THINNEST, i[d] * (low + high)) if far > 0.0 else 0.0
     # Components below every double next to the largest leave nothing to divide by, and bounds that are infinite.
     dn = max(_LEAST, x[d] / max(_LEAST, math.hypot(x[d], math.sqrt(share) * x[1])))
     if motion.regime == SEPARATRIX or motion.m1 > 1e-290:
         return dn, math.sqrt(motion.m1)
     ratio = x[c] / max(_LEAST, x[d])
-    return dn, dn * math.sqrt(max(1e-15, 1.0 - i[c] * far / (i[d] * near) * ratio * ratio))
+    return dn, dn * math.sqrt(max(1e-15, 1.0 - i[c] * far / max(_THINNEST, i[d] * near) * ratio * ratio))
 
 
 def _add(

@@ -155,3 +155,9 @@ async def test_the_attitude_has_a_horizon_of_its_own() -> None:
         assert (answer["accuracy"]["attitude_inherited"] > 1.0) is lost
     without = (await asked("/v1/rotation/trajectory", FREE)).json()["accuracy"]
     assert without.get("attitude_inherited") is None
+
+
+def test_the_largest_doubles_stay_as_they_are() -> None:
+    largest = 1.7976931348623157e308
+    found, _ = rounded(np.array([largest, 1.6e307]), "meaningful", 0.5)
+    assert found.tolist() == [largest, 2e307]

@@ -119,3 +119,11 @@ def test_oblique_axes_change_the_description_not_the_motion():
     for a, b in zip(straight.sample(times), oblique.sample(times), strict=True):
         assert matrix(b) == pytest.approx(turn @ matrix(a) @ turn.T, abs=1e-13)
     assert oblique.rotation.sample(times) == pytest.approx(straight.rotation.sample(times) @ turn.T, abs=1e-13)
+
+
+def test_the_slowest_rotation_has_a_horizon() -> None:
+    """A rate below which there is no double, of which no turn is ever counted."""
+    inertia = PrincipalInertia.of(np.diag([1.0, 2.0, 2.5]))
+    rotation = FreeRotation(inertia, np.array([0.0, 5e-324, 0.0]))
+    horizon = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0])).horizon_of(1e-6)
+    assert horizon is None or horizon > 0.0

@@ -172,13 +172,17 @@ def test_at_the_ends_of_the_double_range_it_is_a_number(
         assert 0.0 < free.inherited(times, uncertainty) <= np.pi
 
 
+# Starts nearer to the middle axis than doubles resolve are refused, as a test of their own says.
+component = st.floats(-1.0, 1.0).map(lambda x: x if abs(x) > 1e-30 else 0.0)
+
+
 @settings(deadline=None, derandomize=True, max_examples=150)
 @drawn(
     st.floats(0.3, 3.0),
     st.sampled_from((1e-15, 1e-9, 1e-4, 0.1, 1.0)),
     st.floats(0.3, 3.0),
-    st.tuples(*3 * [st.floats(-1.0, 1.0)]),
-    st.tuples(*3 * [st.floats(-1.0, 1.0)]),
+    st.tuples(*3 * [component]),
+    st.tuples(*3 * [component]),
     st.floats(-2.0, 4.0),
 )
 def test_no_difference_of_two_motions_grows_faster_than_groenwall_allows(first, gap, third, spin, away, late):

@@ -1,0 +1,218 @@
+"""What is answered about a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from core.multibody.packed import Floats, Integers
+
+How = Literal["closed form", "measured against pairs"]
+
+
+@dataclass(frozen=True)
+class PartModel:
+    """The smallest model of one part of a scene that the others do not see.
+
+    Attributes
+    ----------
+    name, why : str
+    degrees_of_freedom : int
+    coordinates : tuple of str
+        Those that remain.
+    period : float or None
+        Time after which it repeats (s), up to a turn about the vertical by `precession`.
+    precession : float or None
+        That angle (rad).
+    modes : tuple of (float, float)
+        Angular frequency (rad/s) and growth rate (1/s) of every mode of a linear part.
+    """
+
+    name: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: tuple[str, ...]
+    period: float | None = None
+    precession: float | None = None
+    modes: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class SceneModel:
+    """The model of a scene, and what was noticed on the way.
+
+    Attributes
+    ----------
+    name, why : str
+    degrees_of_freedom : int
+        Of the motion from the given start.
+    mobility : int
+        Of the scene: what could move, though it may not from this start.
+    coordinates, rows : int
+        Coordinates and rows of the table that remain; `described` holds the numbers before.
+    described : tuple of int
+    apart : tuple of PartModel
+        Parts that have no force or connection in common.
+    noticed : tuple of str
+        Sentences.
+    """
+
+    name: str
+    why: str
+    degrees_of_freedom: int
+    mobility: int
+    coordinates: int
+    rows: int
+    described: tuple[int, int]
+    apart: tuple[PartModel, ...]
+    noticed: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class BodyAcceleration:
+    """Accelerations of a body at the start.
+
+    Attributes
+    ----------
+    linear : tuple of float
+        Of the centre of mass (m/s^2).
+    angular : float, tuple of float or None
+        In the plane, a number; in space, in body axes (rad/s^2); None for particles and for tops.
+    """
+
+    linear: tuple[float, ...]
+    angular: float | tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True)
+class ForceAnswer:
+    """A force of a connection at the start.
+
+    Attributes
+    ----------
+    value : float or None
+        None where the scene does not determine it.
+    unit : str
+    determined : bool
+    shared_with : tuple of str
+        Connections that share what is not determined.
+    """
+
+    value: float | None
+    unit: str
+    determined: bool
+    shared_with: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energies at the start (J); the potential of gravity is zero at the origin.
+
+    Attributes
+    ----------
+    conserved : bool
+        Whether nothing works on the scene: no damper, motor or torque in space.
+    """
+
+    kinetic: float
+    potential: float
+    total: float
+    conserved: bool
+
+
+@dataclass(frozen=True)
+class Column:
+    """One quantity at every time.
+
+    Attributes
+    ----------
+    values : ndarray, shape (t,) or (t, k)
+    unit : str
+    error : float
+        Largest error of any sample, as a length of the vector, in the unit of the column.
+    how : str
+        How the error is known.
+    """
+
+    values: Floats
+    unit: str
+    error: float
+    how: How
+
+
+@dataclass(frozen=True)
+class SceneTrajectory:
+    """Columns by name, at times as asked for, without those that lie beyond the end of the scene.
+
+    Attributes
+    ----------
+    time : ndarray, shape (t,)
+    rows : ndarray of int, shape (t,)
+        Which of the times asked for these are.
+    columns : mapping of str to Column
+    """
+
+    time: Floats
+    rows: Integers
+    columns: Mapping[str, Column]
+
+
+@dataclass(frozen=True)
+class SceneEvent:
+    """Something that ends a scene.
+
+    Attributes
+    ----------
+    kind : {"slack", "singular"}
+    name : str
+        The connection; "" where several make a place singular.
+    time : float
+    error : float
+        Of the time (s).
+    """
+
+    kind: str
+    name: str
+    time: float
+    error: float
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A place where the scene can rest.
+
+    Attributes
+    ----------
+    positions : mapping of str to tuple of float
+        Centres of mass.
+    angles : mapping of str to float
+        In the plane, of bodies whose direction matters.
+    stable : bool or None
+        Whether small deviations stay small; None where the linear motion does not decide.
+    modes : tuple of (float, float)
+        Angular frequency and growth rate of the small motions.
+    residual : float
+        Largest force left over, relative to the forces of the scene.
+    """
+
+    positions: Mapping[str, tuple[float, ...]]
+    angles: Mapping[str, float]
+    stable: bool | None
+    modes: tuple[tuple[float, float], ...]
+    residual: float
+
+
+@dataclass(frozen=True)
+class SceneAnswer:
+    """The answer to a question about a scene; what was not asked for is None."""
+
+    model: SceneModel
+    accelerations: Mapping[str, BodyAcceleration] | None
+    forces: Mapping[str, ForceAnswer] | None
+    energy: Energy | None
+    trajectory: SceneTrajectory | None
+    period: float | None
+    equilibria: tuple[Equilibrium, ...] | None
+    events: tuple[SceneEvent, ...]
+    ended: SceneEvent | None

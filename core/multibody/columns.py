@@ -1,0 +1,215 @@
+"""Named columns of a trajectory: positions, angles, attitudes, rates, forces and energies, each with unit and error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.multibody.answer import Column, How
+from core.multibody.measures import Force
+from core.multibody.packed import Floats
+from core.multibody.whole import Whole, WholeStates
+
+_SMALL = 2.0**-50
+"""What rounding to doubles adds to an error, relative to the largest value of a column."""
+_TELL = 1.02
+"""Margin for the judge's own error, which is some 2^-14 of what it judges."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Makes the columns of a scene at many times."""
+
+    whole: Whole
+    times: Floats
+    states: WholeStates
+    how: How
+
+    def trajectory(self) -> dict[str, Column]:
+        """Return what every body does."""
+        found: dict[str, Column] = {}
+        for name, frame in self.whole.measures.coordinates.frames.items():
+            found[f"{name}.position"] = self._vector(frame.position, "m", rates=False)
+            found[f"{name}.velocity"] = self._vector(frame.position, "m/s", rates=True)
+            if frame.turn is not None:
+                found[f"{name}.angle"] = self._scalar(frame.turn, "rad", rates=False)
+                found[f"{name}.angular_velocity"] = self._scalar(frame.turn, "rad/s", rates=True)
+            elif frame.direction is not None:
+                found[f"{name}.angle"] = self._angle(frame.direction, name)
+                found[f"{name}.angular_velocity"] = self._turning(frame.direction)
+            elif frame.axis is not None:
+                found[f"{name}.axis"] = self._vector(frame.axis[1], "1", rates=False)
+            elif frame.axes is not None:
+                found.update(self._attitude(name, frame.axes))
+        return found
+
+    def forces(self, chosen: Sequence[Force]) -> dict[str, Column]:
+        """Return forces of connections in time."""
+        q, v = self.states.q, self.states.v
+        multipliers = self.whole.multipliers(q, v)
+        judged = None
+        if self.states.reference is not None:
+            judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
+        found: dict[str, Column] = {}
+        for force in chosen:
+            values, size = self.whole.force(force, q, v, multipliers)
+            error = _SMALL * float(np.max(size, initial=0.0))
+            if judged is not None:
+                other = self.whole.force(force, *judged)[0]
+                error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
+            found[force.name] = Column(values, force.unit, error, self.how)
+        return found
+
+    def energy(self) -> dict[str, Column]:
+        """Return kinetic and potential energy in time."""
+        pairs = [(self.states.q, self.states.v)]
+        if self.states.reference is not None:
+            pairs.append(self.states.reference)
+        curves = [self._energies(*entry) for entry in pairs]
+        found: dict[str, Column] = {}
+        for number, name in enumerate(("energy.kinetic", "energy.potential")):
+            values, size = curves[0][number]
+            error = _SMALL * float(np.max(size, initial=0.0))
+            if len(curves) > 1:
+                error += 4.0 * float(np.max(np.abs(values - curves[1][number][0]), initial=0.0))
+            found[name] = Column(values, "J", error, self.how)
+        return found
+
+    def _energies(self, q: Floats, v: Floats) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+        measures = self.whole.measures
+        table = measures.table
+        spin = sum((float(frame.spin_energy) for frame in measures.coordinates.frames.values()), 0.0)
+        kinetic = np.full(len(q), spin)
+        potential = np.full(len(q), float(measures.potential))
+        sizes = [np.abs(kinetic), np.abs(potential)]
+        for (i, j), value in table.mass.items():
+            term = float(value) * (0.5 if i == j else 1.0) * v[:, i, 0] * v[:, j, 0]
+            kinetic, sizes[0] = kinetic + term, sizes[0] + np.abs(term)
+        for i, value in table.load.items():
+            term = -float(value) * q[:, i, 0]
+            potential, sizes[1] = potential + term, sizes[1] + np.abs(term)
+        for (i, j), value in table.stiffness.items():
+            term = 0.5 * float(value) * q[:, i, 0] * q[:, j, 0]
+            potential, sizes[1] = potential + term, sizes[1] + np.abs(term)
+        return (kinetic, sizes[0]), (potential, sizes[1])
+
+    def _vector(self, indices: Sequence[int], unit: str, *, rates: bool) -> Column:
+        where = list(indices)
+        values = (self.states.v if rates else self.states.q)[:, where, 0]
+        errors = (self.states.v_error if rates else self.states.q_error)[:, where]
+        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1)), self.how)
+
+    def _scalar(self, index: int, unit: str, *, rates: bool) -> Column:
+        values = (self.states.v if rates else self.states.q)[:, index, 0]
+        errors = (self.states.v_error if rates else self.states.q_error)[:, index]
+        return Column(values, unit, _stated(values, errors), self.how)
+
+    def _angle(self, direction: tuple[int, int], name: str) -> Column:
+        """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
+        c, s = (self.states.q[:, i, 0] for i in direction)
+        start = self.whole.states(np.zeros(1)).q[0, list(direction), 0]
+        first = self.whole.measures.coordinates.start_angle(name)
+        principal = np.arctan2(start[0] * s - start[1] * c, start[0] * c + start[1] * s)
+        turns = np.round((self._followed(direction) - principal) / (2 * math.pi))
+        values = first + (principal + 2 * math.pi * turns)
+        errors = self.states.q_error[:, direction[0]] + self.states.q_error[:, direction[1]]
+        return Column(values, "rad", _stated(values, errors), self.how)
+
+    def _followed(self, direction: tuple[int, int]) -> Floats:
+        """Return the angle gone through since the start, well enough to count its turns."""
+        total = np.zeros(len(self.times))
+        motion = self.whole.motion_of(direction)
+        for forward in (True, False):
+            chosen = self.times >= 0.0 if forward else self.times < 0.0
+            if motion is None or not np.any(chosen):
+                continue
+            times = self.times[chosen]
+            grid = motion.nodes(float(times[np.argmax(np.abs(times))]))
+            # A motion that repeats is followed for one period, and turns alike in each.
+            period = None if motion.name != "one period" or motion.period is None else float(motion.period)
+            if period is not None and abs(grid[-1]) >= period * (1 - 1e-9):
+                grid = np.append(grid[np.abs(grid) < period * (1 - 1e-9)], math.copysign(period, grid[-1]))
+            else:
+                period = None
+            q = self.whole.states(grid).q[:, list(direction), 0]
+            angle = np.unwrap(np.arctan2(q[:, 1], q[:, 0]))
+            angle = angle - angle[0]
+            if period is None:
+                order = np.argsort(grid)
+                total[chosen] = np.interp(times, grid[order], angle[order])
+            else:
+                count = np.floor(np.abs(times) / period)
+                within = np.abs(times) - count * period
+                turn = 2 * math.pi * round(angle[-1] / (2 * math.pi))
+                total[chosen] = np.interp(within, np.abs(grid), angle) + count * turn
+        return total
+
+    def _turning(self, direction: tuple[int, int]) -> Column:
+        i, j = direction
+        q, v = self.states.q[..., 0], self.states.v[..., 0]
+        values = q[:, i] * v[:, j] - q[:, j] * v[:, i]
+        dq, dv = self.states.q_error, self.states.v_error
+        errors = dv[:, i] + dv[:, j] + np.abs(v[:, j]) * dq[:, i] + np.abs(v[:, i]) * dq[:, j]
+        return Column(values, "rad/s", _stated(values, errors), self.how)
+
+    def _attitude(self, name: str, axes: Sequence[Sequence[int]]) -> dict[str, Column]:
+        """Return the quaternion from body to space, and the angular velocity in body axes."""
+        e = np.stack([self.states.q[:, list(axis), 0] for axis in axes], axis=1)
+        rate = np.stack([self.states.v[:, list(axis), 0] for axis in axes], axis=1)
+        omega = np.stack([np.einsum("ti,ti->t", rate[:, (k + 1) % 3], e[:, (k + 2) % 3]) for k in range(3)], axis=1)
+        flat = [i for axis in axes for i in axis]
+        off, off_rate = (np.linalg.norm(x[:, flat], axis=1) for x in (self.states.q_error, self.states.v_error))
+        fast = np.linalg.norm(rate, axis=(1, 2))
+        quaternion = quaternions(e)
+        return {
+            f"{name}.attitude": Column(quaternion, "1", _stated(quaternion, off), self.how),
+            f"{name}.angular_velocity": Column(omega, "rad/s", _stated(omega, off_rate + fast * off), self.how),
+        }
+
+
+def quaternions(axes: Floats) -> Floats:
+    """Return unit quaternions [w, x, y, z], w >= 0, of body axes in space: axes[t, k] is the body axis k.
+
+    By the largest of the four components, which never cancels (S. W. Shepperd, 1978).
+    """
+    r = np.swapaxes(axes, 1, 2)
+    trace = np.trace(r, axis1=1, axis2=2)
+    squares = np.stack([trace, r[:, 0, 0], r[:, 1, 1], r[:, 2, 2]], axis=1)
+    out = np.empty((len(r), 4))
+    for s, k in enumerate(np.argmax(squares, axis=1)):
+        m = r[s]
+        if k == 0:
+            row = [1 + trace[s], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]
+        else:
+            i = int(k) - 1
+            j, l = (i + 1) % 3, (i + 2) % 3  # noqa: E741
+            row = [0.0] * 4
+            row[0] = m[l, j] - m[j, l]
+            row[1 + i] = 1 + m[i, i] - m[j, j] - m[l, l]
+            row[1 + j] = m[j, i] + m[i, j]
+            row[1 + l] = m[l, i] + m[i, l]
+        vector = np.array(row) / np.linalg.norm(row)
+        out[s] = -vector if vector[0] < 0.0 else vector
+    return out
+
+
+def _stated(values: Floats, errors: Floats) -> float:
+    size = np.abs(values) if values.ndim == 1 else np.linalg.norm(values, axis=1)
+    return _TELL * float(np.max(errors, initial=0.0)) + _SMALL * float(np.max(size, initial=0.0))
+
+
+def worst(columns: Mapping[str, Column]) -> float:
+    """Return the largest error of a column, relative to the largest value among the columns of its unit.
+
+    What is zero by symmetry has no scale of its own.
+    """
+    largest: dict[str, float] = {}
+    for column in columns.values():
+        size = np.abs(column.values) if column.values.ndim == 1 else np.linalg.norm(column.values, axis=1)
+        largest[column.unit] = max(largest.get(column.unit, 0.0), float(np.max(size, initial=0.0)))
+    return max(
+        (column.error / largest[column.unit] for column in columns.values() if largest[column.unit] > 0.0), default=0.0
+    )

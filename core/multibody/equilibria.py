@@ -1,0 +1,260 @@
+"""Where a scene can rest, and how it moves near there.
+
+K q - b = W(q)^T lambda with g = 0 is quadratic again: Newton's method from many starts finds its solutions, those with
+positive lengths and taut strings count. That all are found is not proven. Small motions are those of Z^T M Z, Z^T D Z
+and Z^T (K - sum lambda dW) Z, with Z the directions that the connections leave free. Coordinates that a motion from the
+given start would never move are free here.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import null_space
+
+from core.errors import NotApplicable
+from core.multibody.answer import Equilibrium
+from core.multibody.description import Described
+from core.multibody.dynamics import accelerations
+from core.multibody.packed import Floats, Packed, Units, packed, state, two_to, units_of
+from core.multibody.passes import Reduced, reduced
+from core.multibody.table import Table
+from core.multibody.whole import values
+
+MOST_FOUND = 100
+_STARTS = 128
+"""Starts for every degree of freedom."""
+_ROUNDS = 60
+_SAME = 1e-7
+_SMALL = 1e-9
+
+
+def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
+    """Return the equilibria that Newton's method finds, those of lowest potential first.
+
+    Raises
+    ------
+    NotApplicable
+        For scenes that are driven, or held by rates that no measure gives: rolling on curves, and torsion springs or
+        drums beside a direction.
+    """
+    small = reduced(found.measures.table, pinning=False)
+    table = small.table
+    if any(row.measure is None for row in table.rows):
+        raise NotApplicable(
+            "equilibria are not answered where rates are held that no measure gives: motors, rolling on curves, drums "
+            "and torsion springs beside a direction",
+            path=("outputs",),
+        )
+    if not table.names:
+        return ()
+    gains, chosen = accelerations(table)
+    units = units_of(table, gains)
+    arrays = packed(table, chosen, units)
+    dense = _Dense(arrays)
+    start = state(table, units)[0][:, 0]
+    places = _search(dense, start, len(table.names) - len(chosen))
+    answers = []
+    for q, multipliers in places:
+        if not _possible(found, small, units, q):
+            continue
+        answers.append((dense.potential(q), _described(found, small, table, units, dense, q, multipliers)))
+    answers.sort(key=lambda entry: entry[0])
+    return tuple(entry[1] for entry in answers[:MOST_FOUND])
+
+
+class _Dense:
+    """The arrays of a table without tails: M, b, K, D, and W with its constant slopes."""
+
+    def __init__(self, arrays: Packed) -> None:
+        n, m = len(arrays.load), len(arrays.rate)
+        self.mass, self.load = arrays.mass[..., 0], arrays.load[:, 0]
+        self.stiffness, self.damping = np.zeros((n, n)), np.zeros((n, n))
+        for (i, j), x in zip(arrays.stiff_at, arrays.stiff[:, 0], strict=True):
+            self.stiffness[i, j] = x
+        for (i, j), x in zip(arrays.damp_at, arrays.damp[:, 0], strict=True):
+            self.damping[i, j] = x
+        self.lines, self.slopes = np.zeros((m, n)), np.zeros((m, n, n))
+        for (r, j), x in zip(arrays.lines_at, arrays.lines[:, 0], strict=True):
+            self.lines[r, j] = x
+        for (e, i), x in zip(arrays.slopes_at, arrays.slopes[:, 0], strict=True):
+            r, j = arrays.lines_at[e]
+            self.slopes[r, j, i] = x
+        self.offset = arrays.offset[:, 0]
+        self.gyration = [(*at, x) for at, x in zip(arrays.gyre_at.tolist(), arrays.gyre[:, 0], strict=True)]
+
+    def jacobian(self, q: Floats) -> Floats:
+        """Return W at places of shape (..., n)."""
+        found: Floats = self.lines + np.einsum("rji,...i->...rj", self.slopes, q)
+        return found
+
+    def measures(self, q: Floats) -> Floats:
+        """Return g at places of shape (..., n)."""
+        found: Floats = self.offset + np.einsum("...rj,...j->...r", (self.lines + self.jacobian(q)) / 2, q)
+        return found
+
+    def potential(self, q: Floats) -> float:
+        """Return the potential energy of a place."""
+        return float(q @ self.stiffness @ q / 2 - self.load @ q)
+
+    def damping_at(self, q: Floats) -> Floats:
+        """Return what multiplies the rates near a place at rest, gyroscopic terms included."""
+        total = self.damping.copy()
+        for i, j, k, x in self.gyration:
+            total[i, k] -= x * q[j]
+        return total
+
+
+def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Floats]]:
+    n, m = len(start), len(dense.offset)
+    count = min(4096, _STARTS * max(1, freedom))
+    # Always the same starts: equal questions have equal answers.
+    random = np.random.Generator(np.random.Philox(7))
+    q = start + random.normal(size=(count, n)) * random.uniform(0.05, 2.0, size=(count, 1))
+    q[0] = start
+    with np.errstate(all="ignore"):
+        q = _onto(dense, q)
+        multipliers = np.zeros((count, m))
+        if m:
+            pulls = q @ dense.stiffness.T - dense.load
+            multipliers = np.einsum("...rj,...j->...r", np.linalg.pinv(np.swapaxes(dense.jacobian(q), 1, 2)), pulls)
+        for _ in range(_ROUNDS):
+            step = _newton(dense, q, multipliers)
+            q, multipliers = q + step[:, :n], multipliers + step[:, n:]
+            good = np.all(np.isfinite(q), axis=1) & (np.abs(q).max(axis=1) < 1e6)
+            q, multipliers = q[good], multipliers[good]
+            if not len(q):
+                return []
+        step = _newton(dense, q, multipliers)
+    done = np.abs(step[:, :n]).max(axis=1) < 1e-10 * (1.0 + np.abs(q).max(axis=1))
+    found: list[tuple[Floats, Floats]] = []
+    for place, multiplier in zip(q[done], multipliers[done], strict=True):
+        if all(np.abs(place - other).max() > _SAME * (1.0 + np.abs(place).max()) for other, _ in found):
+            found.append((place, multiplier))
+        if len(found) >= MOST_FOUND:
+            break
+    return found
+
+
+def _onto(dense: _Dense, q: Floats) -> Floats:
+    if not len(dense.offset):
+        return q
+    for _ in range(8):
+        inverse = np.linalg.pinv(dense.jacobian(q))
+        q = q - np.clip(np.einsum("...jr,...r->...j", inverse, dense.measures(q)), -1.0, 1.0)
+        q = np.where(np.isfinite(q), q, 0.0)
+    return q
+
+
+def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> Floats:
+    n, m = q.shape[1], multipliers.shape[1]
+    w = dense.jacobian(q)
+    system = np.zeros((len(q), n + m, n + m))
+    system[:, :n, :n] = np.einsum("rji,...r->...ji", dense.slopes, multipliers) - dense.stiffness
+    system[:, :n, n:] = np.swapaxes(w, 1, 2)
+    system[:, n:, :n] = w
+    left = dense.load - q @ dense.stiffness.T + np.einsum("...rj,...r->...j", w, multipliers)
+    right = -np.concatenate([left, dense.measures(q)], axis=1)
+    # Places without a single solution nearby make no step of their own.
+    inverse = np.linalg.pinv(system, rcond=1e-13)
+    found: Floats = np.einsum("...ij,...j->...i", inverse, right)
+    return found
+
+
+def _expanded(small: Reduced, units: Units, q: Floats) -> Floats:
+    """Return every coordinate as described, shape (1, n, 2), in SI units."""
+    z = q * np.array([two_to(e) for e in units.lengths])
+    whole = np.array(
+        [
+            sum((float(value) * (z[key[0]] if key else 1.0) for key, value in expression.items()), 0.0)
+            for expression in small.expressions
+        ]
+    )
+    return np.stack([whole, np.zeros_like(whole)], axis=1)[None]
+
+
+def _possible(found: Described, small: Reduced, units: Units, q: Floats) -> bool:
+    """Return whether lengths are positive there and strings taut."""
+    measures = found.measures
+    place = _expanded(small, units, q)
+    table = measures.table
+    lines = np.zeros((len(table.rows), len(table.names)))
+    for r, row in enumerate(table.rows):
+        for j, poly in row.rates.items():
+            lines[r, j] = values(poly, place)[0][0]
+    load = np.zeros(len(table.names))
+    for i, value in table.load.items():
+        load[i] += float(value)
+    for (i, j), value in table.stiffness.items():
+        load[i] -= float(value) * place[0, j, 0]
+    scale = np.abs(lines).max(axis=1)
+    multipliers = np.linalg.lstsq((lines / scale[:, None]).T, -load, rcond=1e-12)[0] / scale if len(scale) else scale
+    largest = float(np.max(np.abs(load), initial=0.0))
+    for limit in measures.limits:
+        if limit.length is not None and not values(limit.length, place)[0][0] > 0.0:
+            return False
+        if limit.force is not None:
+            force = measures.forces[limit.force]
+            total = sum(values(poly, place)[0][0] * multipliers[row] for row, poly in force.terms)
+            if total < -1e-9 * largest:
+                return False
+    return True
+
+
+def _described(
+    found: Described,
+    small: Reduced,
+    table: Table,
+    units: Units,
+    dense: _Dense,
+    q: Floats,
+    multipliers: Floats,
+) -> Equilibrium:
+    place = _expanded(small, units, q)[0, :, 0]
+    frames = found.measures.coordinates.frames
+    positions = {name: tuple(float(place[i]) for i in frame.position) for name, frame in frames.items()}
+    angles = {}
+    for name, frame in frames.items():
+        if frame.direction is not None:
+            c, s = frame.direction
+            angles[name] = float(np.arctan2(place[s], place[c]))
+        elif frame.turn is not None:
+            angles[name] = float(place[frame.turn])
+    left = dense.load - dense.stiffness @ q + dense.jacobian(q).T @ multipliers
+    terms = np.abs(dense.load).max(initial=0.0) + np.abs(dense.stiffness @ q).max(initial=0.0)
+    modes, stable = _small_motion(dense, q, multipliers)
+    rate = two_to(-units.time)
+    shown = tuple((float(w * rate), float(g * rate)) for w, g in modes)
+    return Equilibrium(positions, angles, stable, shown, float(np.abs(left).max(initial=0.0) / terms) if terms else 0.0)
+
+
+def _small_motion(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[list[tuple[float, float]], bool | None]:
+    """Return (frequency, growth rate) of the small motions near an equilibrium, and whether it is stable."""
+    n, m = len(q), len(multipliers)
+    z = null_space(dense.jacobian(q)) if m else np.eye(n)
+    if not z.shape[1]:
+        return [], True
+    mass = z.T @ dense.mass @ z
+    damping = z.T @ dense.damping_at(q) @ z
+    stiffness = z.T @ (dense.stiffness - np.einsum("rji,r->ji", dense.slopes, multipliers)) @ z
+    size = len(mass)
+    inverse = np.linalg.inv(mass)
+    system = np.block([[np.zeros((size, size)), np.eye(size)], [-inverse @ stiffness, -inverse @ damping]])
+    symmetric = np.abs(stiffness - stiffness.T).max() <= _SMALL * np.abs(stiffness).max()
+    bound = np.sqrt(np.abs(inverse @ stiffness).max()) + np.abs(inverse @ damping).max()
+    if symmetric and np.abs(damping).max(initial=0.0) <= _SMALL * bound * np.abs(mass).max():
+        low = np.linalg.cholesky((mass + mass.T) / 2)
+        squares = np.linalg.eigvalsh(np.linalg.solve(low, np.linalg.solve(low, (stiffness + stiffness.T) / 2).T))
+        modes = [(float(np.sqrt(x)), 0.0) if x > 0 else (0.0, float(np.sqrt(-x))) for x in squares]
+        edge = _SMALL * float(np.abs(squares).max(initial=0.0))
+        lowest = float(squares.min())
+        return modes, True if lowest > edge else (False if lowest < -edge else None)
+    roots = np.linalg.eigvals(system)
+    modes = sorted((float(x.imag), float(x.real)) for x in roots if x.imag >= -_SMALL * bound)
+    growth = float(roots.real.max())
+    if growth > 1e-7 * bound:
+        return modes, False
+    if growth < -1e-7 * bound:
+        return modes, True
+    # Damping and gyroscopic terms cannot destroy a minimum of the potential.
+    convex = symmetric and float(np.linalg.eigvalsh((stiffness + stiffness.T) / 2).min()) > _SMALL * bound
+    return modes, True if convex else None

@@ -1,0 +1,127 @@
+"""What ends a scene: a string that would have to push, a length that reaches zero, a singular place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import copysign
+
+import numpy as np
+
+from core.multibody.answer import SceneEvent
+from core.multibody.measures import Limit
+from core.multibody.modes import Modes
+from core.multibody.numerical import Numerical
+from core.multibody.packed import Floats
+from core.multibody.polynomials import substituted
+from core.multibody.uniform import Uniform, first_zero
+from core.multibody.whole import Whole, values
+
+_SECTIONS = 33
+_NOISE = 2.0**-40
+"""Share of a force's size below which its sign is noise."""
+
+
+def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEvent | None:
+    """Return the first event between the start and `end`, which may be negative; None if there is none."""
+    found: list[SceneEvent] = []
+    for _, motion in whole.parts:
+        if isinstance(motion, Numerical):
+            reached = motion.reach(end)
+            if reached is not None:
+                found.append(SceneEvent("singular", "", reached, 1e-9 * abs(reached)))
+                end = reached
+    if not watched or end == 0.0:
+        return found[0] if found else None
+    lengths = [limit for limit in watched if limit.length is not None]
+    if all(isinstance(motion, Uniform) or motion.name == "rest" for _, motion in whole.parts):
+        for limit in lengths:
+            table = whole.reduced.table
+            length = substituted(limit.length or {}, whole.reduced.expressions)
+            root = first_zero(length, table, whole.gains, end < 0.0)
+            time = None if root is None else float(root)
+            if time is not None and abs(time) <= abs(end):
+                found.append(SceneEvent("singular", limit.name, time, 2.0**-52 * abs(time)))
+        watched = [limit for limit in watched if limit.force is not None]
+    watched = [limit for limit in watched if not _safe(whole, limit)]
+    if watched:
+        grid = _grid(whole, end)
+        curves = _curves(whole, watched, grid)
+        for number, limit in enumerate(watched):
+            event = _first_loss(whole, limit, grid, curves[number])
+            if event is not None:
+                found.append(event)
+    return min(found, key=lambda event: abs(event.time)) if found else None
+
+
+def _safe(whole: Whole, limit: Limit) -> bool:
+    """Return whether a length stays positive for all time, as the amplitudes of modes show."""
+    if limit.length is None:
+        return False
+    length = substituted(limit.length, whole.reduced.expressions)
+    for indices, motion in whole.parts:
+        if isinstance(motion, Modes) and {key[0] for key in length if key} <= set(indices):
+            number = {i: k for k, i in enumerate(indices)}
+            return motion.lowest({tuple(number[i] for i in key): x for key, x in length.items()}) > 0.0
+    return False
+
+
+def _grid(whole: Whole, end: float) -> Floats:
+    times = np.unique(np.abs(np.concatenate([motion.nodes(end) for _, motion in whole.parts] or [np.zeros(1)])))
+    return copysign(1.0, end) * times[times <= abs(end)]
+
+
+def _curves(whole: Whole, watched: Sequence[Limit], times: Floats, *, judged: bool = False) -> Floats:
+    """Return every watched quantity at the times, shape (limits, t), by the answer or by its judge."""
+    states = whole.states(times)
+    q, v = (states.q, states.v) if not judged or states.reference is None else states.reference
+    multipliers = whole.multipliers(q, v) if any(limit.force is not None for limit in watched) else np.zeros((0, 0))
+    found = np.empty((len(watched), len(times)))
+    for number, limit in enumerate(watched):
+        if limit.force is not None:
+            found[number] = whole.force(whole.measures.forces[limit.force], q, v, multipliers)[0]
+        else:
+            found[number] = values(limit.length or {}, q)[0]
+    return found
+
+
+def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> SceneEvent | None:
+    threshold = -_NOISE * float(np.max(np.abs(curve), initial=0.0))
+    lost = curve < threshold
+    if lost[0]:
+        return SceneEvent(limit.event, limit.name, 0.0, 0.0)
+    low, high = None, None
+    dips = np.zeros(len(curve), dtype=bool)
+    if len(curve) > 2:
+        # Where a parabola through three samples comes near zero, the curve itself is looked at more closely.
+        left, middle, right = curve[:-2], curve[1:-1], curve[2:]
+        bend = left - 2 * middle + right
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lowest = middle - (right - left) ** 2 / (8 * bend)
+        dips[1:-1] = (middle <= left) & (middle <= right) & (bend > 0) & (lowest < 0.25 * np.abs(left))
+    for i in range(1, len(curve)):
+        if lost[i]:
+            low, high = grid[i - 1], grid[i]
+            break
+        if dips[i]:
+            fine = np.linspace(grid[i - 1], grid[i + 1], 4 * _SECTIONS)
+            closer = _curves(whole, [limit], fine)[0] < threshold
+            if np.any(closer):
+                k = int(np.argmax(closer))
+                low, high = fine[k - 1], fine[k]
+                break
+    if low is None or high is None:
+        return None
+    for _ in range(14):
+        fine = np.linspace(low, high, _SECTIONS)
+        below = _curves(whole, [limit], fine)[0] < 0.0
+        k = int(np.argmax(below)) if np.any(below) else _SECTIONS - 1
+        if k == 0 or (fine[k - 1] == low and fine[k] == high):
+            break
+        low, high = fine[k - 1], fine[k]
+    around = np.array([low - (high - low) - 1e-7 * abs(high), high, high + (high - low) + 1e-7 * abs(high)])
+    curve = _curves(whole, [limit], around)[0]
+    judged = _curves(whole, [limit], around, judged=True)[0]
+    slope = (curve[2] - curve[0]) / (around[2] - around[0])
+    off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(np.abs(curve)))
+    error = off / abs(slope) if slope != 0.0 else abs(high)
+    return SceneEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))

@@ -1,0 +1,350 @@
+"""The language of described scenes: bodies, places, connections, as frozen dataclasses that hold what was written.
+
+Four nouns suffice. A *body* has mass, a *place* is a point of a body or of the ground, a *connection* ties places or
+turns, and a *question* (outputs, times) is put to the whole. Numbers are stored as they were written and read exactly
+by `core.multibody.numerals`; what they mean is checked where the table is built, with the path to the fault.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+from fractions import Fraction
+from types import MappingProxyType
+from typing import Any, ClassVar, Literal
+
+from core.errors import InvalidParameter, Path
+from core.multibody.numerals import NAME
+
+Number = int | float | str | Decimal | Fraction | Mapping[str, Any]
+"""A decimal, a formula over names in ``let``, or ``{"degrees": number}``."""
+
+Vector = Sequence[Number] | Mapping[str, Any]
+"""A list of two or three numbers, or in the plane ``{"polar": [distance, angle]}``."""
+
+Place = str | Vector
+"""``"body"`` (its centre of mass), ``"body.place"``, or a point of the ground."""
+
+MOST_BODIES = 100
+MOST_CONNECTIONS = 400
+GROUND = "ground"
+
+
+@dataclass(frozen=True)
+class SceneBody:
+    """What has mass: a particle, a rigid body of the plane or of space, a symmetric top.
+
+    Attributes
+    ----------
+    mass : number
+        In kg; 0 where something else moves with the body.
+    at : vector
+        Centre of mass (m).
+    velocity : vector, optional
+        Of the centre of mass (m/s); what is left out follows from the connections.
+    inertia : number, optional
+        In the plane: about the centre of mass (kg m^2). Without it the body is a particle.
+    moments : vector, optional
+        In space: principal moments about the centre of mass, in body axes (kg m^2).
+    tensor : three vectors, optional
+        In space: tensor of inertia about the centre of mass, in body axes (kg m^2).
+    body : Body of core.bodies, optional
+        In space, in place of `mass` and `moments`: its mass properties, about its centre of mass.
+    radius : number, optional
+        Of the rim on which it rolls and around which strings wind (m).
+    angle : number, optional
+        In the plane: of the body's first axis, counter-clockwise (rad).
+    axes : three vectors, optional
+        In space: directions of the body axes; the identity if left out.
+    angular_velocity : number or vector, optional
+        Rad/s; in space in body axes.
+    places : mapping of str to vector
+        Points of the body, in body axes from its centre of mass (m).
+    """
+
+    at: Vector
+    mass: Number | None = None
+    velocity: Vector | None = None
+    inertia: Number | None = None
+    moments: Vector | None = None
+    tensor: Sequence[Vector] | None = None
+    body: Any = None
+    radius: Number | None = None
+    angle: Number | None = None
+    axes: Sequence[Vector] | None = None
+    angular_velocity: Number | Vector | None = None
+    places: Mapping[str, Vector] = field(default_factory=lambda: MappingProxyType({}))
+
+
+@dataclass(frozen=True)
+class Connection:
+    """What ties bodies to one another and to the ground; `name` is by default its kind and number."""
+
+    kind: ClassVar[str]
+
+
+@dataclass(frozen=True)
+class Pin(Connection):
+    """Two places coincide; in space, with an `axis`, the bodies turn about it only."""
+
+    a: Place
+    b: Place
+    axis: Vector | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "pin"
+
+
+@dataclass(frozen=True)
+class BallJoint(Connection):
+    """Two places coincide, in space."""
+
+    a: Place
+    b: Place
+    name: str | None = None
+    kind: ClassVar[str] = "ball-joint"
+
+
+@dataclass(frozen=True)
+class Weld(Connection):
+    """Two bodies move as one; their position to each other is that of the start."""
+
+    a: Place
+    b: Place
+    name: str | None = None
+    kind: ClassVar[str] = "weld"
+
+
+@dataclass(frozen=True)
+class Slider(Connection):
+    """Place `a` stays on a line through place `b`, fixed in the body of `b`; the bodies do not turn to each other."""
+
+    a: Place
+    b: Place
+    slope: Number | None = None
+    direction: Vector | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "slider"
+
+
+@dataclass(frozen=True)
+class Rod(Connection):
+    """Two places stay at a distance: the one they start at, unless a length is given."""
+
+    a: Place
+    b: Place
+    length: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "rod"
+
+
+@dataclass(frozen=True)
+class Rolling(Connection):
+    """A rim rolls without slip: `place` on a face or circle `on`, or body `a` on body `b`, or `inside` it."""
+
+    place: str | None = None
+    on: Mapping[str, Any] | None = None
+    a: str | None = None
+    b: str | None = None
+    inside: bool = False
+    name: str | None = None
+    kind: ClassVar[str] = "rolling"
+
+
+@dataclass(frozen=True)
+class Track(Connection):
+    """A place stays on a curve or surface.
+
+    `on` is a line ``{at, slope}`` (in space ``{at, direction}``), a circle or sphere ``{at, radius}``, a parabola
+    ``{at, curvature, slope}`` (y = curvature x^2/2 from its vertex), in space a plane ``{at, normal}``.
+    """
+
+    place: Place
+    on: Mapping[str, Any]
+    name: str | None = None
+    kind: ClassVar[str] = "track"
+
+
+@dataclass(frozen=True)
+class String(Connection):
+    """An inextensible string through places and over drums, taut; a drum without slip divides it."""
+
+    through: Sequence[Place]
+    sides: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    slips: Sequence[str] = ()
+    length: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "string"
+
+
+@dataclass(frozen=True)
+class Spring(Connection):
+    """A linear spring between two places (N/m); unstretched at the start unless a rest length is given."""
+
+    a: Place
+    b: Place
+    stiffness: Number
+    rest_length: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "spring"
+
+
+@dataclass(frozen=True)
+class TorsionSpring(Connection):
+    """A linear spring between the turns of two bodies, or of one and the ground (N m/rad), in the plane."""
+
+    a: str
+    stiffness: Number
+    b: str = GROUND
+    rest_angle: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "torsion-spring"
+
+
+@dataclass(frozen=True)
+class Damper(Connection):
+    """A force against the rate of a distance (N s/m), or with `measure` "turn" against that of a turn (N m s)."""
+
+    a: Place
+    coefficient: Number
+    b: Place = GROUND
+    measure: Literal["length", "turn"] = "length"
+    name: str | None = None
+    kind: ClassVar[str] = "damper"
+
+
+@dataclass(frozen=True)
+class Motor(Connection):
+    """Body `a` turns at a given rate relative to body `b` or the ground (rad/s), in the plane."""
+
+    a: str
+    rate: Number
+    b: str = GROUND
+    name: str | None = None
+    kind: ClassVar[str] = "motor"
+
+
+@dataclass(frozen=True)
+class SpinningFrame(Connection):
+    """The scene is seen from a frame that spins (rad/s).
+
+    In space about the vertical through `at`. In the plane about the vertical in the plane, unless `about` is "normal".
+    """
+
+    rate: Number
+    at: Vector | None = None
+    about: Literal["vertical", "normal"] = "vertical"
+    name: str | None = None
+    kind: ClassVar[str] = "spinning-frame"
+
+
+@dataclass(frozen=True)
+class Force(Connection):
+    """A constant force on a place (N)."""
+
+    place: Place
+    force: Vector
+    name: str | None = None
+    kind: ClassVar[str] = "force"
+
+
+@dataclass(frozen=True)
+class Torque(Connection):
+    """A constant torque on a body (N m): a number in the plane, a vector in space."""
+
+    body: str
+    torque: Number | Vector
+    name: str | None = None
+    kind: ClassVar[str] = "torque"
+
+
+KINDS: Mapping[str, type[Any]] = MappingProxyType(
+    {
+        cls.kind: cls
+        for cls in (
+            Pin,
+            BallJoint,
+            Weld,
+            Slider,
+            Rod,
+            Rolling,
+            Track,
+            String,
+            Spring,
+            TorsionSpring,
+            Damper,
+            Motor,
+            SpinningFrame,
+            Force,
+            Torque,
+        )
+    }
+)
+"""The catalogue of connections."""
+
+NOT_YET = ("contact", "impulse")
+"""Kinds that the language foresees and that no model answers yet."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Bodies and what connects them.
+
+    Attributes
+    ----------
+    bodies : mapping of str to SceneBody
+    connections : sequence of Connection
+    gravity : vector, optional
+        Acceleration of free fall (m/s^2), of two or three components; it decides plane or space. None without one.
+    let : mapping of str to number
+        Named numbers that formulas may use.
+    numbers : {"decimals", "doubles"}
+        Whether 0.1 is the decimal or the double nearest to it.
+    """
+
+    bodies: Mapping[str, SceneBody]
+    connections: Sequence[Connection] = ()
+    gravity: Vector | None = None
+    let: Mapping[str, Number] = field(default_factory=lambda: MappingProxyType({}))
+    numbers: Literal["decimals", "doubles"] = "decimals"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.bodies, Mapping) or not self.bodies:
+            raise InvalidParameter("bodies", "name at least one body")
+        if len(self.bodies) > MOST_BODIES:
+            raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(self.bodies)}")
+        if isinstance(self.connections, (str, Mapping)) or not isinstance(self.connections, Sequence):
+            raise InvalidParameter("connections", "be a list")
+        if len(self.connections) > MOST_CONNECTIONS:
+            raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(self.connections)}")
+        for name, body in self.bodies.items():
+            check_name(name, ("bodies", str(name)[:80]))
+            if not isinstance(body, SceneBody):
+                raise InvalidParameter(("bodies", name), "be a body")
+            if not isinstance(body.places, Mapping):
+                raise InvalidParameter(("bodies", name, "places"), "be an object of names and vectors")
+            for place in body.places:
+                check_name(place, ("bodies", name, "places", str(place)[:80]))
+        for i, connection in enumerate(self.connections):
+            if not isinstance(connection, Connection):
+                raise InvalidParameter(("connections", i), "be a connection")
+        self.names()
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the connections: those given, else kind and number."""
+        found: dict[str, int] = {}
+        for i, connection in enumerate(self.connections):
+            given: Any = getattr(connection, "name", None)
+            if given is not None:
+                check_name(given, ("connections", i, "name"))
+            name = f"{connection.kind}-{i + 1}" if given is None else given
+            if name in found or name in self.bodies:
+                raise InvalidParameter(("connections", i, "name"), f'be a name of its own; "{name}" has another owner')
+            found[name] = i
+        return tuple(found)
+
+
+def check_name(name: object, path: Path) -> None:
+    """Raise `InvalidParameter` unless something may be called so."""
+    if not isinstance(name, str) or not NAME.fullmatch(name) or name == GROUND:
+        raise InvalidParameter(path, 'be called by letters, digits, "-" and "_", starting with a letter, not "ground"')

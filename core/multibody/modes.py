@@ -1,0 +1,181 @@
+"""Linear equations with constant coefficients: q'' = a - A q - C q', in closed form by their characteristic roots.
+
+With x = (q, q') and an inhomogeneous part, x(t) = exp(At) x_0. The roots are enclosed as balls; where they are distinct
+the exponential is a sum over them, else it is the exponential of the matrix, both with proven error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from flint import acb, acb_mat, arb, arb_mat
+
+from core.balls import precision
+from core.errors import BudgetExceeded
+from core.multibody.motion import States
+from core.multibody.packed import Floats, pair
+from core.multibody.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
+from core.multibody.table import Table
+
+MOST_NODES = 20000
+"""Times at which events may be looked for."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One pair of characteristic roots, or a real one.
+
+    Attributes
+    ----------
+    frequency : ball
+        Angular frequency (rad/s), zero where nothing oscillates.
+    growth : ball
+        Growth rate (1/s), negative where it decays.
+    """
+
+    frequency: Ball
+    growth: Ball
+
+
+@dataclass(frozen=True)
+class Modes:
+    """A linear part.
+
+    Attributes
+    ----------
+    matrix : list of lists of balls
+        Of the first-order system of (q, v, 1).
+    """
+
+    table: Table
+    matrix: list[list[Ball]]
+    name: str = "modes"
+    why: str = "every measure is linear and the forces are linear in places and velocities"
+    how: str = "closed form"
+    _cache: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, table: Table, chosen: Sequence[int]) -> Modes:
+        """Return the linear system of a table with constant rows."""
+        n, m = len(table.names), len(chosen)
+        entries = [[ZERO] * (n + m) for _ in range(n + m)]
+        for (i, j), value in table.mass.items():
+            entries[i][j] = entries[j][i] = value
+        for k, r in enumerate(chosen):
+            for j, value in table.rows[r].line(table.q).items():
+                entries[j][n + k], entries[n + k][j] = -value, value
+        # Columns: the response to K, to D and to the constant load, all at once.
+        right = [[ZERO] * (2 * n + 1) for _ in range(n + m)]
+        for (i, j), value in table.stiffness.items():
+            right[i][j] = right[i][j] - value
+        for (i, j), value in table.damping.items():
+            right[i][n + j] = right[i][n + j] - value
+        for i, value in table.load.items():
+            right[i][2 * n] = value
+        response = arb_mat(entries).solve(arb_mat(right)).tolist()[:n]
+        size = 2 * n + 1
+        matrix = [[ONE if j == n + i else ZERO for j in range(size)] for i in range(n)]
+        matrix.extend([list(row) for row in response])
+        matrix.append([ZERO] * size)
+        return cls(table, matrix)
+
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """The characteristic roots of the motion about its equilibrium, slowest first; () where they are not found."""
+        n = len(self.table.names)
+        inner = acb_mat([row[: 2 * n] for row in self.matrix[: 2 * n]])
+        try:
+            roots = inner.eig(multiple=True)
+        except ValueError:
+            return ()
+        found = []
+        for root in roots:
+            real = ZERO if is_zero(root.real) else root.real
+            imaginary = ZERO if is_zero(root.imag) else root.imag
+            if imaginary < 0 or (imaginary == 0 and real == 0):
+                continue
+            found.append(Mode(imaginary, real))
+        return tuple(sorted(found, key=lambda mode: (float(mode.frequency), float(mode.growth))))
+
+    @property
+    def period(self) -> Ball | None:
+        """The period, where a single undamped mode is all that moves."""
+        modes = self.modes
+        if len(modes) == 1 and modes[0].growth == 0 and modes[0].frequency > 0 and self._bounded:
+            return 2 * arb.pi() / modes[0].frequency
+        return None
+
+    @property
+    def _bounded(self) -> bool:
+        return 2 * len(self.modes) == 2 * len(self.table.names)
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the states, enclosed by balls and rounded to pairs."""
+        n = len(self.table.names)
+        start = [*self.table.q, *self.table.v, ONE]
+        q, v = np.empty((len(times), n, 2)), np.empty((len(times), n, 2))
+        errors = np.empty((len(times), 2 * n))
+        largest = float(np.max(np.abs(times), initial=0.0))
+        size = max((float(abs(x)) for row in self.matrix for x in row), default=1.0)
+        growth = math.log2(1.0 + size * largest) if size * largest < 1e300 else 1000.0
+        with precision(min(BITS, 160 + int(growth))):
+            terms = self._terms(start)
+            for s, t in enumerate(times):
+                values = self._at(arb(float(t)), start, terms)
+                for i in range(n):
+                    q[s, i], v[s, i] = pair(values[i], 0), pair(values[n + i], 0)
+                errors[s] = [float(x.rad()) + 2.0**-104 * abs(float(x)) for x in values[: 2 * n]]
+        return States(q, v, errors[:, :n], errors[:, n:])
+
+    def _terms(self, start: list[Ball]) -> Any:
+        """Return roots and their vector coefficients, or None where roots coincide."""
+        try:
+            roots, vectors = acb_mat(self.matrix).eig(right=True)
+            weights = vectors.solve(acb_mat([[acb(x)] for x in start])).entries()
+        except (ValueError, ZeroDivisionError):
+            return None
+        table = vectors.tolist()
+        columns = [[table[i][k] * weights[k] for i in range(len(start))] for k in range(len(roots))]
+        if any(x.rad() > 1e-20 * (1 + abs(x)) for column in columns for z in column for x in (z.real, z.imag)):
+            return None
+        return [(root, column) for root, column in zip(roots, columns, strict=True)]
+
+    def _at(self, t: Ball, start: list[Ball], terms: Any) -> list[Ball]:
+        if terms is None:
+            return (arb_mat(self.matrix) * t).exp().__mul__(arb_mat([[x] for x in start])).entries()  # type: ignore[no-any-return]
+        total = [acb(0)] * len(start)
+        for root, column in terms:
+            factor = (root * t).exp()
+            total = [x + factor * y for x, y in zip(total, column, strict=True)]
+        return [x.real for x in total]
+
+    def nodes(self, end: float) -> Floats:
+        """Return times eight to the shortest period."""
+        fastest = max((float(abs(acb(mode.growth, mode.frequency))) for mode in self.modes), default=1.0)
+        count = abs(end) * fastest * 2.0
+        if count > MOST_NODES:
+            raise BudgetExceeded(
+                "looks for events",
+                int(min(count, 1e18)),
+                MOST_NODES,
+                path=("times",),
+                remedy="ask for a shorter time; lengths or tensions may reach zero on the way",
+            )
+        return np.linspace(0.0, end, 33 + int(count))
+
+    def lowest(self, poly: Poly) -> float:
+        """Return what an affine polynomial of the coordinates is never below, minus infinity without a bound."""
+        start = [*self.table.q, *self.table.v, ONE]
+        terms = self._terms(start)
+        if terms is None or any(root.real > 0 for root, _ in terms if not is_zero(root.real)):
+            return -math.inf
+        total = entry(poly, ())
+        for root, column in terms:
+            part = sum((x * column[key[0]] for key, x in poly.items() if key), acb(0))
+            total = total + part.real if 0 in root.real and 0 in root.imag else total - abs(part)
+        return float(total.lower())

@@ -1,0 +1,251 @@
+"""Numbers as a client writes them, read exactly: decimal text, formulas over names, degrees.
+
+A decimal is the rational number that its digits say, never the double nearest to it: 0.9 + 0.1 = 1 holds, so that what
+is exactly dependent or parallel in a description is found to be. Formulas are evaluated in balls by a small recursive
+grammar with limits on length, depth and digits; nothing is ever evaluated as code.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite
+from typing import Any, Literal
+
+from flint import arb, fmpq
+
+from core.errors import InvalidParameter, Path
+from core.multibody.polynomials import Ball, is_zero
+
+LONGEST_FORMULA = 200
+"""Characters of a number that is given as text."""
+DEEPEST = 20
+"""Parentheses and functions inside one another."""
+LARGEST_EXPONENT = 400
+MOST_NAMES = 100
+
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
+"""What bodies, places, connections and numbers may be called."""
+
+_TOKEN = re.compile(
+    r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+*/()]))\s*", re.ASCII
+)
+_FUNCTIONS = ("sqrt", "sin", "cos")
+
+
+@dataclass(frozen=True)
+class Numerals:
+    """Evaluates numbers, with the names that the description introduces.
+
+    Attributes
+    ----------
+    let : mapping of str to ball
+        Named numbers.
+    doubles : bool
+        Whether a number that arrives as a double is that double exactly, and not the shortest decimal that reads as it.
+    """
+
+    let: Mapping[str, Ball]
+    doubles: bool = False
+
+    @classmethod
+    def of(cls, let: Any, numbers: Literal["decimals", "doubles"] = "decimals") -> Numerals:
+        """Evaluate a list of definitions, each of which may use those before it.
+
+        Raises
+        ------
+        InvalidParameter
+            For a name that is not plain, or a formula that cannot be evaluated.
+        """
+        if numbers not in ("decimals", "doubles"):
+            raise InvalidParameter("numbers", 'be "decimals" or "doubles"')
+        if not isinstance(let, Mapping):
+            raise InvalidParameter("let", "be an object of names and numbers")
+        if len(let) > MOST_NAMES:
+            raise InvalidParameter("let", f"have at most {MOST_NAMES} names, not {len(let)}")
+        known: dict[str, Ball] = {}
+        for name, number in let.items():
+            plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
+            if not plain or name in (*_FUNCTIONS, "pi"):
+                raise InvalidParameter(("let", str(name)[:80]), "be a name of letters, digits and _, and no function")
+            known[name] = cls(known, numbers == "doubles").number(number, ("let", name))
+        return cls(known, numbers == "doubles")
+
+    def number(self, value: Any, path: Path) -> Ball:
+        """Return a number as a ball.
+
+        Raises
+        ------
+        InvalidParameter
+            If it is none, not finite, or too long, or divides by zero.
+        """
+        if isinstance(value, str):
+            return _Formula(value, self.let, path).value()
+        if isinstance(value, Mapping):
+            if set(value) != {"degrees"}:
+                raise InvalidParameter(path, 'be a number, a formula or {"degrees": number}')
+            inner = value["degrees"]
+            if isinstance(inner, Mapping):
+                raise InvalidParameter((*path, "degrees"), "be a number or a formula")
+            return self.number(inner, (*path, "degrees")) * arb.pi() / 180
+        if isinstance(value, float) and isfinite(value) and not self.doubles:
+            return _decimal(repr(value))
+        return _ball(_exact(value, path))
+
+    def angle(self, value: Any, path: Path) -> tuple[Ball, Ball]:
+        """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""
+        if isinstance(value, Mapping) and set(value) == {"degrees"} and not isinstance(value["degrees"], Mapping):
+            turns = self.number(value["degrees"], (*path, "degrees")) / 180
+            sine, cosine = turns.sin_cos_pi()
+            return cosine, sine
+        sine, cosine = self.number(value, path).sin_cos()
+        return cosine, sine
+
+    def vector(self, value: Any, path: Path, dimension: int) -> tuple[Ball, ...]:
+        """Return a vector, in the plane also as ``{"polar": [r, angle]}``."""
+        if isinstance(value, Mapping) and set(value) == {"polar"} and dimension == 2:
+            polar = value["polar"]
+            if isinstance(polar, str) or not isinstance(polar, Sequence) or len(polar) != 2:
+                raise InvalidParameter((*path, "polar"), "be a distance and an angle")
+            r = self.number(polar[0], (*path, "polar", 0))
+            cosine, sine = self.angle(polar[1], (*path, "polar", 1))
+            return r * cosine, r * sine
+        if isinstance(value, (str, Mapping)) or not isinstance(value, Sequence):
+            raise InvalidParameter(path, f"be a list of {dimension} numbers")
+        if len(value) != dimension:
+            raise InvalidParameter(path, f"have {dimension} entries, not {len(value)}")
+        return tuple(self.number(entry, (*path, i)) for i, entry in enumerate(value))
+
+
+def _exact(value: Any, path: Path) -> Fraction:
+    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, Fraction)):
+        raise InvalidParameter(path, "be a number")
+    if isinstance(value, Fraction):
+        return value
+    if isinstance(value, int):
+        if value.bit_length() > 4 * LARGEST_EXPONENT:
+            raise InvalidParameter(path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
+        return Fraction(value)
+    if not isfinite(value):
+        raise InvalidParameter(path, "be finite")
+    if isinstance(value, float):
+        return Fraction(value)
+    if abs(value.adjusted()) > LARGEST_EXPONENT or len(value.as_tuple().digits) > LONGEST_FORMULA:
+        raise InvalidParameter(path, f"have at most {LONGEST_FORMULA} digits and a moderate exponent")
+    return Fraction(value)
+
+
+def _ball(value: Fraction) -> Ball:
+    if value.denominator == 1:
+        return arb(value.numerator)
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _decimal(text: str) -> Ball:
+    """Return the rational number of decimal digits, in one rounding."""
+    digits, _, exponent = text.lower().partition("e")
+    whole, _, part = digits.partition(".")
+    power = int(exponent or 0) - len(part)
+    number = int(whole + part)
+    return arb(number * 10**power) if power >= 0 else arb(fmpq(number, 10**-power))
+
+
+class _Formula:
+    """A recursive descent over ``sum = product {+- product}``, ``product = factor {*/ factor}``."""
+
+    def __init__(self, text: str, let: Mapping[str, Ball], path: Path) -> None:
+        if len(text) > LONGEST_FORMULA:
+            raise InvalidParameter(path, f"have at most {LONGEST_FORMULA} characters, not {len(text)}")
+        self.path, self.let, self.depth = path, let, 0
+        self.tokens: list[tuple[str, str, str]] = []
+        end = 0
+        while end < len(text):
+            match = _TOKEN.match(text, end)
+            if match is None:
+                raise InvalidParameter(path, "be a number or a formula of + - * / ( ) sqrt sin cos pi and names in let")
+            self.tokens.append((match[1] or "", match[2] or "", match[3] or ""))
+            end = match.end()
+        self.at = 0
+
+    def value(self) -> Ball:
+        total = self._sum()
+        if self.at < len(self.tokens):
+            raise InvalidParameter(self.path, "be one formula: something follows its end")
+        if not total.is_finite():
+            raise InvalidParameter(self.path, "be finite")
+        return total
+
+    def _next(self) -> tuple[str, str, str]:
+        return self.tokens[self.at] if self.at < len(self.tokens) else ("", "", "")
+
+    def _take(self, *signs: str) -> str:
+        sign = self._next()[2]
+        if sign and sign in signs:
+            self.at += 1
+            return sign
+        return ""
+
+    def _sum(self) -> Ball:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise InvalidParameter(self.path, f"be nested at most {DEEPEST} deep")
+        total = self._product()
+        while sign := self._take("+", "-"):
+            term = self._product()
+            total = total + term if sign == "+" else total - term
+        self.depth -= 1
+        return total
+
+    def _product(self) -> Ball:
+        total = self._factor()
+        while sign := self._take("*", "/"):
+            factor = self._factor()
+            if sign == "/" and is_zero(factor):
+                raise InvalidParameter(self.path, "divide by something other than zero")
+            total = total * factor if sign == "*" else total / factor
+        return total
+
+    def _factor(self) -> Ball:
+        if sign := self._take("+", "-"):
+            self.depth += 1
+            if self.depth > DEEPEST:
+                raise InvalidParameter(self.path, f"be nested at most {DEEPEST} deep")
+            factor = self._factor()
+            self.depth -= 1
+            return -factor if sign == "-" else factor
+        digits, name, _ = self._next()
+        if digits:
+            self.at += 1
+            exponent = re.search(r"[eE]([+-]?\d+)$", digits)
+            if exponent and abs(int(exponent[1])) > LARGEST_EXPONENT:
+                raise InvalidParameter(
+                    self.path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}"
+                )
+            return _decimal(digits)
+        if name in _FUNCTIONS and self.at + 1 < len(self.tokens) and self.tokens[self.at + 1][2] == "(":
+            self.at += 1
+            argument = self._parenthesis()
+            if name == "sqrt":
+                if argument < 0:
+                    raise InvalidParameter(self.path, "take the root of something that is not negative")
+                return arb(0) if is_zero(argument) else argument.sqrt()
+            return argument.sin() if name == "sin" else argument.cos()
+        if name:
+            self.at += 1
+            if name == "pi":
+                return arb.pi()
+            if name not in self.let:
+                raise InvalidParameter(self.path, f'use names that stand in let before it; "{name[:64]}" does not')
+            return self.let[name]
+        return self._parenthesis()
+
+    def _parenthesis(self) -> Ball:
+        if not self._take("("):
+            raise InvalidParameter(self.path, "be a complete formula")
+        total = self._sum()
+        if not self._take(")"):
+            raise InvalidParameter(self.path, "close every parenthesis")
+        return total

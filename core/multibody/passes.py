@@ -1,0 +1,292 @@
+"""Passes that make a table smaller without changing its motion, to a fixed point, each saying what it found.
+
+*Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
+leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a difference of two squares is
+the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants; this pass
+serves the motion from the given start only, never questions about its surroundings.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from core.multibody.dynamics import weightless
+from core.multibody.polynomials import (
+    ONE,
+    ZERO,
+    Ball,
+    Poly,
+    combined,
+    constant,
+    degree,
+    entry,
+    evaluated,
+    is_zero,
+    product,
+    substituted,
+    variables,
+)
+from core.multibody.rank import Elimination
+from core.multibody.table import Row, Table, identity
+
+_MOST_FACTORED = 8
+"""Coordinates in a measure for which a factor is looked for."""
+
+
+@dataclass
+class Reduced:
+    """A smaller table, and the coordinates of the larger one in terms of it.
+
+    Attributes
+    ----------
+    expressions : list of affine polynomials
+        Every coordinate of the original table.
+    pinned : list of str
+        Coordinates found never to move.
+    steps : list of str
+        What each pass did.
+    """
+
+    table: Table
+    expressions: list[Poly]
+    pinned: list[str] = field(default_factory=list)
+    steps: list[str] = field(default_factory=list)
+
+
+def reduced(table: Table, *, pinning: bool) -> Reduced:
+    """Apply the passes until none of them finds anything."""
+    state = Reduced(replace(table, rows=list(table.rows)), identity(len(table.names)))
+    while True:
+        changed = _integrate(state.table)
+        changed = _combine(state) or changed
+        changed = _factor(state) or changed
+        changed = _linear(state) or changed
+        if not changed and pinning:
+            changed = _pin(state)
+        if not changed:
+            return state
+
+
+def _integrate(table: Table) -> bool:
+    """Turn rates in constant proportion that stay zero into measures."""
+    changed = False
+    for number, row in enumerate(table.rows):
+        if row.measure is None and row.rate == 0 and row.constant:
+            measure: Poly = {(j,): poly[()] for j, poly in row.rates.items()}
+            measure = combined((ONE, measure), (-evaluated(measure, table.q), constant(ONE)))
+            table.rows[number] = Row.held(row.name, measure)
+            changed = True
+    return changed
+
+
+def _combine(state: Reduced) -> bool:
+    """Find combinations of measures without quadratic terms, and drop measures that follow from others."""
+    leading: dict[tuple[int, ...], Poly] = {}
+    rows: list[Row] = []
+    changed = False
+    for row in state.table.rows:
+        if row.measure is None or degree(row.measure) < 2:
+            rows.append(row)
+            continue
+        rest = row.measure
+        while True:
+            hit = next((key for key in rest if len(key) == 2 and key in leading), None)
+            if hit is None:
+                break
+            rest = combined((ONE, rest), (-rest[hit], leading[hit]))
+        square = [key for key in rest if len(key) == 2]
+        if square:
+            pivot = max(square, key=lambda key: abs(float(rest[key].mid())))
+            scaled = combined((1 / rest[pivot], rest))
+            for key, other in leading.items():
+                if pivot in other:
+                    leading[key] = combined((ONE, other), (-other[pivot], scaled))
+            leading[pivot] = scaled
+            rows.append(row)
+        else:
+            changed = True
+            if variables([rest]):
+                rows.append(Row.held(row.name, rest))
+                state.steps.append(f"{row.name}: linear beside other measures")
+            else:
+                state.steps.append(f"{row.name}: follows from other measures")
+    state.table.rows = rows
+    return changed
+
+
+def _factor(state: Reduced) -> bool:
+    """Replace a measure that is a product by the factor that vanishes."""
+    changed = False
+    for number, row in enumerate(state.table.rows):
+        if row.measure is None or degree(row.measure) < 2 or len(variables([row.measure])) > _MOST_FACTORED:
+            continue
+        factors = _factors(row.measure)
+        if factors is None:
+            continue
+        values = [evaluated(factor, state.table.q) for factor in factors]
+        zero = [i for i in (0, 1) if is_zero(values[i])]
+        if len(zero) == 1:
+            state.table.rows[number] = Row.held(row.name, factors[zero[0]])
+            state.steps.append(f"{row.name}: a product of which one factor vanishes")
+            changed = True
+    return changed
+
+
+def _factors(measure: Poly) -> tuple[Poly, Poly] | None:
+    """Return two affine factors of a quadratic, up to a constant, or None."""
+    first = _completed(measure)
+    if first is None:
+        return None
+    base, rest = first
+    # measure ~ base^2 + rest
+    negative = combined((-ONE, rest))
+    if degree(negative) == 0:
+        if not negative[()] > 0:
+            return None
+        root = constant(negative[()].sqrt())
+    else:
+        pivot = next((key for key in negative if len(key) == 2 and key[0] == key[1]), None)
+        if pivot is None or not negative[pivot] > 0:
+            return None
+        second = _completed(negative, pivot[0])
+        if second is None or second[1]:
+            return None
+        root = combined((negative[pivot].sqrt(), second[0]))
+    return combined((ONE, base), (ONE, root)), combined((ONE, base), (-ONE, root))
+
+
+def _completed(poly: Poly, index: int | None = None) -> tuple[Poly, Poly] | None:
+    """Write a quadratic over its coefficient of a square as (q_i + affine)^2 + rest."""
+    if index is None:
+        square = next((key for key in poly if len(key) == 2 and key[0] == key[1]), None)
+        if square is None:
+            return None
+        index = square[0]
+    lead = poly[(index, index)]
+    base: Poly = {(index,): ONE}
+    for key, value in poly.items():
+        if index in key and key != (index, index):
+            other = tuple(i for i in key if i != index)
+            base[other] = value / (2 * lead)
+    return base, combined((1 / lead, poly), (-ONE, product(base, base)))
+
+
+def _linear(state: Reduced) -> bool:
+    """Give one coordinate away for every measure of degree one."""
+    table = state.table
+    linear = [row for row in table.rows if row.measure is not None and degree(row.measure) <= 1]
+    if not linear:
+        return False
+    elimination = Elimination([_readiness(table, i) for i in range(len(table.names))])
+    for row in linear:
+        measure = row.measure or {}
+        line = {key[0]: value for key, value in measure.items() if key}
+        if elimination.add(line, -entry(measure, ())) is not None:
+            state.steps.append(f"{row.name}: follows from other measures")
+    table.rows = [row for row in table.rows if row.measure is None or degree(row.measure) > 1]
+    expressions: list[Poly | None] = [None] * len(table.names)
+    for i, (line, value) in elimination.pivots.items():
+        expression: Poly = {(k,): -y for k, y in line.items()}
+        if value != 0:
+            expression[()] = value
+        expressions[i] = expression
+    _substitute(state, expressions)
+    return True
+
+
+def _readiness(table: Table, i: int) -> int:
+    """Return how readily a coordinate is given away: lengths and positions first, time never."""
+    if table.units[i] == "m" and (i, i) not in table.mass:
+        return 6
+    return {"s": 0, "1": 1, "rad": 2, "m": 3}[table.units[i]]
+
+
+def _substitute(state: Reduced, expressions: list[Poly | None]) -> None:
+    """Replace coordinates by expressions in those that have none."""
+    fresh = [i for i, expression in enumerate(expressions) if expression is None]
+    number = {i: k for k, i in enumerate(fresh)}
+    final: list[Poly] = []
+    for i, expression in enumerate(expressions):
+        if expression is None:
+            final.append({(number[i],): ONE})
+        else:
+            final.append({tuple(number[k] for k in key): value for key, value in expression.items()})
+    state.table = state.table.changed(final, fresh)
+    state.table.rows = [row for row in state.table.rows if row.rates or (row.measure is None and row.rate != 0)]
+    state.expressions = [substituted(expression, final) for expression in state.expressions]
+
+
+def _pin(state: Reduced) -> bool:
+    """Make constants of coordinates at rest whose equations vanish wherever the others are."""
+    table = state.table
+    pinned = {i for i in range(len(table.names)) if is_zero(table.v[i]) and table.units[i] != "s"}
+    coupled: dict[int, list[tuple[int, ...]]] = {i: [] for i in pinned}
+    for part in (table.mass, table.stiffness, table.damping, table.gyration):
+        keys: list[tuple[int, ...]] = list(part)
+        for key in keys:
+            if key[0] in coupled:
+                coupled[key[0]].append(key)
+            if part is table.mass and key[1] in coupled and key[0] != key[1]:
+                coupled[key[1]].append(key)
+    while pinned:
+        live = [
+            row
+            for row in table.rows
+            if any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
+        ]
+        leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
+        if not leave:
+            break
+        pinned -= leave
+    if not pinned:
+        return False
+    # A weightless pulley between strings stays where they pull it; what nothing touches at all is nowhere.
+    touched = {j for row in table.rows for j in row.line(table.q)} | {i for key in table.mass for i in key}
+    if pinned - touched:
+        raise weightless(table, pinned - touched, ())
+    state.pinned.extend(table.names[i] for i in sorted(pinned))
+    state.steps.append(f"nothing ever moves {', '.join(table.names[i] for i in sorted(pinned))}")
+    expressions: list[Poly | None] = [None] * len(table.names)
+    for i in pinned:
+        expressions[i] = constant(table.q[i])
+    _substitute(state, expressions)
+    return True
+
+
+def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
+    """Return whether an affine polynomial is zero whatever the coordinates that are not pinned."""
+    total: Ball = ZERO
+    for key, value in poly.items():
+        if not key:
+            total = total + value
+        elif key[0] in pinned:
+            total = total + value * table.q[key[0]]
+        else:
+            return False
+    return is_zero(total)
+
+
+def _stays(table: Table, i: int, pinned: set[int], coupled: list[tuple[int, ...]], live: list[Row]) -> bool:
+    """Return whether the equation of a pinned coordinate vanishes, the multipliers of idle rows being zero."""
+    for row in live:
+        if i in row.rates and not _vanishes(table, row.rates[i], pinned):
+            return False
+    push: Ball = entry(table.load, i)
+    carried: dict[int, Ball] = {}
+    for key in coupled:
+        if len(key) == 3:
+            _, j, k = key
+            if k not in pinned:
+                if j not in pinned:
+                    return False
+                carried[k] = entry(carried, k) + table.gyration[(i, j, k)] * table.q[j]
+            continue
+        other = key[1] if key[0] == i else key[0]
+        if other in pinned:
+            continue
+        if key in table.mass or (key in table.stiffness) or (key in table.damping):
+            return False
+    for (row_, j), value in table.stiffness.items():
+        if row_ == i:
+            push = push - value * table.q[j]
+    return is_zero(push) and all(is_zero(value) for value in carried.values())

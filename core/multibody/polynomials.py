@@ -1,0 +1,152 @@
+"""Polynomials of degree at most two in a scene's coordinates, with coefficients in balls.
+
+A polynomial is a dictionary from monomials to coefficients: ``()`` is the constant, ``(i,)`` the coordinate i,
+``(i, j)`` with i <= j a product. A coefficient that contains zero is zero: the radius of a ball is its
+own measure of rounding, so no threshold of ours enters, whatever the units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from flint import arb
+
+Ball = Any
+"""A real number of `flint`, midpoint and radius; the package carries no types."""
+
+Poly = dict[tuple[int, ...], Ball]
+
+ZERO: Ball = arb(0)
+ONE: Ball = arb(1)
+BITS = 320
+"""Working precision of the set-up: differences of 1e-90 of the terms are taken as zero."""
+
+
+def entry(numbers: Mapping[Any, Ball], key: Any) -> Ball:
+    """Return a number of a sparse array, zero where it has none."""
+    found = numbers.get(key)
+    return ZERO if found is None else found
+
+
+def is_zero(ball: Ball) -> bool:
+    """Return whether a ball cannot be told from zero."""
+    return 0 in ball
+
+
+def constant(value: Ball) -> Poly:
+    """Return a constant."""
+    return {} if value == 0 else {(): value}
+
+
+def coordinate(index: int) -> Poly:
+    """Return one of the coordinates."""
+    return {(index,): ONE}
+
+
+def combined(*parts: tuple[Ball, Poly]) -> Poly:
+    """Return the sum of polynomials, each times a number; terms that cancel are dropped."""
+    total: Poly = {}
+    for factor, poly in parts:
+        for key, value in poly.items():
+            term = factor * value
+            old = total.get(key)
+            total[key] = term if old is None else old + term
+    return {key: value for key, value in total.items() if 0 not in value}
+
+
+def difference(first: Poly, second: Poly) -> Poly:
+    """Return first - second."""
+    return combined((ONE, first), (-ONE, second))
+
+
+def product(first: Poly, second: Poly) -> Poly:
+    """Return the product of two polynomials whose degrees add up to two at most."""
+    total: Poly = {}
+    for a, x in first.items():
+        for b, y in second.items():
+            key = a + b
+            if len(key) == 2 and key[0] > key[1]:
+                key = (key[1], key[0])
+            assert len(key) <= 2, "a product of degree three is no part of a table"
+            old = total.get(key)
+            total[key] = x * y if old is None else old + x * y
+    return {key: value for key, value in total.items() if 0 not in value}
+
+
+def dot(first: Sequence[Poly], second: Sequence[Poly]) -> Poly:
+    """Return the scalar product of two vectors of polynomials."""
+    return combined(*((ONE, product(a, b)) for a, b in zip(first, second, strict=True)))
+
+
+def gradient(poly: Poly) -> dict[int, Poly]:
+    """Return the derivatives with respect to the coordinates that occur."""
+    found: dict[int, Poly] = {}
+    for key, value in poly.items():
+        if len(key) == 1:
+            _add(found.setdefault(key[0], {}), (), value)
+        elif len(key) == 2:
+            i, j = key
+            if i == j:
+                _add(found.setdefault(i, {}), (i,), 2 * value)
+            else:
+                _add(found.setdefault(i, {}), (j,), value)
+                _add(found.setdefault(j, {}), (i,), value)
+    return found
+
+
+def evaluated(poly: Poly, at: Sequence[Ball] | Mapping[int, Ball]) -> Ball:
+    """Return the value of a polynomial at given coordinates."""
+    total = ZERO
+    for key, value in poly.items():
+        if len(key) == 0:
+            total = total + value
+        elif len(key) == 1:
+            total = total + value * at[key[0]]
+        else:
+            total = total + value * at[key[0]] * at[key[1]]
+    return total
+
+
+def size(poly: Poly, at: Sequence[Ball]) -> Ball:
+    """Return the sum of the magnitudes of the terms: what a residual is compared with."""
+    total = ZERO
+    for key, value in poly.items():
+        term = value
+        for i in key:
+            term = term * at[i]
+        total = total + abs(term)
+    return total
+
+
+def degree(poly: Poly) -> int:
+    """Return the degree, -1 of the zero polynomial."""
+    return max((len(key) for key in poly), default=-1)
+
+
+def substituted(poly: Poly, expressions: Sequence[Poly]) -> Poly:
+    """Return a polynomial with every coordinate replaced by an affine expression."""
+    total: Poly = {}
+    for key, value in poly.items():
+        if len(key) == 0:
+            _add(total, (), value)
+        elif len(key) == 1:
+            for a, x in expressions[key[0]].items():
+                _add(total, a, value * x)
+        else:
+            for a, x in expressions[key[0]].items():
+                scaled = value * x
+                for b, y in expressions[key[1]].items():
+                    pair = a + b
+                    _add(total, (pair[1], pair[0]) if len(pair) == 2 and pair[0] > pair[1] else pair, scaled * y)
+    return {key: value for key, value in total.items() if 0 not in value}
+
+
+def variables(polys: Iterable[Poly]) -> set[int]:
+    """Return the coordinates that occur."""
+    return {i for poly in polys for key in poly for i in key}
+
+
+def _add(total: Poly, key: tuple[int, ...], value: Ball) -> None:
+    old = total.get(key)
+    total[key] = value if old is None else old + value

@@ -1,0 +1,61 @@
+"""From JSON to the dataclasses of the language: fields that exist, kinds that exist, nothing missing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, fields
+from typing import Any
+
+from core.errors import InvalidParameter, Path
+from core.multibody.language import KINDS, MOST_BODIES, MOST_CONNECTIONS, NOT_YET, Scene, SceneBody
+
+
+def scene_from(description: Any) -> Scene:
+    """Return the scene that an object of JSON describes.
+
+    Raises
+    ------
+    InvalidParameter
+        For fields that are missing or unknown, kinds that do not exist, and names that clash.
+    """
+    given = _object(description, (), Scene)
+    bodies = given.get("bodies")
+    if isinstance(bodies, Mapping):
+        if len(bodies) > MOST_BODIES:
+            raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(bodies)}")
+        given["bodies"] = {
+            name: SceneBody(**_object(body, ("bodies", str(name)[:80]), SceneBody)) for name, body in bodies.items()
+        }
+    connections = given.get("connections", ())
+    if isinstance(connections, Sequence) and not isinstance(connections, str):
+        if len(connections) > MOST_CONNECTIONS:
+            raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(connections)}")
+        given["connections"] = tuple(_connection(entry, ("connections", i)) for i, entry in enumerate(connections))
+    return Scene(**given)
+
+
+def _connection(entry: Any, path: Path) -> Any:
+    if not isinstance(entry, Mapping):
+        raise InvalidParameter(path, "be an object")
+    kind = entry.get("kind")
+    if kind in NOT_YET:
+        raise InvalidParameter(
+            (*path, "kind"), "be a connection that holds, pulls or drives; contacts and blows are not answered yet"
+        )
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(KINDS)}")
+    rest = {key: value for key, value in entry.items() if key != "kind"}
+    return KINDS[kind](**_object(rest, path, KINDS[kind]))
+
+
+def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
+    if not isinstance(value, Mapping):
+        raise InvalidParameter(path or ("scene",), "be an object")
+    known = {entry.name: entry for entry in fields(cls)}
+    for key in value:
+        if key not in known:
+            raise InvalidParameter((*path, str(key)[:80]), f"be one of {', '.join(known)}")
+    for name, entry in known.items():
+        if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
+            raise InvalidParameter((*path, name), "be given")
+    return dict(value)

@@ -1,0 +1,78 @@
+"""Equilibria and small motions against closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.errors import NotApplicable
+from core.multibody.solve import solve_scene
+from tests.core.multibody.worked_examples import BEAD_ON_HOOP, points, read
+
+
+def bead(radius: str, rate: float) -> dict[str, object]:
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"bead": {"mass": 0.1, "at": [0, f"-{radius}"]}},
+        "connections": [{"kind": "rod", "a": "bead", "b": [0, 0]}, {"kind": "spinning-frame", "rate": rate}],
+    }
+
+
+def test_bead_on_a_turning_hoop_has_four_equilibria() -> None:
+    found = solve_scene(read(BEAD_ON_HOOP), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert len(found) == 4
+    # cos(theta) = g/(Omega^2 R); the small oscillation is Omega sin(theta).
+    c = 9.81 / 16
+    tilted = [e for e in found if abs(e.positions["bead"][0]) > 0.1]
+    for equilibrium in tilted:
+        assert equilibrium.stable is True
+        assert -equilibrium.positions["bead"][1] == pytest.approx(c, rel=1e-14)
+        assert equilibrium.modes[0][0] == pytest.approx(4 * math.sqrt(1 - c * c), rel=1e-13)
+        assert equilibrium.modes[0][0] == pytest.approx(3.159944, abs=5e-7)
+    others = [e for e in found if abs(e.positions["bead"][0]) < 0.1]
+    assert [e.stable for e in others] == [False, False]
+
+
+def test_bead_at_reference_values() -> None:
+    found = solve_scene(read(bead("0.5", 6)), outputs=("equilibria",)).equilibria
+    assert found is not None
+    stable = [e for e in found if e.stable]
+    x, y = stable[0].positions["bead"]
+    assert math.atan2(abs(x), -y) == pytest.approx(0.99440721205869942, rel=1e-14)
+    assert stable[0].modes[0][0] == pytest.approx(5.0306162644352033, rel=1e-13)
+
+
+def test_bead_below_the_critical_rate_has_two() -> None:
+    found = solve_scene(read(bead("0.5", 4)), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert [e.stable for e in found] == [True, False]
+
+
+def test_double_pendulum_has_four_equilibria_and_known_modes() -> None:
+    found = solve_scene(read(points((1, 1), ("0.3", "0.2"), (1, 1))), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert [e.stable for e in found] == [True, False, False, False]
+    # omega^2 = (g/l) (2 -+ sqrt 2) for equal points
+    expected = [math.sqrt(9.81 * (2 - math.sqrt(2))), math.sqrt(9.81 * (2 + math.sqrt(2)))]
+    assert [mode[0] for mode in found[0].modes] == pytest.approx(expected, rel=1e-13)
+    assert max(e.residual for e in found) < 1e-14
+
+
+def test_strings_are_taut_in_an_equilibrium() -> None:
+    scene = points((1,), ("0.3",), (1,))
+    scene["connections"] = [{"kind": "string", "through": ["p0", [0, 0]]}]
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert [e.positions["p0"] for e in found] == [pytest.approx((0, -1), abs=1e-14)]
+
+
+def test_rolling_on_a_curve_is_refused() -> None:
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"disc": {"mass": 1, "inertia": 0.005, "radius": 0.1, "at": [0, -0.9]}},
+        "connections": [{"kind": "rolling", "place": "disc", "on": {"at": [0, 0], "radius": -1}}],
+    }
+    with pytest.raises(NotApplicable):
+        solve_scene(read(scene), outputs=("equilibria",))

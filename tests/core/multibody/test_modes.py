@@ -1,0 +1,106 @@
+"""Linear scenes against closed forms, also where roots coincide and where times are long."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+
+from core.errors import BudgetExceeded
+from core.multibody.solve import solve_scene
+from tests.core.multibody.worked_examples import column, read
+
+
+def oscillator(damping: str, stiffness: str = "4") -> dict[str, object]:
+    return {
+        "gravity": [0, 0],
+        "bodies": {"m": {"mass": 1, "at": [2, 0], "velocity": [1, 0]}},
+        "connections": [
+            {"kind": "spring", "a": [0, 0], "b": "m", "stiffness": stiffness, "rest_length": 1},
+            {"kind": "damper", "a": [0, 0], "b": "m", "coefficient": damping},
+        ],
+    }
+
+
+@pytest.mark.parametrize("time", [0.0, 0.5, 3.0, 9.0])
+def test_critical_damping_has_a_double_root(time: float) -> None:
+    answer = solve_scene(read(oscillator("4")), [time])
+    assert answer.model.name == "modes"
+    with mpmath.workdps(30):
+        x = mpmath.exp(-2 * mpmath.mpf(time)) * (1 + 3 * mpmath.mpf(time))
+        place = column(answer, "m.position")
+        assert abs(place.values[0, 0] - 1 - x) <= place.error < 4e-15
+
+
+def test_a_long_time_costs_no_accuracy() -> None:
+    scene = oscillator("1")
+    scene["connections"] = [scene["connections"][0]]  # type: ignore[index]
+    scene["bodies"]["m"]["at"] = [1.5, 0]  # type: ignore[index]
+    answer = solve_scene(read(scene), [1e9, 1e12])
+    place = column(answer, "m.position")
+    with mpmath.workdps(60):
+        for i, t in enumerate((10**9, 10**12)):
+            x = mpmath.cos(2 * t) / 2 + mpmath.sin(2 * t) / 2
+            assert abs(place.values[i, 0] - 1 - x) <= place.error < 1e-14
+    assert answer.period == pytest.approx(float(mpmath.pi), rel=1e-15)
+
+
+def test_a_spring_that_collapses_ends_the_scene() -> None:
+    scene = oscillator("1")
+    scene["connections"] = [scene["connections"][0]]  # type: ignore[index]
+    answer = solve_scene(read(scene), [1.0, 2.0])
+    # 1 + cos(2 t) + sin(2 t)/2 = 0
+    assert answer.ended is not None
+    assert answer.ended.kind == "singular"
+    t = answer.ended.time
+    assert t == pytest.approx(math.pi / 2, abs=1e-14)
+    assert abs(1 + math.cos(2 * t) + math.sin(2 * t) / 2) < 1e-14
+
+
+def test_where_events_cannot_be_excluded_for_so_long_is_refused() -> None:
+    scene = oscillator("1")
+    scene["gravity"] = [0, 0]
+    bodies = scene["bodies"]
+    assert isinstance(bodies, dict)
+    bodies["m"]["at"], bodies["m"]["velocity"] = [1.99, 0], [0, 0]
+    bodies["n"] = {"mass": 1, "at": [3, 0]}
+    scene["connections"] = [
+        {"kind": "spring", "a": [0, 0], "b": "m", "stiffness": 4, "rest_length": 1},
+        {"kind": "spring", "a": "n", "b": "m", "stiffness": 7, "rest_length": "0.0101"},
+    ]
+    with pytest.raises(BudgetExceeded):
+        solve_scene(read(scene), [1e9])
+
+
+def test_a_free_pair_on_a_spring_drifts_and_swings() -> None:
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {"p": {"mass": 1, "at": [0, 0], "velocity": [1, 0]}, "q": {"mass": 3, "at": [2, 0]}},
+        "connections": [{"kind": "spring", "a": "p", "b": "q", "stiffness": 3, "rest_length": 2}],
+    }
+    answer = solve_scene(read(scene), [0.7])
+    with mpmath.workdps(30):
+        # Reduced mass 3/4, omega = 2, centre of mass at 1/4 of the speed.
+        t = mpmath.mpf(0.7)
+        gap = 2 - mpmath.sin(2 * t) / 2
+        centre = (mpmath.mpf(6) + t) / 4
+        place = column(answer, "p.position")
+        assert abs(place.values[0, 0] - (centre - gap * 3 / 4)) <= place.error < 4e-15
+    assert answer.period is None
+
+
+def test_a_weight_on_a_spring_falls_about_its_equilibrium() -> None:
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"w": {"mass": 2, "at": [0, -1]}},
+        "connections": [{"kind": "spring", "name": "s", "a": [0, 0], "b": "w", "stiffness": 8, "rest_length": 1}],
+    }
+    answer = solve_scene(read(scene), [0.4], ("trajectory", "forces-in-time", "energy-in-time"))
+    with mpmath.workdps(30):
+        fall = mpmath.mpf("2.5") * (1 - mpmath.cos(2 * mpmath.mpf(0.4)))
+        place, pull = column(answer, "w.position"), column(answer, "s.force")
+        assert abs(place.values[0, 1] + 1 + fall) <= place.error
+        assert abs(pull.values[0] - 8 * fall) <= pull.error
+        total = column(answer, "energy.kinetic").values[0] + column(answer, "energy.potential").values[0]
+        assert total == pytest.approx(-20, rel=1e-14)

@@ -1,0 +1,153 @@
+"""Stated errors of series, doubles and pairs, against runs of higher order in pairs; and motions at extremes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.balls import precision
+from core.double_double import dd_sub
+from core.errors import AccuracyUnreachable, BudgetExceeded
+from core.multibody.assembly import assemble_places, assemble_rates
+from core.multibody.description import described
+from core.multibody.dynamics import accelerations, parts, restricted
+from core.multibody.numerical import Numerical
+from core.multibody.packed import Floats, state, two_to
+from core.multibody.passes import reduced
+from core.multibody.periods import repeating
+from core.multibody.polynomials import BITS
+from core.multibody.series import DONE
+from core.multibody.series_pairs import advance_pairs, moved_pairs
+from core.multibody.solve import solve_scene
+from core.multibody.vertical_symmetry import precessing
+from tests.core.multibody.random_scenes import any_scene, pendulum_of_points
+from tests.core.multibody.worked_examples import column, points, read
+
+KINDS = 11
+
+
+def numerical(description: dict[str, Any]) -> list[Numerical]:
+    found = described(read(description))
+    table = found.measures.table
+    assemble_places(table, found.paths)
+    assemble_rates(table, found.measures.coordinates.given, found.paths)
+    small = reduced(table, pinning=True).table
+    motions = []
+    for indices in parts(small):
+        part = restricted(small, indices)
+        gain, chosen = accelerations(part)
+        motions.append(Numerical.of(part, gain, chosen, "a test"))
+    return motions
+
+
+def judged(motion: Numerical, end: float) -> tuple[Floats, Floats]:
+    """Return the state at a time by a series of order 40 whose steps leave out 2^-108."""
+    q, v = state(motion.table, motion.units)
+    starts, series = np.empty((4001, 2)), np.empty((4000, len(q), 41, 2))
+    scaled = end * two_to(-motion.units.time)
+    ended, count = advance_pairs(motion.arrays, q, v, np.zeros(2), scaled, 2.0**-108, starts, series)
+    assert ended == DONE
+    # The last step ends within a rounding of the time; its series is evaluated at the time itself.
+    first = starts[count - 1]
+    moved_pairs(series[count - 1], *dd_sub(scaled, 0.0, first[0], first[1]), q, v)
+    up = np.array([two_to(e) for e in motion.units.lengths])[:, None]
+    return q * up, v * up * two_to(-motion.units.time)
+
+
+@pytest.mark.parametrize("kind", range(KINDS))
+def test_errors_are_never_stated_too_small(kind: int) -> None:
+    """In all, 330 motions with six times each."""
+    worst = np.inf
+    for number in range(30):
+        seed = KINDS * number + kind
+        with precision(BITS):
+            for motion in numerical(any_scene(seed)):
+                for t in np.random.default_rng(seed).uniform(-3, 3, 2):
+                    for finer in (False, True) if number < 5 else (False,):
+                        found = motion.states(np.array([t]), finer=finer)
+                        for value, error, right in zip(
+                            (found.q, found.v), (found.q_error, found.v_error), judged(motion, float(t)), strict=True
+                        ):
+                            true = np.abs((value[0, :, 0] - right[:, 0]) + (value[0, :, 1] - right[:, 1]))
+                            size = np.abs(right[:, 0]).max()
+                            stated = 1.02 * error[0] + (2.0**-98 if finer else 2.0**-50) * size
+                            assert np.all(true <= stated), (seed, t, finer, true, stated)
+                            if np.any(true > 2.0**-50 * size):
+                                worst = min(worst, float(np.min(stated[true > 0] / true[true > 0])))
+    assert worst > 1.0
+
+
+@pytest.mark.parametrize("seed", [4, 6, 10, 15, 17, 21, 26, 28, 32, 37, 39, 43, 48, 50, 54])
+def test_one_period_agrees_with_the_series(seed: int) -> None:
+    with precision(BITS):
+        (motion,) = numerical(any_scene(seed))
+        gain, chosen = accelerations(motion.table)
+        periodic = repeating(motion.table, gain, chosen) or precessing(motion.table, gain, chosen)
+        assert periodic is not None
+        for t in np.random.default_rng(seed).uniform(-6, 6, 3):
+            right = judged(motion, float(t))
+            found = periodic.states(np.array([t]))
+            for value, error, expected in zip((found.q, found.v), (found.q_error, found.v_error), right, strict=True):
+                true = np.abs((value[0, :, 0] - expected[:, 0]) + (value[0, :, 1] - expected[:, 1]))
+                assert np.all(true <= error[0] + 2.0**-90 * np.abs(expected[:, 0]).max())
+                assert np.all(error[0] <= 2.0**-75 * (1 + np.abs(expected).max()))
+
+
+@pytest.mark.parametrize("power", [-300, -30, 30, 300])
+def test_lengths_of_any_size(power: int) -> None:
+    """A double pendulum of 2^power metres at 2^power times gravity is the same motion."""
+    factor = f"1e{power // 3}"
+    scene = points((1, 2), ("0.7", "-1"), (1, 3))
+    answer = solve_scene(read(scene), [0.0, 1.5])
+    for body in scene["bodies"].values():
+        body["at"] = [f"({x})*{factor}" for x in body["at"]]
+    scene["gravity"] = [0, f"-9.81*{factor}"]
+    scaled = solve_scene(read(scene), [0.0, 1.5])
+    a, b = column(answer, "p1.position"), column(scaled, "p1.position")
+    assert np.abs(a.values - b.values / float(factor)).max() <= a.error + b.error / float(factor) + 1e-15
+
+
+@pytest.mark.parametrize("factor", ["1e-150", "1e-26", "1e100"])
+def test_masses_of_any_size(factor: str) -> None:
+    scene = points((1, 2), ("0.7", "-1"), (1, 3))
+    answer = solve_scene(read(scene), [1.5], ("trajectory", "forces-in-time"))
+    for body in scene["bodies"].values():
+        body["mass"] = f"{body['mass']}*{factor}"
+    scaled = solve_scene(read(scene), [1.5], ("trajectory", "forces-in-time"))
+    a, b = column(answer, "p1.position"), column(scaled, "p1.position")
+    assert np.abs(a.values - b.values).max() <= a.error + b.error
+    assert column(scaled, "r0.force").values[0] / float(factor) == pytest.approx(
+        column(answer, "r0.force").values[0], rel=1e-12
+    )
+
+
+@pytest.mark.parametrize("masses", [("1", "1e-12"), ("1e-12", "1"), ("1", "1e12"), ("1e-6", "1")])
+def test_mass_ratios_of_a_million_million(masses: tuple[str, str]) -> None:
+    answer = solve_scene(read(points((1, 1), ("0.9", "1.3"), masses)), [0.05], accuracy=1e-6)
+    place = column(answer, "p1.position")
+    with precision(BITS):
+        (motion,) = numerical(points((1, 1), ("0.9", "1.3"), masses))
+        q, _ = judged(motion, 0.05)
+    # The coordinates that remain are those of the points.
+    right = dict(zip(motion.table.names, q[:, 0], strict=True))
+    assert np.hypot(place.values[0, 0] - right["p1.x"], place.values[0, 1] - right["p1.y"]) <= place.error < 1e-6
+
+
+def test_stiff_springs_are_followed() -> None:
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"p": {"mass": 1, "at": [1, 0]}},
+        "connections": [{"kind": "spring", "a": "p", "b": [0, 0], "stiffness": 1e8, "rest_length": 1}],
+    }
+    answer = solve_scene(read(scene), [0.5])
+    assert column(answer, "p.position").error < 1e-9
+    rigid = solve_scene(read({**scene, "connections": [{"kind": "rod", "a": "p", "b": [0, 0]}]}), [0.5])
+    away = column(answer, "p.position").values - column(rigid, "p.position").values
+    assert np.linalg.norm(away) < 1e-5
+
+
+def test_a_motion_that_would_take_too_many_steps_is_refused() -> None:
+    with pytest.raises((BudgetExceeded, AccuracyUnreachable)):
+        solve_scene(read(pendulum_of_points(np.random.default_rng(1), 3)), [1e7])
