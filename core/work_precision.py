@@ -41,7 +41,7 @@ from core.systems.system import Floats, System
 STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
 TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))
 SCIPY_TOLERANCES = tuple(10.0**-k for k in range(3, 10, 2))
-DEFAULT_RUNS = 1 + 4 * len(STEPS_PER_OWN_TIME) + len(TOLERANCES) + 2 * len(SCIPY_TOLERANCES)
+DEFAULT_RUNS = 1 + 5 * len(STEPS_PER_OWN_TIME) + len(TOLERANCES) + 2 * len(SCIPY_TOLERANCES)
 """How many methods and settings `default_methods` has at most."""
 LARGEST_FITTED = 0.1
 """Above this the error has not yet begun to fall with its order."""
@@ -173,21 +173,26 @@ def work_precision(
     budget = budget or Budget()
     instants = checked_times(times, budget)
     chosen = default_methods(system, instants) if methods is None else tuple(methods)
-    if not chosen:
-        raise InvalidParameter(
-            "methods", "name at least one method", remedy="leave it out for a ladder of every method"
-        )
-    for k, method in enumerate(chosen):
-        if method in chosen[:k]:
-            rule = f"differ from methods/{chosen.index(method)}, which is the same method with the same settings"
-            raise InvalidParameter(
-                ("methods", k), rule, remedy="give each setting once; repeats says how often it is timed"
-            )
+    check_distinct(chosen)
     reference = _reference(system, instants, budget)
     found = [_measure(system, instants, method, reference, repeats, budget, clock) for method in chosen]
     ordered = sorted(found, key=lambda one: (one.method.kind, one.evaluations, -(one.error or math.inf)))
     curves = tuple(_curve(kind, tuple(group)) for kind, group in groupby(ordered, key=lambda one: one.method.kind))
     return WorkPrecision(reference.kind, reference.error, curves, pareto_front(found), _recommended(found, accuracy))
+
+
+def check_distinct(methods: Sequence[Method]) -> None:
+    """Raise `InvalidParameter` for no methods at all, or one with the same settings twice."""
+    if not methods:
+        raise InvalidParameter(
+            "methods", "name at least one method", remedy="leave it out for a ladder of every method"
+        )
+    for k, method in enumerate(methods):
+        if method in methods[:k]:
+            rule = f"differ from methods/{methods.index(method)}, which is the same method with the same settings"
+            raise InvalidParameter(
+                ("methods", k), rule, remedy="give each setting once; repeats says how often it is timed"
+            )
 
 
 def default_methods(system: System, times: Floats) -> tuple[Method, ...]:

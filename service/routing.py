@@ -34,35 +34,26 @@ class Reply:
     status: int = 200
 
 
-Growth = Callable[[Answer], Mapping[str, float]]
-"""From the fields of an outline's answer to how many times as long some of them are in the whole answer, by name."""
-
-
-def as_long(fields: Answer) -> Mapping[str, float]:
-    """Return that no field of an answer is longer than in its outline."""
-    return {}
-
-
 @dataclass(frozen=True)
-class Outline:
-    """A question that costs little in place of another, and what its answer tells of the other's.
+class PlanningProbe:
+    """The answer to a question that costs little and has the model, the warnings and the refusals of another.
 
     Attributes
     ----------
-    question : Any
-        Has the same model, warnings and refusals.
-    growth : callable
-        By how much the whole answer is longer.
+    fields : mapping
+        Of the answer.
+    growth : mapping of str to float
+        Fields that are longer in the other answer, and how many times as long.
     error : float or None
-        Order of magnitude of the error of a method that is named.
-    exact : Any
-        For a method that is named, of which few steps are run: the question in closed form at the farthest time.
+        Order of magnitude of the error of a method that is named, of which few steps are run.
+    exact : mapping
+        Fields of the answer in closed form beside that.
     """
 
-    question: Any
-    growth: Growth = as_long
+    fields: Answer
+    growth: Mapping[str, float] = field(default_factory=dict)
     error: float | None = None
-    exact: Any = None
+    exact: Answer = field(default_factory=dict)
 
 
 def free(question: Any, budget: Budget) -> float:
@@ -91,8 +82,8 @@ class PostRoute:
         Predicted time of `handle` in seconds; refuses what exceeds the budget.
     small : callable
         Whether a question may be begun in the event loop, by counts that it states; decided without computing anything.
-    outline : callable or None
-        From a question and a budget to the `Outline` by which it is planned; None if the question is that itself.
+    planning_probe : callable or None
+        From question and budget to the `PlanningProbe` by which it is planned; None if that is the answer itself.
     examples : mapping
         By a short name.
     warming : sequence of mappings
@@ -112,7 +103,7 @@ class PostRoute:
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
     small: Callable[[Any], bool] = never
-    outline: Callable[[Any, Budget], Outline] | None = None
+    planning_probe: Callable[[Any, Budget], PlanningProbe] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     warming: Sequence[Mapping[str, Any]] = ()

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from functools import cache
 from typing import Annotated, Any
 
 from pydantic import Field
 
-from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError
+from core.errors import BudgetExceeded, MechanicsError
 from core.notices import Notice
 from core.quantities import Unit
 from core.systems.budget import Budget
@@ -22,7 +21,7 @@ from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, pro
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
-from service.routing import Answer, Outline, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
 
@@ -118,23 +117,20 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
 def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
     seconds = route.price(asked, budget)
     method, evaluations = getattr(asked, "method", None), _evaluations(route, asked, budget)
-    outline = Outline(asked) if route.outline is None else route.outline(asked, budget)
-    fields = route.handle(outline.question, budget)
-    length = _length(fields, outline.growth(fields))
+    probed = route.planning_probe
+    probe = PlanningProbe(route.handle(asked, budget)) if probed is None else probed(asked, budget)
+    fields, exact = probe.fields, probe.exact
+    length = _length(fields, probe.growth)
     model, stated, notices = fields.get("model"), _stated(fields), list(fields.get("warnings", ()))
     if model is None and fields.get("members"):
         model = fields["members"][0]["model"]
-    if outline.error is not None:
-        exact: Answer = {}
-        # Times that are beyond the closed form do not keep a method that is named from its run.
-        with suppress(AccuracyUnreachable):
-            exact = route.handle(outline.exact, budget)
+    if probe.error is not None:
         notices = [notice for notice in (exact or fields)["warnings"] if notice.code not in OF_FEW_STEPS]
-        if outline.error > asked.accuracy:
-            detail = f"the error of {asked.method.kind} with this setting is expected to be of the order of {outline.error:.1g}"
+        if probe.error > asked.accuracy:
+            detail = f"with this setting the error of {asked.method.kind} is of the order of {probe.error:.1g}"
             notices.append(Notice("accuracy-not-reached", detail, ("method",)))
         inherited = (_stated(exact) or {}).get("inherited")
-        stated = {"error": outline.error, "how": "record of the method", "inherited": inherited}
+        stated = {"error": probe.error, "how": "record of the method", "inherited": inherited}
     elif stated:
         method = {"kind": "closed-form"}
     return {

@@ -18,9 +18,9 @@ from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, numbers
 from service.routes.bodies import few_times
 from service.routes.examples import examples
-from service.routes.outlines import FEW, few_of
+from service.routes.planning_probes import FEW, few_of
 from service.routes.rotation.trajectory import Accuracy
-from service.routing import Answer, Outline, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     ROUND,
     Envelope,
@@ -190,10 +190,10 @@ def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
     }
 
 
-def outlining(
+def probing(
     answer: Callable[[Any, Budget], Answer], instants: Callable[[Any, Budget], Any], most: int = FEW
-) -> Callable[[Any, Budget], Outline]:
-    """Return what outlines a question about a scene by at most so many of the times up to the end of its motion.
+) -> Callable[[Any, Budget], PlanningProbe]:
+    """Return what probes a question about a scene by at most so many of the times up to the end of its motion.
 
     Parameters
     ----------
@@ -203,21 +203,21 @@ def outlining(
         From its times and the budget to their array.
     """
 
-    def outline(question: Any, budget: Budget) -> Outline:
+    def probe(question: Any, budget: Budget) -> PlanningProbe:
         if question.times is None:
-            return Outline(question)
+            return PlanningProbe(answer(question, budget))
         times = instants(question.times, budget)
         ends = {"times": [times.min(), times.max()]}
         if question.outputs is not None and "trajectory" not in question.outputs:
-            return Outline(question.model_copy(update=ends))
+            return PlanningProbe(answer(question.model_copy(update=ends), budget))
         found = answer(question.model_copy(update=ends | {"outputs": ["events", "ended"]}), budget)
         end = ends["times"][1] if found["ended"] == HORIZON else type(times[0])(found["events"][-1]["time"])
         existing = times[times <= end]
         few = list(dict.fromkeys([*existing[few_of(existing.size, most)], *ends["times"]]))
         growth = {"trajectory": existing.size / max(1, sum(time <= end for time in few))}
-        return Outline(question.model_copy(update={"times": few}), lambda fields: growth)
+        return PlanningProbe(answer(question.model_copy(update={"times": few}), budget), growth)
 
-    return outline
+    return probe
 
 
 @cache
@@ -234,7 +234,7 @@ def questions() -> tuple[PostRoute, ...]:
             answering(scene),
             CalibratedCost(operation_of(scene), scene_counts),
             lambda question: question.times is None or few_times(question.times),
-            outlining(answering(scene), sample_times),
+            probing(answering(scene), sample_times),
             warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()

@@ -20,13 +20,14 @@ from core.work_precision import (
     STEPS_PER_OWN_TIME,
     TOLERANCES,
     Measurement,
+    check_distinct,
     work_precision,
 )
 from service.execution.cost_model import CalibratedCost, calibration, effort, extent, extreme, speed_of
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
-from service.routing import Answer, Outline, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
 
 LADDER_RADIANS = 50.0
@@ -152,11 +153,13 @@ def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> di
     return counts
 
 
-def outline(question: WorkPrecisionRequest, budget: Budget) -> Outline:
-    """Return the question about the closed form at the farthest time alone."""
+def work_precision_probe(question: WorkPrecisionRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about the closed form at the farthest time alone."""
+    if question.methods is not None:
+        check_distinct(question.methods)
     changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
     growth = {"curves": float(_runs(question))}
-    return Outline(question.model_copy(update=changes), lambda fields: growth)
+    return PlanningProbe(answer_work_precision(question.model_copy(update=changes), budget), growth)
 
 
 def drawn(answer: Answer) -> bytes:
@@ -188,7 +191,7 @@ WORK_PRECISION = (
         WorkPrecisionAnswer,
         answer_work_precision,
         CalibratedCost("work_precision", work_precision_counts),
-        outline=outline,
+        planning_probe=work_precision_probe,
         description="The same as a figure is answered to `Accept: image/svg+xml`.",
         representations={SVG: drawn},
     ),

@@ -224,7 +224,8 @@ def shafts(random: Random) -> Question:
     pair = lambda low, high: [number(random, low, high), number(random, low, high)]  # noqa: E731
     found: Question = {
         "masses": random.choice([pair(0.1, 5.0), [2.0, 2.0]]), "radii": pair(0.01, 0.5),
-        "slopes": random.choice([pair(0.1, 1.4), [0.5, 0.5]]), "gravity": random.choice([9.81, number(random, 0.5, 20.0)]),
+        "slopes": random.choice([pair(0.1, 1.4), [0.5, 0.5]]),
+        "gravity": random.choice([9.81, number(random, 0.5, 20.0)]),
     }  # fmt: skip
     optional: Question = {
         "inertia_factors": random.choice([[0.5, 0.5], [1.0, 0.5], [0.0, 0.5]]),

@@ -22,7 +22,7 @@ from service.requests.decimal_models import (
 )
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable, summing
-from service.routes.outlines import few_of
+from service.routes.planning_probes import few_of
 from service.routes.rotation.precession import DISTURBANCE, PRECESSION, RATE, Equilibria, PrecessionFigures
 from service.routes.rotation.trajectory import (
     ANGULAR_VELOCITY,
@@ -32,7 +32,7 @@ from service.routes.rotation.trajectory import (
     TIMES,
     RotationSamples,
 )
-from service.routing import Answer, Outline
+from service.routing import Answer, PlanningProbe
 from service.schemas import DecimalString, Request, fields_of
 
 FEW = 8
@@ -151,12 +151,12 @@ def trajectory_cost(question: CertifiedTrajectoryRequest, budget: Budget) -> flo
     return SET_UP + summing(question.body) + samples * each
 
 
-def trajectory_outline(question: CertifiedTrajectoryRequest, budget: Budget) -> Outline:
-    """Return the question about few times, the farthest among them."""
+def trajectory_probe(question: CertifiedTrajectoryRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question at few times, the farthest among them."""
     times = instants(question.times)
     few = [*(times[k] for k in few_of(len(times), FEW)), max(times, key=abs)]
     growth = dict.fromkeys(("time", "angular_velocity", "attitude"), len(times) / len(few))
-    return Outline(question.model_copy(update={"times": few}), lambda fields: growth)
+    return PlanningProbe(answer_trajectory(question.model_copy(update={"times": few}), budget), growth)
 
 
 def precession_cost(question: CertifiedPrecessionRequest, budget: Budget) -> float:
@@ -176,7 +176,7 @@ CERTIFIED_ROTATION = (
         answer=CertifiedTrajectoryAnswer,
         handle=answer_trajectory,
         price=trajectory_cost,
-        outline=trajectory_outline,
+        planning_probe=trajectory_probe,
     ),
     certified_route(
         PRECESSION[0],

@@ -28,7 +28,7 @@ from service.routes.scenes import (
     answer_model,
     members,
     name_of,
-    outlining,
+    probing,
     questions,
     request_model,
 )
@@ -113,5 +113,5 @@ def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
         answer=answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString),
         handle=answering(scene),
         price=cost,
-        outline=outlining(answering(scene), _instants, FEW),
+        planning_probe=probing(answering(scene), _instants, FEW),
     )

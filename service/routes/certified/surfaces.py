@@ -22,10 +22,10 @@ from service.routes.rotation.surfaces import (
     EllipsoidSurface,
     curve_points,
     curves_drawn,
-    outlined_surface,
+    probe_of_curves,
     require_one,
 )
-from service.routing import Answer, Outline
+from service.routing import Answer, PlanningProbe
 from service.schemas import DecimalString, Request, fields_of
 
 
@@ -141,12 +141,12 @@ def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> float
     )
 
 
-def ellipsoid_outline(question: CertifiedEllipsoidRequest, budget: Budget) -> Outline:
-    """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
+def ellipsoid_probe(question: CertifiedEllipsoidRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
     layout, resolution = _surface(question)
     few = {} if layout is None or resolution > 200 else {"resolution": min(resolution, 4)}
     whole = question if layout is None else question.model_copy(update={"resolution": resolution})
-    return Outline(*outlined_surface(whole, few, 16))
+    return probe_of_curves(energy_ellipsoid, whole, few, 16, budget)
 
 
 CERTIFIED_ELLIPSOID = certified_route(
@@ -155,6 +155,6 @@ CERTIFIED_ELLIPSOID = certified_route(
     answer=CertifiedEllipsoidAnswer,
     handle=energy_ellipsoid,
     price=ellipsoid_cost,
-    outline=ellipsoid_outline,
+    planning_probe=ellipsoid_probe,
     representations={SVG: ellipsoid_figure},
 )

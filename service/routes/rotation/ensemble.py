@@ -22,10 +22,10 @@ from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
-from service.routes.outlines import few_of, in_closed_form, outline_in_samples
+from service.routes.planning_probes import few_of, in_closed_form, probe_in_samples
 from service.routes.rotation.surfaces import Count, Seed
 from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy
-from service.routing import Answer, Outline, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     ROUND,
     AngularVelocityRow,
@@ -43,7 +43,7 @@ from service.schemas import (
 FEW_MEMBERS = 8
 """Members of an ensemble up to which it may be begun in the event loop."""
 
-OUTLINED = 16
+PROBED = 16
 """Members of an ensemble by which all of it is planned."""
 
 
@@ -172,17 +172,17 @@ def is_small_ensemble(question: EnsembleRequest) -> bool:
     return few and in_closed_form(question.method) and is_small(question)
 
 
-def outline(question: EnsembleRequest, budget: Budget) -> Outline:
-    """Return the question about a few members at few times."""
+def ensemble_probe(question: EnsembleRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about a few members at few times."""
     changes: dict[str, Any] = {}
     if question.angular_velocities:
-        which = few_of(len(question.angular_velocities), OUTLINED)
+        which = few_of(len(question.angular_velocities), PROBED)
         changes["angular_velocities"] = [question.angular_velocities[k] for k in which]
     if question.sample is not None:
-        changes["sample"] = question.sample.model_copy(update={"count": min(OUTLINED, question.sample.count)})
+        changes["sample"] = question.sample.model_copy(update={"count": min(PROBED, question.sample.count)})
     fewer = question.model_copy(update=changes)
     members = _members(question) / max(1, _members(fewer))
-    return outline_in_samples(fewer, _speed(question), budget, members)
+    return probe_in_samples(answer_ensemble, fewer, _speed(question), budget, members)
 
 
 ENSEMBLE = (
@@ -196,6 +196,6 @@ ENSEMBLE = (
         answer_ensemble,
         CalibratedCost("rotation_ensemble", ensemble_counts),
         is_small_ensemble,
-        outline,
+        ensemble_probe,
     ),
 )

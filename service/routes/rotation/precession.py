@@ -20,7 +20,7 @@ from core.systems.methods import ClosedFormEvaluation
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
-from service.routing import Answer, Outline, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     Envelope,
     N,
@@ -159,12 +159,12 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     return found | effort(measure.method, times, speed, measure.samples)
 
 
-def outline(question: PrecessionRequest, budget: Budget) -> Outline:
-    """Return the question with a measurement of the closed form on a grid that is not fine."""
-    if question.measure is None:
-        return Outline(question)
-    coarse = replace(question.measure, method=ClosedFormEvaluation(), samples=min(question.measure.samples, COARSE))
-    return Outline(question.model_copy(update={"measure": coarse}))
+def precession_probe(question: PrecessionRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question with a measurement of the closed form on a grid that is not fine."""
+    measure = question.measure
+    if measure is not None:
+        measure = replace(measure, method=ClosedFormEvaluation(), samples=min(measure.samples, COARSE))
+    return PlanningProbe(answer_precession(question.model_copy(update={"measure": measure}), budget))
 
 
 PRECESSION = (
@@ -178,7 +178,7 @@ PRECESSION = (
         answer_precession,
         CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
-        outline,
+        precession_probe,
     ),
     PostRoute(
         "/v1/rotation/stability",

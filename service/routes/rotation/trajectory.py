@@ -15,8 +15,8 @@ from core.systems.system import Model
 from core.systems.trajectory import How, Work
 from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
-from service.routes.outlines import in_closed_form, outline_in_samples
-from service.routing import Answer, Outline, PostRoute
+from service.routes.planning_probes import in_closed_form, probe_in_samples
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     ROUND,
     AngularMomentumMagnitude,
@@ -221,9 +221,9 @@ def is_small_trajectory(question: TrajectoryRequest) -> bool:
     return in_closed_form(question.method) and few_times(question.times) and is_small(question)
 
 
-def outline(question: TrajectoryRequest, budget: Budget) -> Outline:
-    """Return the question about few times."""
-    return outline_in_samples(question, _speed(question), budget)
+def trajectory_probe(question: TrajectoryRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question at few times."""
+    return probe_in_samples(trajectory, question, _speed(question), budget)
 
 
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
@@ -244,7 +244,7 @@ ROTATION = (
         trajectory,
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
-        outline,
+        trajectory_probe,
         warming=(RESTING, STEADY),
     ),
 )

@@ -1,25 +1,28 @@
-"""How questions about many samples are outlined by few of them (`service.routing.Outline`)."""
+"""How answers with many samples are foreseen by few of them (`service.routing.PlanningProbe`)."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from math import ceil, inf, log10
 from typing import Any
 
 import numpy as np
 
+from core.errors import AccuracyUnreachable
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation
 from core.systems.rounding import ROUND_TRIP
 from core.systems.system import Floats
 from service.execution.cost_model import error_of, extreme
 from service.responses.json_rows import written
-from service.routing import Outline
+from service.routing import Answer, PlanningProbe
 from service.schemas import sample_times
 
 FEW = 64
 """Rows by which longer columns are foreseen."""
 
-FEW_STEPS, FEW_RADIANS = 64, 4.0
+FEW_STEPS, FEW_RADIANS = 64, 1.0
 """How far a method is run for its rows: steps of a fixed length, or a turn."""
 
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
@@ -41,11 +44,15 @@ def in_closed_form(method: Any) -> bool:
     return method is None or isinstance(method, ClosedFormEvaluation)
 
 
-def outline_in_samples(question: Any, speed: float, budget: Budget, members: float = 1.0) -> Outline:
-    """Return the outline of a question about samples of free rotations, by few of its times.
+def probe_in_samples(
+    handle: Callable[[Any, Budget], Answer], question: Any, speed: float, budget: Budget, members: float = 1.0
+) -> PlanningProbe:
+    """Answer a question about samples of free rotations at few of its times, the farthest among them.
 
     Parameters
     ----------
+    handle : callable
+        Answers it.
     question : Any
         Or one about fewer members.
     speed : float
@@ -58,16 +65,19 @@ def outline_in_samples(question: Any, speed: float, budget: Budget, members: flo
     share, method = instants.size / times.size, question.method
     growth = {"time": share, "attitude": share, "angular_velocity": share * members, "members": members}
     if in_closed_form(method):
-        return Outline(question.model_copy(update={"times": times.tolist()}), lambda fields: growth)
+        return PlanningProbe(handle(question.model_copy(update={"times": times.tolist()}), budget), growth)
     near = _in_few_steps(method, times, speed)
     growth["time"] *= len(written(times)) / len(written(near))
     error = error_of(method, question.times, speed)
     changes: dict[str, Any] = {"times": near.tolist()}
     if question.round == "meaningful":
         changes["round"] = max(1, ceil(-log10(error))) if error > 10.0**-ROUND_TRIP else ROUND_TRIP
-    # A method that is named is answered whatever its error.
-    exact = {"times": [extreme(question.times)], "method": None, "round": None, "accuracy": 0.5}
-    return Outline(question.model_copy(update=changes), lambda fields: growth, error, question.model_copy(update=exact))
+    fields, exact = handle(question.model_copy(update=changes), budget), {}
+    # A method that is named is answered whatever its error, and where the closed form is out of reach.
+    farthest = {"times": [extreme(question.times)], "method": None, "round": None, "accuracy": 0.5}
+    with suppress(AccuracyUnreachable):
+        exact = handle(question.model_copy(update=farthest), budget)
+    return PlanningProbe(fields, growth, error, exact)
 
 
 def _in_few_steps(method: Any, times: Floats, speed: float) -> Floats:
