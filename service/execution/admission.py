@@ -13,7 +13,6 @@ import os
 from collections import defaultdict
 from collections.abc import Awaitable, Callable, Hashable, Iterator
 from dataclasses import dataclass
-from math import ceil
 from typing import Any
 
 from service.execution import PRELOAD
@@ -134,7 +133,7 @@ class Compute:
         if self._stopping:
             raise _stopped()
         if not self._up:
-            raise Refusal("not-ready", "the compute processes are not up yet", headers=(("Retry-After", "1"),))
+            raise Refusal("not-ready", "the compute processes are not up yet", retry_after=1.0)
         deadline = self._settings.deadline_seconds
         task = Task(route.path, body, npz, media, deadline)
         with self.holding(len(body)):
@@ -152,16 +151,12 @@ class Compute:
         most = self._settings.max_held_bytes
         if self._held > most:
             detail = f"requests and unread answers take more than {most} bytes, the limit max_held_bytes"
-            raise Refusal("too-busy", detail, headers=(("Retry-After", "1"),), extra={"retry_after_seconds": 1.0})
+            raise Refusal("too-busy", detail, retry_after=1.0)
         limit = self._settings.max_backlog_seconds
         wait = processes.wait_of(sender.client) - limit
         if wait > 0.0:
-            raise Refusal(
-                "too-busy",
-                f"more than {limit:g} s of work wait already, the limit max_backlog_seconds",
-                headers=(("Retry-After", str(max(1, ceil(wait)))),),
-                extra={"retry_after_seconds": round(max(wait, 1e-3), 3)},
-            )
+            detail = f"more than {limit:g} s of work wait already, the limit max_backlog_seconds"
+            raise Refusal("too-busy", detail, retry_after=wait)
 
     async def _done(self, processes: Processes, task: Task, price: float, sender: Sender) -> Any:
         """Return what a process replies, or raise why it does not; time and key are settled however it ends."""
@@ -209,10 +204,10 @@ class Compute:
             raise Refusal("deadline-exceeded", detail) from None
         except WorkerDied:
             detail = "the process that computed this answer died; other requests are not affected"
-            raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
+            raise Refusal("worker-lost", detail, retry_after=1.0) from None
         except QueueTimeout:
             detail = "no compute process became free for this request in time; it was not begun"
-            raise Refusal("not-ready", detail, headers=(("Retry-After", "1"),)) from None
+            raise Refusal("not-ready", detail, retry_after=1.0) from None
         except Stopped:
             raise _stopped() from None
 
@@ -222,4 +217,4 @@ class Compute:
 
 
 def _stopped() -> Refusal:
-    return Refusal("shutting-down", "the service is being stopped", headers=(("Retry-After", "1"),))
+    return Refusal("shutting-down", "the service is being stopped", retry_after=1.0)

@@ -133,8 +133,7 @@ def _guarded(terms: Terms, task: Task, work: Callable[[RequestHandler, PostRoute
     except MechanicsError as error:
         return problem_of(error)
     except MemoryError:
-        detail = "the machine lacks the memory for this answer"
-        return Problem(REGISTRY["no-room"], detail, headers=(("Retry-After", "1"),))
+        return Problem(REGISTRY["no-room"], "the machine lacks the memory for this answer", retry_after=1.0)
     except Exception:
         return Failed(traceback.format_exc())
 

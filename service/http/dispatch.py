@@ -92,8 +92,9 @@ class Dispatcher:
         except asyncio.CancelledError:
             # The server is being stopped and will not wait any longer.
             if not context.started:
-                detail = "the service is being stopped"
-                await context.problem(Problem(REGISTRY["shutting-down"], detail, headers=(("Retry-After", "1"),)))
+                await context.problem(
+                    Problem(REGISTRY["shutting-down"], "the service is being stopped", retry_after=1.0)
+                )
         except Exception:
             if context.started:
                 # The answer is cut short, which the transfer coding shows the client.
@@ -101,13 +102,7 @@ class Dispatcher:
                 raise
             LOG.exception("failed", extra={"request_id": context.id, "operation": route.operation_id})
             detail = "the service failed; the failure is logged under this id"
-            await context.problem(
-                Problem(
-                    REGISTRY["internal-error"],
-                    detail,
-                    extra={"id": context.id, "instance": f"urn:polhode:request:{context.id}"},
-                )
-            )
+            await context.problem(Problem(REGISTRY["internal-error"], detail, extra={"id": context.id}))
 
     async def _question(self, route: PostRoute, context: RequestContext) -> None:
         headers = context.headers

@@ -17,7 +17,7 @@ import re
 import secrets
 import stat
 from collections.abc import Mapping
-from math import ceil, inf
+from math import inf
 from pathlib import Path
 from time import monotonic
 
@@ -108,7 +108,7 @@ class Key:
 def _take(allowance: Allowance, amount: float, detail: str) -> None:
     wait = allowance.take(amount)
     if wait > 0.0:
-        raise Refusal("quota-exceeded", detail, headers=(("Retry-After", str(max(1, ceil(wait)))),))
+        raise Refusal("quota-exceeded", detail, retry_after=wait)
 
 
 class Keys:

@@ -152,8 +152,7 @@ class Bodies:
                     raise self._too_large()
                 if self.held + self._others() > self._held_limit:
                     detail = f"requests and answers take more than {self._held_limit} bytes, the limit max_held_bytes"
-                    wait = {"retry_after_seconds": 1.0}
-                    raise Refusal("too-busy", detail, headers=(("Retry-After", "1"), _CLOSE), extra=wait)
+                    raise Refusal("too-busy", detail, headers=(_CLOSE,), retry_after=1.0)
                 if not message.get("more_body"):
                     return b"".join(parts)
                 message = await receive()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable, Sequence
+from math import ceil
 from time import perf_counter
 
 from starlette.types import Receive, Scope, Send
@@ -93,6 +94,8 @@ class RequestContext:
         body = problem.body(self.id)
         headers = [_PROBLEM, (b"content-length", b"%d" % len(body)), NOSNIFF]
         headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
+        if problem.retry_after is not None:
+            headers.append((b"retry-after", b"%d" % max(1, ceil(problem.retry_after))))
         await self._respond(problem.type.status, body, headers)
 
     async def stream(

@@ -156,7 +156,7 @@ class TestInOnePiece:
     @pytest.mark.parametrize("method", ["POST", "HEAD"])
     async def test_problems_are_counted_by_code_and_carry_their_headers(self, method: str) -> None:
         wire = Wire(method)
-        problem = Problem(REGISTRY["too-busy"], "later", headers=(("Retry-After", "7"),))
+        problem = Problem(REGISTRY["too-busy"], "later", retry_after=6.2)
         await wire.exchange.problem(problem)
         assert wire.status == problem.type.status == 429
         assert wire.headers == {
