@@ -7,8 +7,9 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -193,17 +194,20 @@ def test_problems_reach_the_client(server: Server) -> None:
     assert caught.value.problem["errors"][0]["pointer"] == "/body/moments/2"
 
 
+@pytest.fixture
+def scratch() -> Iterator[Path]:
+    """A temporary directory of a short name: names of sockets in it may have 107 characters."""
+    with tempfile.TemporaryDirectory() as name:
+        yield Path(name)
+
+
 @pytest.mark.parametrize("workers", ["1", "2"])
 @pytest.mark.parametrize("told", [signal.SIGTERM, signal.SIGINT])
 def test_logs_are_json_and_the_server_stops_cleanly(
-    start_server: Callable[..., Server], tmp_path: Path, workers: str, told: signal.Signals
+    start_server: Callable[..., Server], scratch: Path, workers: str, told: signal.Signals
 ) -> None:
     server = start_server(
-        POLHODE_LOG_REQUESTS="all",
-        POLHODE_COMPUTE_WORKERS="1",
-        POLHODE_WORKERS=workers,
-        POLHODE_SCRATCH=str(tmp_path),
-        TMPDIR=str(tmp_path),
+        POLHODE_LOG_REQUESTS="all", POLHODE_COMPUTE_WORKERS="1", POLHODE_WORKERS=workers, TMPDIR=str(scratch)
     )
     server.wait_until_ready()
     assert post(server, hostile.text(), JSON | {"x-request-id": "abc-1"})[0] == 200
@@ -212,7 +216,7 @@ def test_logs_are_json_and_the_server_stops_cleanly(
     request = next(line for line in lines if line.get("request_id") == "abc-1")
     assert (request["operation"], request["status"], request["method"]) == ("rotation_trajectory", 200, "POST")
     assert server.process.returncode == 0
-    assert not list(tmp_path.iterdir())
+    assert not list(scratch.iterdir())
     assert not [line for line in lines if line["level"] in ("error", "critical")]
 
 
