@@ -174,10 +174,10 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
 def _evaluations(route: PostRoute, asked: Any, budget: Budget) -> int | None:
     if not isinstance(route.price, CalibratedCost):
         return 0
-    counts = route.price.counts(asked, budget)
-    if "ladders" in counts:
+    counted = route.price.counts(asked, budget)
+    if "ladders" in counted:
         return None
-    count = round(min(UNCOUNTABLE, sum(n for name, n in counts.items() if name.startswith("evaluations of "))))
+    count = round(min(UNCOUNTABLE, sum(n for name, n in counted.items() if name.startswith("evaluations of "))))
     if hasattr(getattr(asked, "method", None), "step") and count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
@@ -199,13 +199,5 @@ def _refused(path: str, problem: Problem, within: str) -> Answer:
     for fault in faults[:MOST_FAULTS]:
         entry = {"code": problem.type.code, "pointer": within + fault.pointer, "detail": fault.detail}
         errors.append(entry | {"remedy": fault.remedy} if fault.remedy else entry)
-    return {
-        "path": path,
-        "answerable": False,
-        "model": None,
-        "method": None,
-        "cost": None,
-        "accuracy": None,
-        "errors": errors,
-        "warnings": [],
-    }
+    nothing = dict.fromkeys(("model", "method", "cost", "accuracy"))
+    return {"path": path, "answerable": False, **nothing, "errors": errors, "warnings": []}

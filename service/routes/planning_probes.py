@@ -19,10 +19,10 @@ from service.responses.json_rows import written
 from service.routing import Answer, PlanningProbe
 from service.schemas import sample_times
 
-FEW = 64
-"""Rows by which longer columns are foreseen."""
+FEW, FEW_CERTIFIED = 64, 8
+"""Rows of doubles and of decimal strings by which longer columns are foreseen."""
 
-FEW_STEPS, FEW_RADIANS = 64, 1.0
+FEW_STEPS, FEW_RADIANS = 64, 0.1
 """How far a method is run for its rows: steps of a fixed length, or a turn."""
 
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
-from functools import cache
+from functools import cache, partial
 from typing import Any, Generic, Literal, cast, get_type_hints
 
 from pydantic import Field, create_model
@@ -190,34 +190,27 @@ def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
     }
 
 
-def probing(
-    answer: Callable[[Any, Budget], Answer], instants: Callable[[Any, Budget], Any], most: int = FEW
-) -> Callable[[Any, Budget], PlanningProbe]:
-    """Return what probes a question about a scene by at most so many of the times up to the end of its motion.
-
-    Parameters
-    ----------
-    answer : callable
-        Answers it.
-    instants : callable
-        From its times and the budget to their array.
-    """
-
-    def probe(question: Any, budget: Budget) -> PlanningProbe:
-        if question.times is None:
-            return PlanningProbe(answer(question, budget))
-        times = instants(question.times, budget)
-        ends = {"times": [times.min(), times.max()]}
-        if question.outputs is not None and "trajectory" not in question.outputs:
-            return PlanningProbe(answer(question.model_copy(update=ends), budget))
-        found = answer(question.model_copy(update=ends | {"outputs": ["events", "ended"]}), budget)
-        end = ends["times"][1] if found["ended"] == HORIZON else type(times[0])(found["events"][-1]["time"])
-        existing = times[times <= end]
-        few = list(dict.fromkeys([*existing[few_of(existing.size, most)], *ends["times"]]))
-        growth = {"trajectory": existing.size / max(1, sum(time <= end for time in few))}
-        return PlanningProbe(answer(question.model_copy(update={"times": few}), budget), growth)
-
-    return probe
+def scene_probe(
+    handle: Callable[[Any, Budget], Answer],
+    instants: Callable[[Any, Budget], Any],
+    most: int,
+    question: Any,
+    budget: Budget,
+) -> PlanningProbe:
+    """Answer a question about a scene, by `handle`, at few of its `instants` up to the end of the motion."""
+    if question.times is None:
+        return PlanningProbe(handle(question, budget))
+    times = instants(question.times, budget)
+    first, last = times.min(), times.max()
+    ends = question.model_copy(update={"times": [first, last]})
+    if question.outputs is not None and "trajectory" not in question.outputs:
+        return PlanningProbe(handle(ends, budget))
+    found = handle(ends.model_copy(update={"outputs": ["events", "ended"]}), budget)
+    end = last if found["ended"] == HORIZON else type(last)(found["events"][-1]["time"] or 0)
+    existing = times[times <= end]
+    few = list(dict.fromkeys([*existing[few_of(existing.size, most)], first, last]))
+    growth = {"trajectory": existing.size / max(1, sum(time <= end for time in few))}
+    return PlanningProbe(handle(question.model_copy(update={"times": few}), budget), growth)
 
 
 @cache
@@ -234,7 +227,7 @@ def questions() -> tuple[PostRoute, ...]:
             answering(scene),
             CalibratedCost(operation_of(scene), scene_counts),
             lambda question: question.times is None or few_times(question.times),
-            probing(answering(scene), sample_times),
+            partial(scene_probe, answering(scene), sample_times, FEW),
             warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()

@@ -22,7 +22,7 @@ from service.requests.decimal_models import (
 )
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable, summing
-from service.routes.planning_probes import few_of
+from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routes.rotation.precession import DISTURBANCE, PRECESSION, RATE, Equilibria, PrecessionFigures
 from service.routes.rotation.trajectory import (
     ANGULAR_VELOCITY,
@@ -34,9 +34,6 @@ from service.routes.rotation.trajectory import (
 )
 from service.routing import Answer, PlanningProbe
 from service.schemas import DecimalString, Request, fields_of
-
-FEW = 8
-"""Samples by which more of them are foreseen."""
 
 RATES = PerSample(2e-5, 6e-8, 1.7e-10)
 RATES_AND_ATTITUDES = PerSample(5e-5, 1.2e-7, 8.5e-10)
@@ -154,7 +151,7 @@ def trajectory_cost(question: CertifiedTrajectoryRequest, budget: Budget) -> flo
 def trajectory_probe(question: CertifiedTrajectoryRequest, budget: Budget) -> PlanningProbe:
     """Answer the question at few times, the farthest among them."""
     times = instants(question.times)
-    few = [*(times[k] for k in few_of(len(times), FEW)), max(times, key=abs)]
+    few = [*(times[k] for k in few_of(len(times), FEW_CERTIFIED)), max(times, key=abs)]
     growth = dict.fromkeys(("time", "angular_velocity", "attitude"), len(times) / len(few))
     return PlanningProbe(answer_trajectory(question.model_copy(update={"times": few}), budget), growth)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -22,15 +22,16 @@ from service.requests.decimal_models import (
 )
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable
+from service.routes.planning_probes import FEW_CERTIFIED
 from service.routes.scenes import (
     TIMES,
     SceneAnswer,
     answer_model,
     members,
     name_of,
-    probing,
     questions,
     request_model,
+    scene_probe,
 )
 from service.routing import Answer, PostRoute
 from service.schemas import DecimalString
@@ -44,9 +45,6 @@ QUESTION = ("times", "outputs", "digits")
 ELEMENTARY = PerSample(1.1e-5, 3e-8, 1e-10)
 SAMPLES: Mapping[str, PerSample] = {"rod-in-hole": PerSample(4.5e-5, 1.5e-7, 1.5e-9)}
 """Scenes with elliptic functions; the others are elementary."""
-
-FEW = 8
-"""Samples by which more of them are foreseen."""
 
 
 def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
@@ -113,5 +111,5 @@ def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
         answer=answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString),
         handle=answering(scene),
         price=cost,
-        planning_probe=probing(answering(scene), _instants, FEW),
+        planning_probe=partial(scene_probe, answering(scene), _instants, FEW_CERTIFIED),
     )

@@ -43,7 +43,7 @@ from service.schemas import (
 FEW_MEMBERS = 8
 """Members of an ensemble up to which it may be begun in the event loop."""
 
-PROBED = 16
+PROBED = 8
 """Members of an ensemble by which all of it is planned."""
 
 

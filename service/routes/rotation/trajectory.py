@@ -16,7 +16,7 @@ from core.systems.trajectory import How, Work
 from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
 from service.routes.planning_probes import in_closed_form, probe_in_samples
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
     AngularMomentumMagnitude,
@@ -221,11 +221,6 @@ def is_small_trajectory(question: TrajectoryRequest) -> bool:
     return in_closed_form(question.method) and few_times(question.times) and is_small(question)
 
 
-def trajectory_probe(question: TrajectoryRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question at few times."""
-    return probe_in_samples(trajectory, question, _speed(question), budget)
-
-
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
 
 RESTING, STEADY = (
@@ -244,7 +239,7 @@ ROTATION = (
         trajectory,
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
-        trajectory_probe,
+        lambda question, budget: probe_in_samples(trajectory, question, _speed(question), budget),
         warming=(RESTING, STEADY),
     ),
 )
