@@ -172,6 +172,13 @@ def _extents(kind: Any) -> tuple[str, ...]:
     return tuple(entry.name for entry in fields(kind) if entry.name in ("positions", "faces", "parts"))
 
 
+# More points than are summed in whole numbers.
+CLOUD = {
+    "kind": "point-masses",
+    "masses": 1.0,
+    "positions": [[float(i % 7), float(i % 11), float(i % 13)] for i in range(500)],
+}
+
 TETRAHEDRON = {
     "kind": "mesh",
     "density": 1.0,
@@ -190,6 +197,6 @@ BODIES = (
         mass_properties,
         CalibratedCost("mass_properties", counts),
         is_small,
-        warming=({"body": TETRAHEDRON},),
+        warming=({"body": TETRAHEDRON}, {"body": CLOUD}),
     ),
 )

@@ -223,6 +223,12 @@ def is_small_trajectory(question: TrajectoryRequest) -> bool:
 
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
 
+NEARLY_SYMMETRIC = {
+    "body": {"kind": "principal-moments", "moments": [1.0, 1.0 + 2.0**-52, 2.0]},
+    "angular_velocity": [1.0, 1.0, 1.0],
+    "times": [1.0],
+}
+
 RESTING, STEADY = (
     {"body": T_HANDLE, "angular_velocity": rates, "attitude": [1.0, 0.0, 0.0, 0.0], "times": [1.0]}
     for rates in ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])
@@ -240,6 +246,6 @@ ROTATION = (
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
         lambda question, budget: probe_in_samples(trajectory, question, _speed(question), budget),
-        warming=(RESTING, STEADY),
+        warming=(RESTING, STEADY, NEARLY_SYMMETRIC),
     ),
 )
