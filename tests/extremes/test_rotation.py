@@ -33,7 +33,6 @@ UNRESOLVED = {
     "no body, of": "a time lies beyond 2^48 periods",
     "lamina of 1e-": "a time lies beyond 2^48 periods",
     "one moment and its rate subnormal": "moments and rates lie too far apart",
-    "largest doubles": "hangs on the rounding of the constants of the motion",
 }
 """The only motions that are refused, by part of their names, and why."""
 
