@@ -177,5 +177,8 @@ class RequestContext:
         milliseconds = 1e3 * (perf_counter() - self._since)
         headers.append((b"x-request-id", self.identity))
         headers.append((b"server-timing", b"total;dur=%.3f" % milliseconds))
+        if self.scope.get("http_version") == "1.0" and b"transfer-encoding" in self.headers:
+            # A proxy of that version may have framed the request otherwise (RFC 9112, 6.1).
+            headers.append((b"connection", b"close"))
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": headers})
