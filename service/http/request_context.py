@@ -153,6 +153,9 @@ class RequestContext:
 
     async def _start(self, status: int, headers: Iterable[Header]) -> None:
         timing = b"total;dur=%.3f" % (1e3 * (perf_counter() - self._since))
-        own = (b"x-request-id", self.identity), (b"server-timing", timing)
+        own = [(b"x-request-id", self.identity), (b"server-timing", timing)]
+        if self.scope.get("http_version") == "1.0" and b"transfer-encoding" in self.headers:
+            # A proxy of that version may have framed the request otherwise (RFC 9112, 6.1).
+            own.append((b"connection", b"close"))
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": [*headers, *own]})

@@ -23,7 +23,7 @@ from core.systems.system import Floats
 from core.systems.trajectory import Work
 from core.work import spend
 
-SampleCount = Annotated[int, Quantity("1", at_least=3)]
+SampleCount = Annotated[int, Quantity("1", at_least=3, at_most=10**9)]
 Distance = Annotated[float, Quantity("rad s^-1", above=0)]
 
 

@@ -108,6 +108,19 @@ def test_a_steady_spin_along_a_body_axis_has_the_relative_error_of_its_input(cas
     assert exact.inherited(np.array([1e9]), 1e-6) == pytest.approx(1e-6, rel=1e-5)
 
 
+@pytest.mark.parametrize("moments", [(1e-150, 2e-150, 1e300), (1e-200, 1e-200, 1e200), (1e-150, 1e300, 1e300)])
+@pytest.mark.parametrize("start", [(1.0, -0.2, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+def test_moments_below_every_double_next_to_another_leave_bounds_that_may_be_infinite(
+    moments: tuple[float, float, float], start: tuple[float, float, float]
+) -> None:
+    rotation = TorqueFree(diagonal(moments), np.array(start)).closed_form()
+    free = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0]))
+    for time, uncertainty in product((0.0, 1e-9, 1.0, 1e3), (2.0**-53, 1e-6, 0.5)):
+        # The start is as uncertain as everything else, and at least half as fast as the motion comes to be.
+        assert rotation.inherited(np.array([time]), uncertainty) >= 0.5 * uncertainty
+        assert 0.0 <= free.inherited(np.array([time]), uncertainty) <= math.pi
+
+
 def test_the_angle_of_a_steady_spin_is_lost_when_it_is_a_radian_off() -> None:
     rotation = TorqueFree(diagonal((1.0, 2.0, 2.5)), np.array([0.0, 0.0, 1.5])).closed_form()
     free = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0]))
