@@ -303,7 +303,7 @@ async def test_a_deadline_teaches_what_such_requests_cost() -> None:
 async def test_keys_are_charged_with_what_was_spent(tmp_path: Path) -> None:
     key, line = new_key("alpha")
     file = tmp_path / "keys"
-    file.write_text(line.replace("- -", "- 3"))
+    file.write_text(line.replace("- -", "- 3") + "\n")
     running = toy_service(compute_workers=1, keys_file=file)
     async with running.lifespan(), client_of(running) as client:
         await until(lambda: running.warm)
