@@ -36,7 +36,7 @@ PAUSE = 0.5
 """Seconds before another attempt where a process could not be started, or did not live until it was ready."""
 
 _EXIT_CODES = Lock()
-"""Whoever starts a process asks after all others; of two who read an exit code at the same time one would find none."""
+"""Starting a process polls all others; of two threads that read an exit code at the same time one would find none."""
 
 
 class WorkerDied(Exception):
@@ -154,6 +154,7 @@ class Processes:
     Parameters
     ----------
     size : int
+        Number of processes.
     main : callable
         Runs in each process, given its end of the connection and `arguments`.
     preload : str

@@ -71,17 +71,17 @@ def _plain(member: ZipInfo) -> bool:
 
 def _array(name: str, content: bytes) -> NDArray[Any]:
     """Return the array of a member."""
-    text = io.BytesIO(content)
+    stream = io.BytesIO(content)
     try:
-        version = npy.read_magic(text)
+        version = npy.read_magic(stream)
         read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-        shape, by_columns, dtype = read_header(text)
+        shape, by_columns, dtype = read_header(stream)
     # A header is a literal of Python; what its reader makes of another text is not documented.
     except Exception as fault:
         raise _invalid(f"has a member whose header cannot be read: {name[:40]!r}") from fault
     if dtype.kind not in "iuf" or dtype.itemsize > 8 or len(shape) not in (1, 2):
         raise _invalid(f"has an array that is not one of plain numbers in one or two dimensions: {name[:40]!r}")
-    start = text.tell()
+    start = stream.tell()
     if len(content) - start != dtype.itemsize * int(np.prod(shape, dtype=object)):
         raise _invalid(f"has an array of another size than its header says: {name[:40]!r}")
     flat = np.frombuffer(content, dtype, offset=start)
