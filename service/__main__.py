@@ -51,7 +51,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the service under uvicorn until it is told to stop."""
+    """Run the service under uvicorn until it is stopped."""
     options = parser().parse_args(arguments)
     if options.new_key is not None:
         key, line = new_key(options.new_key)
@@ -106,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def free_port(host: str, port: int) -> int:
-    """Return a port that can be listened on, any free one for 0, or end with the reason why it cannot be."""
+    """Return a port that can be listened on, any free one for 0; exit with the reason if there is none."""
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family) as probe:

@@ -111,8 +111,8 @@ REGISTRY: Mapping[str, ProblemType] = {
         ProblemType(
             "accuracy-unreachable",
             422,
-            "The accuracy that was asked for cannot be reached",
-            "The members requested and achievable say what was asked for and what can be had.",
+            "The requested accuracy cannot be reached",
+            "The members requested and achievable state both accuracies.",
         ),
         ProblemType(
             "budget-exceeded",

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from core.systems.budget import Budget
 
 TABLE = "service.routes:questions"
-"""Where the route table is; compute processes load it from there by themselves."""
+"""Location of the route table, ``"module:function"``; each compute process loads it by itself."""
 
 Answer = dict[str, Any]
 """Fields of an answer in the order in which they are written; see `service.responses.json_rows`."""
@@ -19,7 +19,7 @@ Answer = dict[str, Any]
 
 @dataclass(frozen=True)
 class Example:
-    """A question that runs, shown in the documentation and asked while the service warms up."""
+    """A question shown in the documentation, and answered while the service warms up."""
 
     summary: str
     question: Mapping[str, Any]

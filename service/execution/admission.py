@@ -1,8 +1,7 @@
-"""Where requests are answered that the event loop may not: in processes of their own, which can be killed.
+"""Answers requests that are too large for the event loop in other processes, which can be killed.
 
-One process reads every such request and prices it. A request whose turn would come too late is refused at once, which
-keeps short the time of those that are accepted; the others are answered by the compute processes, the clients in
-rotation.
+One process reads every such request and predicts its cost. A request that would wait too long is refused at once; the
+others are answered by the compute processes, the clients in rotation.
 """
 
 from __future__ import annotations
@@ -56,14 +55,7 @@ class Sender:
 
 
 class Compute:
-    """The processes of one server process.
-
-    Parameters
-    ----------
-    settings : Settings
-    metrics : Metrics
-    table : str
-        Where the route table is: ``"module:function"``.
+    """The compute processes of one server process.
 
     Attributes
     ----------
@@ -180,7 +172,7 @@ class Compute:
             watch.cancel()
             finished = job.reply.done() and job.reply.exception() is None
             processes.drop(job)
-            # What was cut short took longer than that, which tells something only if it was expected to be done.
+            # A computation that was cut short counts only if it has already taken longer than predicted.
             if computes and (finished or job.seconds > job.predicted):
                 speed.learn(price, job.seconds)
             if sender.key is not None:

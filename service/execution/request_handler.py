@@ -18,17 +18,7 @@ from service.schemas import SIGNATURE
 
 
 class RequestHandler:
-    """Reads and answers questions.
-
-    Parameters
-    ----------
-    routes : iterable of PostRoute
-        What can be asked.
-    budget : Budget
-        What one question may cost.
-    limits : Limits
-        On documents.
-    """
+    """Reads and answers the questions of routes, within a budget for each and limits on documents."""
 
     def __init__(self, routes: Iterable[PostRoute], budget: Budget, limits: Limits) -> None:
         self._routes = tuple(routes)
@@ -52,7 +42,7 @@ class RequestHandler:
         for route in self._routes:
             for question in (*(example.question for example in route.examples.values()), *route.warming):
                 self.answer(route, self.read(route, orjson.dumps(question)))
-        # What its methods import when one of them is first asked for would hold up the event loop.
+        # Its first use would otherwise import it, and hold up the event loop.
         import_module("scipy.integrate")
 
 

@@ -97,13 +97,7 @@ def terms_of(settings: Settings, table: str) -> Terms:
     return Terms(
         table,
         Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
-        Limits(
-            settings.max_nesting,
-            settings.max_keys,
-            settings.max_arrays,
-            settings.max_strings,
-            settings.max_body_bytes,
-        ),
+        Limits(bytes=settings.max_body_bytes),
     )
 
 
@@ -148,7 +142,7 @@ def serve(channel: socket.socket, terms: Terms, work: Work, nice: int) -> None:
     # Where they compete for a core, the server process goes first.
     os.nice(nice)
     handler_of(terms)
-    # Once the connection is closed nobody waits for anything.
+    # The server closes the connection when it stops or gives the process up.
     with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
         channel.sendall(BEGUN)
         while length := requests.read(LENGTH):

@@ -33,18 +33,7 @@ _VERSION = VERSION.encode()
 
 
 class Dispatcher:
-    """Serves the routes.
-
-    Parameters
-    ----------
-    routes : sequence of Route
-        The one table.
-    answering : RequestHandler
-        Answers questions in this process.
-    compute : Compute
-        Answers questions in others.
-    keys : Keys, optional
-        Without, no key is required.
+    """Serves the routes: `answering` answers questions in this process, `compute` in others.
 
     Attributes
     ----------

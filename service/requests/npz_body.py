@@ -75,9 +75,9 @@ def _plain(member: ZipInfo) -> bool:
 
 def _array(name: str, content: bytes) -> NDArray[Any]:
     """Return the array of a member."""
-    text = io.BytesIO(content)
+    stream = io.BytesIO(content)
     try:
-        shape, by_columns, dtype = _HEADERS[npy.read_magic(text)](text)
+        shape, by_columns, dtype = _HEADERS[npy.read_magic(stream)](stream)
     # A header is a literal of Python; what its reader makes of another text is not documented.
     except Exception as fault:
         raise _invalid(f"has a member whose header cannot be read: {name[:40]!r}") from fault
@@ -86,7 +86,7 @@ def _array(name: str, content: bytes) -> NDArray[Any]:
     # Rows of nothing take no bytes, however many there are said to be; of two negative lengths the product may fit.
     if min(shape) < 0 or shape[1:] == (0,):
         raise _invalid(f"has an array with rows of no numbers, or of a negative length: {name[:40]!r}")
-    start = text.tell()
+    start = stream.tell()
     if len(content) - start != dtype.itemsize * int(np.prod(shape, dtype=object)):
         raise _invalid(f"has an array of another size than its header says: {name[:40]!r}")
     flat = np.frombuffer(content, dtype, offset=start)

@@ -39,14 +39,12 @@ OUTPUTS: Any = Field(default=None, min_length=1, description="What to compute; b
 
 
 class SceneAnswer(Envelope, Generic[N]):
-    """What was asked for of a scene; each figure is there if it is one of the outputs."""
+    """The requested outputs of a scene; each figure is there if it is one of them."""
 
     model: Model
     work: Work
-    requested_samples: int = Field(description="Samples asked for; work.samples counts those that exist.")
-    ended: str | None = Field(
-        description="horizon, or the event that ended the motion; null if no motion was asked for."
-    )
+    requested_samples: int = Field(description="Number of requested times; work.samples counts the samples that exist.")
+    ended: str | None = Field(description="horizon, or the event that ended the motion; null without times.")
     events: list[SceneEvent[N]] | None = Field(default=None, description="What happens from t = 0 on, in order.")
 
 
@@ -90,7 +88,7 @@ def members() -> tuple[type[ConstrainedSystem], ...]:
 
 
 def name_of(scene: type[ConstrainedSystem]) -> str:
-    """Return the name by which requests tell a scene apart."""
+    """Return the name of a scene, the last step of its path."""
     return str(scene.__dict__["kind"])
 
 
@@ -105,7 +103,7 @@ def summary_of(scene: type[ConstrainedSystem]) -> str:
 
 
 def request_model(scene: type[ConstrainedSystem], title: str, **own: Any) -> type[Request]:
-    """Return the model of a question about a scene: fields of its own, and the outputs that can be asked for."""
+    """Return the model of a question about a scene: fields of its own, and the outputs to choose from."""
     # Built by a call, because a type made of names that are only known here is no type to the checker.
     outputs: Any = list.__class_getitem__(Literal.__getitem__(tuple(scene.outputs)))
     made: type[Request] = create_model(
@@ -135,13 +133,13 @@ def _in(hint: Any, number: type) -> Any:
 
 
 class SceneAnswerInDoubles(SceneAnswer[float]):
-    """What was asked for of a scene."""
+    """The requested outputs of a scene."""
 
     accuracy: Accuracy
 
 
 def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
-    """Return the request that has the scene's own fields, and beside them what is asked of it."""
+    """Return the request that has the scene's own fields, and beside them times and options."""
     hints = get_type_hints(scene, include_extras=True)
     own: dict[str, Any] = {
         entry.name: (hints[entry.name], ... if entry.default is MISSING else entry.default) for entry in fields(scene)
@@ -163,18 +161,23 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
         found = system.answer(times, wanted, question.accuracy)
         if question.round is not None:
             found = found.rounded(question.round)
-        return {
-            "model": found.model,
-            "accuracy": found.accuracy,
-            "work": found.work,
-            "requested_samples": found.requested_samples,
-            "ended": found.ended,
-            **found.figures,
-            "warnings": found.warnings,
-            **({} if found.trajectory is None else {"trajectory": dict(found.trajectory)}),
-        }
+        return answer_of(found, found.accuracy, found.work, found.requested_samples)
 
     return answer
+
+
+def answer_of(found: Any, accuracy: Any, work: Work, requested_samples: int) -> Answer:
+    """Return the fields of an answer that core has found, in either kind of number."""
+    return {
+        "model": found.model,
+        "accuracy": accuracy,
+        "work": work,
+        "requested_samples": requested_samples,
+        "ended": found.ended,
+        **found.figures,
+        "warnings": found.warnings,
+        **({} if found.trajectory is None else {"trajectory": dict(found.trajectory)}),
+    }
 
 
 def scene_counts(question: Any, budget: Budget) -> dict[str, float]:

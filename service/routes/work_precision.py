@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from math import exp, log
 from typing import Annotated
 
@@ -28,7 +27,7 @@ from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
 from service.routing import Answer, PlanningProbe, PostRoute
-from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
+from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, fields_of, sample_count, sample_times
 
 LADDER_RADIANS = 50.0
 """How far the body turns in the motions on which ladders are measured."""
@@ -111,7 +110,7 @@ def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Ans
         repeats=question.repeats,
         budget=Budget(share, budget.samples),
     )
-    return {entry.name: getattr(found, entry.name) for entry in fields(found)} | {"warnings": system.warnings}
+    return fields_of(found) | {"warnings": system.warnings}
 
 
 def _runs(question: WorkPrecisionRequest) -> int:

@@ -17,12 +17,7 @@ SET_UP = 5e-3
 
 @dataclass(frozen=True)
 class PerSample:
-    """Predicted time of a sample of d digits: constant + linear d + quadratic d^2 (s).
-
-    Attributes
-    ----------
-    constant, linear, quadratic : float
-    """
+    """Predicted time of a sample of d digits: constant + linear d + quadratic d^2 (s)."""
 
     constant: float
     linear: float

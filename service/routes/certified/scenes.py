@@ -27,6 +27,7 @@ from service.routes.scenes import (
     TIMES,
     SceneAnswer,
     answer_model,
+    answer_of,
     members,
     name_of,
     questions,
@@ -40,7 +41,7 @@ COLUMNS = 8
 """Numbers in a sample, at most."""
 
 QUESTION = ("times", "outputs", "digits")
-"""What is asked of a scene, beside the fields that are its own."""
+"""Fields of a question that are not the scene's own."""
 
 ELEMENTARY = PerSample(1.1e-5, 3e-8, 1e-10)
 SAMPLES: Mapping[str, PerSample] = {"rod-in-hole": PerSample(4.5e-5, 1.5e-7, 1.5e-9)}
@@ -63,18 +64,10 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
                 # Evenly spaced times have no entries to point at.
                 raise InvalidParameter("times", fault.rule, remedy=fault.remedy) from None
             raise
-        fields: Answer = {
-            "model": found.model,
-            "accuracy": accuracy(digits),
-            "work": Work(0 if found.trajectory is None else len(found.trajectory["time"])),
-            "requested_samples": samples,
-            "ended": found.ended,
-            **found.figures,
-            "warnings": found.warnings,
-        }
+        work = Work(0 if found.trajectory is None else len(found.trajectory["time"]))
+        fields = answer_of(found, accuracy(digits), work, samples)
         if found.trajectory is not None:
-            columns = dict(found.trajectory)
-            fields["trajectory"] = columns | {"time": times_written(columns["time"], digits)}
+            fields["trajectory"]["time"] = times_written(found.trajectory["time"], digits)
         return fields
 
     return answer
@@ -89,7 +82,7 @@ def _instants(times: Any, budget: Budget) -> Any:
 
 
 class CertifiedSceneAnswer(Certified, SceneAnswer[DecimalString]):
-    """What was asked for of a scene, numbers as decimal strings."""
+    """The requested outputs of a scene, numbers as decimal strings."""
 
 
 @cache

@@ -16,6 +16,10 @@ from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices
 from service.routes.certified.cost import SET_UP, PerSample, summing
 from service.routes.rotation.surfaces import (
+    ENERGY,
+    POINTS,
+    SEPARATRIX,
+    STATE,
     SURFACES,
     Count,
     Drawn,
@@ -23,20 +27,17 @@ from service.routes.rotation.surfaces import (
     curve_points,
     curves_drawn,
     probe_of_curves,
-    require_one,
 )
 from service.routing import Answer, PlanningProbe
-from service.schemas import DecimalString, Request, fields_of
+from service.schemas import DecimalString, Request, fields_of, require_one
 
 
 class CertifiedEllipsoidRequest(Request):
     """A body and the energy of its rotation, or a state that has it."""
 
     body: DecimalBody
-    energy: DecimalEnergy | None = Field(default=None, description="Kinetic energy; this or angular_velocity.")
-    angular_velocity: DecimalAngularVelocity | None = Field(
-        default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
-    )
+    energy: DecimalEnergy | None = ENERGY
+    angular_velocity: DecimalAngularVelocity | None = STATE
     resolution: Count | None = Field(
         default=None,
         description="Parts of an icosahedron's edge, or points from pole to pole; 16 if only the layout is given. "
@@ -50,10 +51,8 @@ class CertifiedEllipsoidRequest(Request):
         description="Draw polhodes through random starts: the same doubles as in the ordinary question, each "
         "then scaled to the energy exactly.",
     )
-    separatrix: bool = Field(default=False, description="Draw the separatrix.")
-    points: Count = Field(
-        default=256, description="Points of each curve; a multiple of 4 has the extreme points among them."
-    )
+    separatrix: bool = SEPARATRIX
+    points: Count = POINTS
     digits: DigitCount
 
 
@@ -62,11 +61,11 @@ class CertifiedEllipsoidAnswer(Certified, EllipsoidSurface[DecimalString]):
 
 
 def energy_ellipsoid(question: CertifiedEllipsoidRequest, budget: Budget) -> Answer:
-    """Answer with the semi-axes, and with the surface and the curves that are asked for."""
+    """Answer with the semi-axes, and with the requested surface and curves."""
     body, digits = body_of(question.body), question.digits
     curve_points(question, budget)
     check_digits(digits, _numbers(question))
-    require_one(question)
+    require_one(question, "energy", "angular_velocity")
     if question.energy is not None:
         surface = CertifiedEllipsoid.of(body.of_motion, question.energy)
     else:

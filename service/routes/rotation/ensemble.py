@@ -9,7 +9,6 @@ import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
-from core.errors import InvalidParameter
 from core.notices import Notice
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
@@ -36,6 +35,7 @@ from service.schemas import (
     Seconds,
     Times,
     View,
+    require_one,
     sample_count,
     sample_times,
 )
@@ -119,21 +119,12 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         "members": members,
         "time": many.time,
         "angular_velocity": many.angular_velocity,
-        "warnings": (
-            *inherited_notices(body),
-            *many.warnings,
-            *outside[:1],
-        ),
+        "warnings": (*inherited_notices(body), *many.warnings, *outside[:1]),
     }
 
 
 def _starts(question: EnsembleRequest, body: Any) -> Any:
-    if (question.angular_velocities is None) == (question.sample is None):
-        raise InvalidParameter(
-            "angular_velocities",
-            "be given, or sample, and not both",
-            remedy="give one of angular_velocities and sample",
-        )
+    require_one(question, "angular_velocities", "sample")
     if question.sample is not None:
         return initial_states(body, question.sample.energy, question.sample.count, question.sample.seed)
     return np.array(question.angular_velocities)

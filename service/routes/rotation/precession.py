@@ -1,4 +1,4 @@
-"""Questions about rates and angles of a free rotation; none of them integrates unless a measurement is asked for."""
+"""Questions about rates and angles of a free rotation; none of them integrates unless a measurement is requested."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class PrecessionFigures(Envelope, Generic[N]):
 class PrecessionAnswer(PrecessionFigures[float]):
     """Rates and angles; null where the motion has no such thing."""
 
-    measured: MeasuredPeriod | None = Field(default=None, description="The period by an integrator, if asked for.")
+    measured: MeasuredPeriod | None = Field(default=None, description="The period by an integrator, if requested.")
 
 
 RATE: Any = Field(default=1.0, description="About each principal axis in turn.")
@@ -123,7 +123,7 @@ class Equilibria(Envelope, Generic[N]):
     """Every equilibrium of a free body at one rate: about its axes in ascending order of moments, and at rest."""
 
     symmetry: Symmetry = Field(description="Which of the principal moments are equal.")
-    rate: RadiansPerSecond[N] = Field(description="As asked.")
+    rate: RadiansPerSecond[N] = Field(description="As in the request.")
     equilibria: list[Equilibrium[N]] = Field(description="About the axes in ascending order of moments, and at rest.")
     flip: Flip[N] | None = Field(description="Of the disturbance; null without one.")
 
@@ -133,7 +133,7 @@ class StabilityAnswer(Equilibria[float]):
 
 
 def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
-    """Answer with the figures and, if asked for, the measurement."""
+    """Answer with the figures and, if requested, the measurement."""
     body = properties_of(question.body)
     found: Precession = precession(body, question.angular_velocity)
     answer = found._asdict()

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
-from core.errors import BudgetExceeded, InvalidParameter
+from core.errors import BudgetExceeded
 from core.quantities import AngularVelocity, Energy
 from core.rotation.equal_moments import curve_notices
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
@@ -37,6 +37,7 @@ from service.schemas import (
     Request,
     View,
     fields_of,
+    require_one,
 )
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
@@ -54,21 +55,26 @@ class Drawn(Request):
     seed: Seed = SEED
 
 
+# Fields of ordinary and of certified questions, each in the types of its own.
+ENERGY: Any = Field(default=None, description="Kinetic energy; this or angular_velocity.")
+STATE: Any = Field(
+    default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
+)
+SEPARATRIX: Any = Field(default=False, description="Draw the separatrix.")
+POINTS: Any = Field(default=256, description="Points of each curve; a multiple of 4 has the extreme points among them.")
+
+
 class EllipsoidRequest(Request):
     """A body and the energy of its rotation, or a state that has it."""
 
     body: Body
-    energy: Energy | None = Field(default=None, description="Kinetic energy; this or angular_velocity.")
-    angular_velocity: AngularVelocity | None = Field(
-        default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
-    )
+    energy: Energy | None = ENERGY
+    angular_velocity: AngularVelocity | None = STATE
     resolution: Count = Field(default=16, description="Parts of an icosahedron's edge, or points from pole to pole.")
     layout: Literal["triangles", "grid"] = Field(default="triangles", description="How the surface is written.")
     polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through random starts.")
-    separatrix: bool = Field(default=False, description="Draw the separatrix.")
-    points: Count = Field(
-        default=256, description="Points of each curve; a multiple of 4 has the extreme points among them."
-    )
+    separatrix: bool = SEPARATRIX
+    points: Count = POINTS
 
 
 class MeshQuality(View, Generic[N]):
@@ -135,12 +141,12 @@ class StatesAnswer(Envelope):
     """Angular velocities of one energy, in body axes."""
 
     angular_velocities: list[AngularVelocityRow[float]] = Field(description="One row per start.")
-    energy: Joules[float] = Field(description="As asked.")
-    seed: int = Field(description="As asked.")
+    energy: Joules[float] = Field(description="As in the request.")
+    seed: int = Field(description="As in the request.")
 
 
 def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
-    """Answer with the surface and what is asked for on it."""
+    """Answer with the surface and the curves on it."""
     body = properties_of(question.body)
     surface = _surface(question, body)
     answer: Answer = {
@@ -167,16 +173,8 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
     return answer
 
 
-def require_one(question: Any) -> None:
-    """Raise `InvalidParameter` unless a question gives one of energy and angular velocity."""
-    if (question.energy is None) == (question.angular_velocity is None):
-        raise InvalidParameter(
-            "energy", "be given, or angular_velocity, and not both", remedy="give one of energy and angular_velocity"
-        )
-
-
 def _surface(question: EllipsoidRequest, body: MassProperties) -> EnergyEllipsoid:
-    require_one(question)
+    require_one(question, "energy", "angular_velocity")
     if question.energy is not None:
         return EnergyEllipsoid.of(body, question.energy)
     return EnergyEllipsoid.through(body, np.array(question.angular_velocity))

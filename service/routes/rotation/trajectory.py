@@ -238,7 +238,7 @@ ROTATION = (
     PostRoute(
         "/v1/rotation/trajectory",
         "rotation_trajectory",
-        "The free rotation of a body: angular velocity and, if asked, attitude at given times",
+        "The free rotation of a body: angular velocity and, if requested, attitude at given times",
         "rotation",
         TrajectoryRequest,
         TrajectoryAnswer,
