@@ -21,7 +21,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.execution.request_handler import RequestHandler
-from service.execution.supervision import end_with_supervisor
+from service.execution.supervision import end_with_supervisor, remove_temporary_files
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
 from service.observability.logs import LOG, configure
@@ -135,6 +135,7 @@ class Service(FastAPI):
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.compute.stop()
+            remove_temporary_files()
 
     async def _warm(self) -> None:
         try:

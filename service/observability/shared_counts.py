@@ -35,18 +35,11 @@ def sharing() -> Iterator[None]:
         LOG.warning("the server processes count each for itself: no directory can be made", extra={"fault": str(fault)})
         yield
         return
-    # uvicorn ends its server processes by a signal: their other temporary files are removed here, too.
-    changed = {DIRECTORY: directory, "TMPDIR": directory}
-    before = {name: os.environ.get(name) for name in changed}
-    os.environ.update(changed)
+    os.environ[DIRECTORY] = directory
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+        del os.environ[DIRECTORY]
         rmtree(directory, ignore_errors=True)
 
 
