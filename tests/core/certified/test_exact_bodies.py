@@ -56,7 +56,7 @@ def test_every_uniform_solid_is_known():
         ({"kind": "cuboid", "edges": [1, -2, 3], "mass": 1}, ("edges", 1)),
         ({"kind": "cuboid", "edges": [1, 2, 3], "mass": "1e400"}, ("mass",)),
         ({"kind": "cuboid", "edges": [1, 2, 3], "mass": -1}, ("mass",)),
-        ({"kind": "cuboid", "radius": 1, "mass": 1}, ()),
+        ({"kind": "cuboid", "radius": 1, "mass": 1}, ("radius",)),
         ({"kind": "point-masses", "masses": 1, "positions": [[1, 2, 3]]}, ()),
     ],
 )
