@@ -54,7 +54,7 @@ def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
     known = {entry.name: entry for entry in fields(cls)}
     for key in value:
         if key not in known:
-            raise InvalidParameter((*path, str(key)[:80]), f"be one of {', '.join(known)}")
+            raise InvalidParameter((*path, str(key)[:80]), f"be left out; known here are {', '.join(known)}")
     for name, entry in known.items():
         if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
             raise InvalidParameter((*path, name), "be given")

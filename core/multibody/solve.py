@@ -299,6 +299,11 @@ def _trajectory(
     columns = _columns(whole, determined, moments, outputs, finer=False)
     if any(isinstance(motion, Numerical) for _, motion in whole.parts) and worst(columns) > accuracy:
         columns = _columns(whole, determined, moments, outputs, finer=True)
+    lost = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
+    if lost:
+        raise NotApplicable(
+            f"{lost[0]} leaves the range of doubles", path=("times",), remedy="choose units in which it is smaller"
+        )
     reached = worst(columns)
     if reached > accuracy:
         raise AccuracyUnreachable(
