@@ -91,18 +91,19 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
-    bodies, parts = len(question.bodies), len(question.bodies) + len(question.connections)
-    found = {"question": 1.0, "parts": float(parts), "pairs of parts": float(parts**2)}
+    bodies, connections = float(len(question.bodies)), float(len(question.connections))
+    found = {"question": 1.0, "bodies": bodies, "connections": connections, "pairs of connections": connections**2}
     if "equilibria" in (question.outputs or ()):
-        found |= {"searches": float(bodies), "pairs searched": float(parts**2)}
+        found |= {"searches": bodies, "searches of pairs": bodies**2}
     if question.times is not None:
         samples = sample_count(question.times, budget)
-        marched = min(LONGEST, extent(question.times))
+        # The motion of a single body most often repeats, or has a closed form: then no time is long.
+        followed = min(bodies - 1.0, connections) * min(LONGEST, extent(question.times))
         found |= {
-            "motions": float(parts),
-            "samples": float(samples * bodies),
-            "seconds": marched * bodies,
-            "seconds of pairs": marched * parts**2,
+            "motions": bodies + connections,
+            "samples of bodies": samples * bodies,
+            "samples of connections": samples * connections,
+            "seconds of coupled bodies": max(0.0, followed),
         }
     return found
 
