@@ -1,4 +1,4 @@
-"""Make service/execution/calibration.json, by which questions are priced, and say how far the prices are from what is measured.
+"""Make service/execution/calibration.json, by which questions are priced, and say how far off the prices are.
 
     python -m benchmarks.calibration                measure the prices, then check them
     python -m benchmarks.calibration OPERATION...   measure some of them, then check all
