@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check environment openapi judge record peers clean
+.PHONY: serve test check environment openapi judge plans record peers clean
 
 serve: $(ENV)/runs
 	@$(BIN)/python -m service
@@ -42,6 +42,9 @@ openapi: environment
 
 judge: environment
 	$(BIN)/python -m tests.core.certified.judge 100000
+
+plans: environment
+	RANDOM_QUESTIONS=300 $(BIN)/python -m pytest -q tests/service/test_plan.py -k random
 
 record: environment
 	$(BIN)/python -m benchmarks.method_record

@@ -1,4 +1,4 @@
-"""Make service/execution/calibration.json, by which questions are priced, and say how far off the prices are.
+"""Make service/execution/calibration.json, by which questions are priced, and compare prices with measurements.
 
     python -m benchmarks.calibration                measure the prices, then check them
     python -m benchmarks.calibration OPERATION...   measure some of them, then check all
@@ -293,7 +293,7 @@ def main(*operations: str) -> None:
     for operation, asked in variants().items():
         if operations and operation not in operations:
             continue
-        rows, times, sizes = [], [], []
+        rows, times = [], []
         route = routes[operation]
         for question in asked:
             price = own_price(route)
@@ -305,13 +305,11 @@ def main(*operations: str) -> None:
                 continue
             rows.append(dict(price.counts(answering.read(route, orjson.dumps(question)), budget)))
             times.append(seconds)
-            sizes.append(float(length))
             if length > 20_000:
                 lengths.append(length)
                 writings.append(writing)
         if rows:
             table["seconds"][operation] = fitted(rows, times)
-            table["bytes"][operation] = fitted(rows, sizes)
             print(operation, len(rows), table["seconds"][operation], flush=True)
     # Reading a body costs the same whatever is asked about it.
     kinds = {body["kind"] for body in [*BODIES, *SOLIDS, points(1)]}
@@ -335,7 +333,7 @@ def compare(answering: RequestHandler) -> None:
     result = []
     for path, question in held_out():
         route = routes.get(path)
-        if route is None or not isinstance(route.price, pricing.CostModel):
+        if route is None:
             continue
         try:
             body = orjson.dumps({"path": path, "request": question})

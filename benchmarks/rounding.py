@@ -14,7 +14,7 @@ from benchmarks.machine import RESULTS, T_HANDLE, described, medians
 from core.systems.budget import Budget
 from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
-from service.responses.json_rows import chunks
+from service.responses.json_stream import composed
 from service.routes import questions
 
 QUESTION: dict[str, Any] = {
@@ -43,7 +43,7 @@ def main() -> None:
 
     def whole(more: dict[str, Any]) -> bytes:
         question = answering.read(route, orjson.dumps(QUESTION | more))
-        return b"".join(chunks(answering.answer(route, question)))
+        return composed(route, answering.answer(route, question), None).whole()
 
     texts = {name: whole(more) for name, more in CASES.items()}
     spent = medians({name: lambda more=more: whole(more) for name, more in CASES.items()}, repeats=15)

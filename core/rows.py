@@ -74,9 +74,7 @@ class Rows:
             i = next(i for i, entry in enumerate(flat) if type(entry) is int and abs(entry) > limit)
             kind = "64-bit integers" if self.whole else "doubles"
             raise InvalidParameter((*path, *self._place(i)), f"be within the range of {kind}") from None
-        if not self._inside(array):
-            for i, entry in enumerate(flat):
-                self.quantity.check((*path, *self._place(i)), entry)
+        self._require_inside(path, array)
         array = array.reshape(-1, self.width) if self.width else array
         array.setflags(write=False)
         return array
@@ -94,13 +92,16 @@ class Rows:
             at = int(np.argmax(value > np.iinfo(np.int64).max))
             raise InvalidParameter((*path, *self._place(at)), "be within the range of 64-bit integers")
         array = np.array(value, dtype=kind, order="C")
+        self._require_inside(path, array)
+        array.setflags(write=False)
+        return array
+
+    def _require_inside(self, path: Path, array: NDArray[Any]) -> None:
         if not self._inside(array):
             flat, q = array.reshape(-1), self.quantity
             good = np.isfinite(flat) & (flat > q.above) & (flat >= q.at_least) & (flat <= q.at_most) & (flat < q.below)
             at = int(np.argmin(good))
             q.check((*path, *self._place(at)), flat[at].item())
-        array.setflags(write=False)
-        return array
 
     def _place(self, i: int) -> Path:
         return (i // self.width, i % self.width) if self.width else (i,)

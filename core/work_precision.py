@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
 from core.systems.budget import Budget
-from core.systems.error_statements import drifts, estimated, known_norm, measured
+from core.systems.error_statements import bound_of, drifts, estimated, known_norm, measured
 from core.systems.methods import (
     ClosedFormEvaluation,
     DiscreteMoserVeselov,
@@ -41,7 +41,7 @@ from core.systems.system import Floats, System
 STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
 TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))
 SCIPY_TOLERANCES = tuple(10.0**-k for k in range(3, 10, 2))
-DEFAULT_RUNS = 1 + 4 * len(STEPS_PER_OWN_TIME) + len(TOLERANCES) + 2 * len(SCIPY_TOLERANCES)
+DEFAULT_RUNS = 1 + 5 * len(STEPS_PER_OWN_TIME) + len(TOLERANCES) + 2 * len(SCIPY_TOLERANCES)
 """How many methods and settings `default_methods` has at most."""
 LARGEST_FITTED = 0.1
 """Above this the error has not yet begun to fall with its order."""
@@ -173,21 +173,26 @@ def work_precision(
     budget = budget or Budget()
     instants = checked_times(times, budget)
     chosen = default_methods(system, instants) if methods is None else tuple(methods)
-    if not chosen:
-        raise InvalidParameter(
-            "methods", "name at least one method", remedy="leave it out for a ladder of every method"
-        )
-    for k, method in enumerate(chosen):
-        if method in chosen[:k]:
-            rule = f"differ from methods/{chosen.index(method)}, which is the same method with the same settings"
-            raise InvalidParameter(
-                ("methods", k), rule, remedy="give each setting once; repeats says how often it is timed"
-            )
+    check_distinct(chosen)
     reference = _reference(system, instants, budget)
     found = [_measure(system, instants, method, reference, repeats, budget, clock) for method in chosen]
     ordered = sorted(found, key=lambda one: (one.method.kind, one.evaluations, -(one.error or math.inf)))
     curves = tuple(_curve(kind, tuple(group)) for kind, group in groupby(ordered, key=lambda one: one.method.kind))
     return WorkPrecision(reference.kind, reference.error, curves, pareto_front(found), _recommended(found, accuracy))
+
+
+def check_distinct(methods: Sequence[Method]) -> None:
+    """Raise `InvalidParameter` for no methods at all, or one with the same settings twice."""
+    if not methods:
+        raise InvalidParameter(
+            "methods", "name at least one method", remedy="leave it out for a ladder of every method"
+        )
+    for k, method in enumerate(methods):
+        if method in methods[:k]:
+            rule = f"differ from methods/{methods.index(method)}, which is the same method with the same settings"
+            raise InvalidParameter(
+                ("methods", k), rule, remedy="give each setting once; repeats says how often it is timed"
+            )
 
 
 def default_methods(system: System, times: Floats) -> tuple[Method, ...]:
@@ -238,7 +243,7 @@ class _Reference(NamedTuple):
 def _reference(system: System, times: Floats, budget: Budget) -> _Reference:
     exact = system.closed_form()
     if exact is not None:
-        return _Reference("closed form", exact.sample(times), exact.error(times), exact.largest_norm)
+        return _Reference("closed form", exact.sample(times), bound_of(exact, times), exact.largest_norm)
     method = DormandPrince853(10 * SMALLEST_TOLERANCE)
     run = method.integrate(system, times, budget)
     error = estimated(method, system, times, run, budget, run.work.evaluations).errors.largest

@@ -51,7 +51,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the service under uvicorn until it is told to stop."""
+    """Run the service under uvicorn until it is stopped."""
     options = parser().parse_args(arguments)
     if options.new_key is not None:
         key, line = new_key(options.new_key)
@@ -64,15 +64,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
         faults = [f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}" for fault in error.errors()]
         sys.exit("\n".join(faults))
     if options.openapi:
-        from service.app import create_app
+        from service.app import app
 
-        sys.stdout.buffer.write(create_app(settings).openapi_text() + b"\n")
+        sys.stdout.buffer.write(app.openapi_text() + b"\n")
         return
     configure(settings.log_level)
     host, port = settings.host, free_port(settings.host, settings.port)
     # Server processes read their settings from the environment that they inherit.
     os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
-    # uvicorn ends by the signal that stopped it, once it has finished; this makes that an ordinary end.
+    # uvicorn raises the signal that stopped it again when it has finished; this makes that an ordinary end.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     several = settings.workers > 1
     if not several:
@@ -84,11 +84,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: about 40 s, once")
     import uvicorn
 
-    from service.app import create_app
+    from service.app import app
 
+    app.address = f"http://{host}:{port}"
     with sharing() if several else contextlib.nullcontext():
         uvicorn.run(
-            "service.app:app" if several else create_app(settings, f"http://{host}:{port}"),
+            "service.app:app" if several else app,
             host=host,
             port=port,
             workers=settings.workers,
@@ -105,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def free_port(host: str, port: int) -> int:
-    """Return a port that can be listened on, any free one for 0, or end with the reason why it cannot be."""
+    """Return a port that can be listened on, any free one for 0; exit with the reason if there is none."""
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family) as probe:

@@ -21,7 +21,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.execution.request_handler import RequestHandler
-from service.execution.supervision import end_with_supervisor
+from service.execution.supervision import end_with_supervisor, remove_temporary_files
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
 from service.observability.logs import LOG, configure
@@ -46,21 +46,21 @@ class Service(FastAPI):
     settings : Settings
     table : str
         Where the questions are: ``"module:function"``.
-    address : str
-        URL under which the service is announced as ready, if it is known.
 
     Attributes
     ----------
+    address : str
+        URL under which the service is announced as ready, where it is known.
     table : tuple of Route
         Everything that is served.
     warm : bool
         Whether every kernel is compiled and the compute processes have been up.
     """
 
-    def __init__(self, settings: Settings, table: str = TABLE, address: str = "") -> None:
+    def __init__(self, settings: Settings, table: str = TABLE) -> None:
         super().__init__(**ABOUT, lifespan=self.lifespan)
-        self.settings, self._address = settings, address
-        self.warm = False
+        self.settings = settings
+        self.warm, self.address = False, ""
         self.metrics = Metrics()
         questions: tuple[PostRoute, ...] = resolve_name(table)()
         self.compute = Compute(settings, self.metrics, table)
@@ -135,6 +135,7 @@ class Service(FastAPI):
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.compute.stop()
+            remove_temporary_files()
 
     async def _warm(self) -> None:
         try:
@@ -146,7 +147,7 @@ class Service(FastAPI):
         gc.collect()
         gc.freeze()
         self.warm = True
-        at = f" at {self._address}" if self._address else ""
+        at = f" at {self.address}" if self.address else ""
         LOG.info("ready%s", at, extra={"compute_processes": self.compute.size})
 
     async def _publish(self) -> None:
@@ -159,13 +160,9 @@ class Service(FastAPI):
         self.openapi_text()
 
 
-def create_app(settings: Settings | None = None, address: str = "") -> Service:
+def create_app(settings: Settings | None = None) -> Service:
     """Return the application; settings come from the environment unless given."""
-    return Service(settings or Settings(), address=address)
+    return Service(settings or Settings())
 
 
-def __getattr__(name: str) -> Service:
-    """Make ``service.app:app`` when a server asks for it, so that importing this module builds nothing."""
-    if name != "app":
-        raise AttributeError(f"module {__name__} has no attribute {name}")
-    return create_app()
+app = create_app()

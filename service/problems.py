@@ -111,8 +111,8 @@ REGISTRY: Mapping[str, ProblemType] = {
         ProblemType(
             "accuracy-unreachable",
             422,
-            "The accuracy that was asked for cannot be reached",
-            "The members requested and achievable say what was asked for and what can be had.",
+            "The requested accuracy cannot be reached",
+            "The members requested and achievable state both accuracies.",
         ),
         ProblemType(
             "budget-exceeded",
@@ -160,7 +160,7 @@ REGISTRY: Mapping[str, ProblemType] = {
         ProblemType(
             "no-room",
             503,
-            "There is no room for the answer now",
+            "Not enough memory for the answer",
             "Memory or files of the machine are used up. Ask again in a moment, or for fewer samples.",
         ),
         ProblemType("shutting-down", 503, "The service is being stopped", "Ask again in a moment."),
@@ -200,21 +200,7 @@ class Fault:
 
 
 class Refusal(Exception):
-    """A request that is answered by a problem.
-
-    Parameters
-    ----------
-    code : str
-        Key of `REGISTRY`.
-    detail : str
-        One sentence about this occurrence.
-    faults : sequence of Fault
-        Places in the client's document.
-    headers : sequence of (str, str)
-        For example Allow or Retry-After.
-    extra : mapping
-        Further members of the document.
-    """
+    """A request that is answered by a problem; the parameters are those of `Problem`, by its code."""
 
     def __init__(
         self,
@@ -224,9 +210,10 @@ class Refusal(Exception):
         faults: Sequence[Fault] = (),
         headers: Sequence[tuple[str, str]] = (),
         extra: Mapping[str, Any] | None = None,
+        retry_after: float | None = None,
     ) -> None:
         super().__init__(code, detail)
-        self.problem = Problem(REGISTRY[code], detail, tuple(faults), tuple(headers), dict(extra or {}))
+        self.problem = Problem(REGISTRY[code], detail, tuple(faults), tuple(headers), extra or {}, retry_after)
 
     @classmethod
     def of(cls, problem: Problem) -> Refusal:
@@ -238,13 +225,29 @@ class Refusal(Exception):
 
 @dataclass(frozen=True)
 class Problem:
-    """One occurrence of a problem."""
+    """One occurrence of a problem.
+
+    Attributes
+    ----------
+    type : ProblemType
+    detail : str
+        One sentence about this occurrence.
+    faults : tuple of Fault
+        Places in the client's document.
+    headers : tuple of (str, str)
+        Of the response, for example Allow.
+    extra : mapping
+        Further members of the document.
+    retry_after : float or None
+        Time after which the request may be sent again (s); the header has it in whole seconds.
+    """
 
     type: ProblemType
     detail: str
     faults: tuple[Fault, ...] = ()
     headers: tuple[tuple[str, str], ...] = ()
     extra: Mapping[str, Any] = field(default_factory=dict)
+    retry_after: float | None = None
 
     def body(self, request_id: str = "") -> bytes:
         """Return the document, with as many faults as fit into the bounds on their number and on its length.
@@ -263,15 +266,14 @@ class Problem:
             **({"instance": f"urn:polhode:request:{request_id}", "request_id": request_id} if request_id else {}),
             **self.extra,
         }
-        wait = dict(self.headers).get("Retry-After")
-        if wait is not None:
-            document.setdefault("retry_after_seconds", float(wait))
-        room = MOST_BYTES - len(orjson.dumps(document))
+        if self.retry_after is not None:
+            document["retry_after_seconds"] = round(max(self.retry_after, 1e-3), 3)
+        left = MOST_BYTES - len(orjson.dumps(document))
         entries: list[dict[str, str]] = []
         for fault in self.faults[:MOST_FAULTS]:
             entry = fault.document()
-            room -= len(orjson.dumps(entry)) + 1
-            if room < 0 and entries:
+            left -= len(orjson.dumps(entry)) + 1
+            if left < 0 and entries:
                 break
             entries.append(entry)
         if entries:

@@ -11,7 +11,7 @@ from pydantic import BaseModel
 from core.systems.budget import Budget
 
 TABLE = "service.routes:questions"
-"""Where the route table is; compute processes load it from there by themselves."""
+"""Location of the route table, ``"module:function"``; each compute process loads it by itself."""
 
 Answer = dict[str, Any]
 """Fields of an answer in the order in which they are written; see `service.responses.json_rows`."""
@@ -19,7 +19,7 @@ Answer = dict[str, Any]
 
 @dataclass(frozen=True)
 class Example:
-    """A question that runs, shown in the documentation and asked while the service warms up."""
+    """A question shown in the documentation, and answered while the service warms up."""
 
     summary: str
     question: Mapping[str, Any]
@@ -32,6 +32,28 @@ class Reply:
     body: bytes
     media_type: bytes = b"application/json"
     status: int = 200
+
+
+@dataclass(frozen=True)
+class PlanningProbe:
+    """The answer to a question that costs little and has the model, the warnings and the refusals of another.
+
+    Attributes
+    ----------
+    fields : mapping
+        Of the answer.
+    growth : mapping of str to float
+        Fields that are longer in the other answer, and how many times as long.
+    error : float or None
+        Order of magnitude of the error of a method that is named, of which few steps are run.
+    exact : mapping
+        Fields of the answer in closed form beside that.
+    """
+
+    fields: Answer
+    growth: Mapping[str, float] = field(default_factory=dict)
+    error: float | None = None
+    exact: Answer = field(default_factory=dict)
 
 
 def free(question: Any, budget: Budget) -> float:
@@ -61,8 +83,7 @@ class PostRoute:
     small : callable
         Whether a question may be begun in the event loop, by counts that it states; decided without computing anything.
     planning_probe : callable or None
-        From a question to one that costs little and has the same model, warnings and refusals, by which it is planned;
-        None if the question is that itself.
+        From question and budget to the `PlanningProbe` by which it is planned; None if that is the answer itself.
     examples : mapping
         By a short name.
     warming : sequence of mappings
@@ -82,7 +103,7 @@ class PostRoute:
     handle: Callable[[Any, Budget], Answer]
     price: Callable[[Any, Budget], float] = free
     small: Callable[[Any], bool] = never
-    planning_probe: Callable[[Any], Any] | None = None
+    planning_probe: Callable[[Any, Budget], PlanningProbe] | None = None
     description: str = ""
     examples: Mapping[str, Example] = field(default_factory=dict)
     warming: Sequence[Mapping[str, Any]] = ()

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields
 from math import isfinite
-from typing import Annotated, Any, Literal, Protocol, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,16 +169,8 @@ class Span(Request):
             return np.linspace(self.start, self.stop, self.count)
 
 
-class Counted(Protocol):
-    """Evenly spaced times, in whatever kind of number."""
-
-    @property
-    def count(self) -> int:
-        """How many."""
-
-
 class ObjectOrArray:
-    """Labels the two members of a union, so that a fault is told about the one that the client meant."""
+    """Labels the two members of a union, so that a fault names the one that the client meant."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
         schema: dict[str, Any] = handler(source)
@@ -190,7 +182,19 @@ Times = Annotated[Span | Annotated[list[Time], Field(min_length=1)], ObjectOrArr
 """Times from the given state, which holds at t = 0; they may be negative and in any order."""
 
 
-def sample_count(times: Counted | list[Any], budget: Budget) -> int:
+def require_one(question: Any, first: str, second: str) -> None:
+    """Raise `InvalidParameter` unless a question gives exactly one of two fields."""
+    if (getattr(question, first) is None) == (getattr(question, second) is None):
+        remedy = f"give one of {first} and {second}"
+        raise InvalidParameter(first, f"be given, or {second}, and not both", remedy=remedy)
+
+
+def number_of(times: Any) -> int:
+    """Return the number of times, in a list or evenly spaced, in whatever kind of number."""
+    return len(times) if isinstance(times, list) else int(times.count)
+
+
+def sample_count(times: Any, budget: Budget) -> int:
     """Return the number of samples without making them.
 
     Raises
@@ -200,7 +204,7 @@ def sample_count(times: Counted | list[Any], budget: Budget) -> int:
     InvalidParameter
         For a span whose width leaves the range of doubles.
     """
-    count = len(times) if isinstance(times, list) else times.count
+    count = number_of(times)
     if count > budget.samples:
         remedy = "ask for fewer times, or in several questions"
         path = ("times",) if isinstance(times, list) else ("times", "count")

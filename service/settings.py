@@ -12,7 +12,7 @@ LONGEST = 1_000_000
 
 
 def _named(value: object) -> object:
-    """Refuse a path that is empty: it would be the working directory, where none at all may have been meant."""
+    """Refuse an empty path: it would be the working directory."""
     if value == "":
         raise ValueError("is empty; leave it out for the default")
     return value
@@ -40,23 +40,6 @@ class Settings(BaseSettings):
     )
     body_seconds: float = Field(
         default=30.0, gt=0, le=LONGEST, description="Time in which a request body must have arrived (408)."
-    )
-    max_nesting: int = Field(
-        default=32, ge=1, le=200, description="Deepest nesting of arrays and objects in a request body (400)."
-    )
-    max_keys: int = Field(
-        default=4000, ge=1, description="Largest number of keys in all objects of a request body (400)."
-    )
-    max_arrays: int = Field(
-        default=110_000,
-        ge=1,
-        description="Largest number of arrays and objects, rows included, in a request body (400); larger arrays come "
-        "as numpy archives.",
-    )
-    max_strings: int = Field(
-        default=100_000,
-        ge=1,
-        description="Largest number of strings, or of quotes and escapes for two of them, in a request body (400).",
     )
     max_samples: int = Field(default=1_000_000, ge=1, description="Largest number of samples in one answer (422).")
     max_evaluations: int = Field(
@@ -99,7 +82,7 @@ class Settings(BaseSettings):
         default=20.0,
         gt=0,
         le=LONGEST,
-        description="Time in which a client must take some of its answer; otherwise it is let go.",
+        description="Time in which a client must take some of its answer; otherwise the connection is closed.",
     )
     cached_answers: int = Field(
         default=1024,
@@ -109,12 +92,12 @@ class Settings(BaseSettings):
 
     keys_file: Annotated[FilePath, BeforeValidator(_named)] | None = Field(
         default=None,
-        description="File of the keys that may ask, one per line: name, SHA-256, requests per second, seconds of work "
-        "per minute; read again when it changes. Default: everybody may ask.",
+        description="File of accepted keys, one per line: name, SHA-256, requests per second, seconds of work "
+        "per minute; read again when it changes. By default no key is required.",
     )
     cors_origins: str = Field(
         default="",
-        description="Origins whose pages may ask from a browser, separated by commas; * allows all, empty allows none.",
+        description="Origins allowed to send cross-origin requests, separated by commas; * allows all, empty none.",
     )
 
     log_level: Literal["debug", "info", "warning", "error"] = Field(

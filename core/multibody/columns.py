@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -27,6 +27,7 @@ class Columns:
     times: Floats
     states: WholeStates
     how: How
+    _along: dict[tuple[int, bool], Floats] = field(default_factory=dict, repr=False)
 
     def trajectory(self) -> dict[str, Column]:
         """Return what every body does."""
@@ -110,7 +111,7 @@ class Columns:
     def _angle(self, direction: tuple[int, int], name: str) -> Column:
         """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
         c, s = (self.states.q[:, i, 0] for i in direction)
-        start = self.whole.states(np.zeros(1)).q[0, list(direction), 0]
+        start = [float(self.whole.measures.table.q[i]) for i in direction]
         first = self.whole.measures.coordinates.start_angle(name)
         principal = np.arctan2(start[0] * s - start[1] * c, start[0] * c + start[1] * s)
         turns = np.round((self._followed(direction) - principal) / (2 * math.pi))
@@ -134,7 +135,11 @@ class Columns:
                 grid = np.append(grid[np.abs(grid) < period * (1 - 1e-9)], math.copysign(period, grid[-1]))
             else:
                 period = None
-            q = self.whole.states(grid).q[:, list(direction), 0]
+            # Bodies of one part are followed together.
+            key = (id(motion), forward)
+            if key not in self._along:
+                self._along[key] = self.whole.places(grid)
+            q = self._along[key][:, list(direction)]
             angle = np.unwrap(np.arctan2(q[:, 1], q[:, 0]))
             angle = angle - angle[0]
             if period is None:

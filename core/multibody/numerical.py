@@ -107,6 +107,13 @@ class Numerical:
             v_error = 4.0 * v_error + 2.0**-50 * coarse.v_error
         return States(q, v, q_error, v_error, (other, rate))
 
+    def places(self, times: Floats) -> Floats:
+        """Return coordinates alone, shape (t, n), without a judge: enough to count turns."""
+        scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
+        run = self.run("fine" if self.lost_to_doubles else "doubles", float(scaled[np.argmax(np.abs(scaled))]))
+        found: Floats = evaluate(run, scaled)[0][..., 0] * np.array([two_to(e) for e in self.units.lengths])
+        return found
+
     def nodes(self, end: float) -> Floats:
         """Return eight times a step."""
         run = self.run("fine" if self.lost_to_doubles else "doubles", end * two_to(-self.units.time))

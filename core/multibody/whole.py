@@ -13,6 +13,7 @@ from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
 from core.multibody.measures import Force, Measures
 from core.multibody.motion import Motion
+from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats, Packed, Units, packed, pair, two_to, units_of
 from core.multibody.passes import Reduced
 from core.multibody.polynomials import Ball, Poly
@@ -108,6 +109,16 @@ class Whole:
             w_error @ size,
             reference,
         )
+
+    def places(self, times: Floats) -> Floats:
+        """Return every coordinate at times of one sign, shape (t, n), to a few roundings of the answer's."""
+        z = np.zeros((len(times), len(self.reduced.table.names)))
+        for indices, motion in self.parts:
+            own = motion.places(times) if isinstance(motion, Numerical) else motion.states(times).q[..., 0]
+            z[:, list(indices)] = own
+        slopes, offsets = self._affine
+        found: Floats = offsets[:, 0] + z @ slopes[:, :, 0].T
+        return found
 
     def misfit(self, q: Floats) -> float:
         """Return by how much the measures are missed at most, relative to the sum of their terms."""

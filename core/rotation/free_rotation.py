@@ -228,10 +228,7 @@ class FreeRotation:
     def error(self, times: Floats) -> float:
         """Return a bound of the error of `sample`, relative to the largest norm of the whole motion, inputs as exact.
 
-        Raises
-        ------
-        AccuracyUnreachable
-            If the rounding of the constants of the motion leaves nothing known of the phase at the farthest time.
+        Infinite where the rounding of the constants of the motion leaves nothing known of the phase.
         """
         m, horizon = self.motion, self.horizon(times)
         if m.regime in (REST, STEADY):
@@ -243,15 +240,7 @@ class FreeRotation:
             computed += UNMOVED if horizon <= self._unmoved_until else self._underflow
         if self.derivation is not None:
             computed += self.derivation.angular_velocity(self.derived_rounding, horizon)
-        if not computed < 1.0:
-            raise AccuracyUnreachable(
-                None,
-                2.0,
-                "the phase at the latest times hangs on the rounding of the constants of the motion",
-                path=("times",),
-                remedy="ask for earlier times",
-            )
-        return computed
+        return computed if computed < 1.0 else math.inf
 
     @property
     def _unmoved_until(self) -> float:

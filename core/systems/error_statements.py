@@ -15,10 +15,10 @@ import numpy as np
 from numba import types
 
 from core.compiled import kernel
-from core.errors import BudgetExceeded, NotApplicable
+from core.errors import AccuracyUnreachable, BudgetExceeded, NotApplicable
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Integration
-from core.systems.system import Floats, System
+from core.systems.system import ClosedForm, Floats, System
 
 SAFETY = 4.0
 """Factor between the estimate from a finer run and the error that is stated.
@@ -151,6 +151,26 @@ def known_norm(states: Floats, start: Floats) -> float:
     norms = np.sqrt(((states / unit) ** 2).sum(axis=1))
     # The square of the start may be nothing beside that of a run that blows up.
     return unit * max(float(norms.max()), math.hypot(*(start / unit).tolist()))
+
+
+def bound_of(exact: ClosedForm, times: Floats) -> float:
+    """Return the bound of a closed form's own error at `times`.
+
+    Raises
+    ------
+    AccuracyUnreachable
+        If there is none, or a time is beyond what the closed form answers; the path leads from the question.
+    """
+    error = exact.error(times)
+    if error < math.inf:
+        return error
+    raise AccuracyUnreachable(
+        None,
+        2.0,
+        "rounding leaves nothing known of the phase at the latest times",
+        path=("times",),
+        remedy="ask for earlier times, or for certified digits",
+    )
 
 
 def drifts(system: System, states: Floats) -> dict[str, float]:

@@ -15,7 +15,7 @@ from core.notices import Notice
 from core.quantities import Tolerance, Uncertainty, check_value
 from core.systems.accuracy import run_to_accuracy
 from core.systems.budget import Budget
-from core.systems.error_statements import drifts, estimated, known_norm, measured
+from core.systems.error_statements import bound_of, drifts, estimated, known_norm, measured
 from core.systems.methods import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod, Integration
 from core.systems.system import ClosedForm, Floats, System
@@ -120,7 +120,7 @@ def checked_times(times: ArrayLike, budget: Budget) -> Floats:
 def _evaluated(
     system: System, exact: ClosedForm, times: Floats, accuracy: float, input_uncertainty: float
 ) -> Trajectory:
-    error = exact.error(times)
+    error = bound_of(exact, times)
     if not error <= accuracy:
         if accuracy < exact.error(np.zeros(1)):
             remedy = "ask for less accuracy; what doubles cannot hold at any time takes more digits than theirs"
@@ -152,7 +152,7 @@ def _compared_with_closed_form(
     accuracy: float,
     input_uncertainty: float,
 ) -> Trajectory:
-    reference, own = exact.sample(times), exact.error(times)
+    reference, own = exact.sample(times), bound_of(exact, times)
     with _inside("method"):
         found = measured(run.states, reference, times, exact.largest_norm).beyond(own)
     inherited, notices = _inherited(exact, times, input_uncertainty)

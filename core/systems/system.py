@@ -120,12 +120,7 @@ class ClosedForm(Protocol):
     def error(self, times: Floats) -> float:
         """Return a bound of the numerical error of `sample`, relative to `largest_norm`, inputs taken as exact.
 
-        It is that of the time farthest from the start, and holds for all.
-
-        Raises
-        ------
-        AccuracyUnreachable
-            If nothing is known of the states there.
+        It is that of the time farthest from the start, and holds for all; infinite where nothing is known of the phase.
         """
 
     def inherited(self, times: Floats, uncertainty: float) -> float:

@@ -1,8 +1,7 @@
-"""Where requests are answered that the event loop may not: in processes of their own, which can be killed.
+"""Answers requests that are too large for the event loop in other processes, which can be killed.
 
-One process reads every such request and prices it. A request whose turn would come too late is refused at once, which
-keeps short the time of those that are accepted; the others are answered by the compute processes, the clients in
-rotation.
+One process reads every such request and predicts its cost. A request that would wait too long is refused at once; the
+others are answered by the compute processes, the clients in rotation.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ import os
 from collections import defaultdict
 from collections.abc import Awaitable, Callable, Hashable, Iterator
 from dataclasses import dataclass
-from math import ceil
 from typing import Any
 
 from service.execution import PRELOAD
@@ -57,14 +55,7 @@ class Sender:
 
 
 class Compute:
-    """The processes of one server process.
-
-    Parameters
-    ----------
-    settings : Settings
-    metrics : Metrics
-    table : str
-        Where the route table is: ``"module:function"``.
+    """The compute processes of one server process.
 
     Attributes
     ----------
@@ -134,7 +125,7 @@ class Compute:
         if self._stopping:
             raise _stopped()
         if not self._up:
-            raise Refusal("not-ready", "the compute processes are not up yet", headers=(("Retry-After", "1"),))
+            raise Refusal("not-ready", "the compute processes are not up yet", retry_after=1.0)
         deadline = self._settings.deadline_seconds
         task = Task(route.path, body, npz, media, deadline)
         with self.holding(len(body)):
@@ -152,16 +143,12 @@ class Compute:
         most = self._settings.max_held_bytes
         if self._held > most:
             detail = f"requests and unread answers take more than {most} bytes, the limit max_held_bytes"
-            raise Refusal("too-busy", detail, headers=(("Retry-After", "1"),), extra={"retry_after_seconds": 1.0})
+            raise Refusal("too-busy", detail, retry_after=1.0)
         limit = self._settings.max_backlog_seconds
         wait = processes.wait_of(sender.client) - limit
         if wait > 0.0:
-            raise Refusal(
-                "too-busy",
-                f"more than {limit:g} s of work wait already, the limit max_backlog_seconds",
-                headers=(("Retry-After", str(max(1, ceil(wait)))),),
-                extra={"retry_after_seconds": round(max(wait, 1e-3), 3)},
-            )
+            detail = f"more than {limit:g} s of work wait already, the limit max_backlog_seconds"
+            raise Refusal("too-busy", detail, retry_after=wait)
 
     async def _done(self, processes: Processes, task: Task, price: float, sender: Sender) -> Any:
         """Return what a process replies, or raise why it does not; time and key are settled however it ends."""
@@ -185,7 +172,7 @@ class Compute:
             watch.cancel()
             finished = job.reply.done() and job.reply.exception() is None
             processes.drop(job)
-            # What was cut short took longer than that, which tells something only if it was expected to be done.
+            # A computation that was cut short counts only if it has already taken longer than predicted.
             if computes and (finished or job.seconds > job.predicted):
                 speed.learn(price, job.seconds)
             if sender.key is not None:
@@ -209,10 +196,10 @@ class Compute:
             raise Refusal("deadline-exceeded", detail) from None
         except WorkerDied:
             detail = "the process that computed this answer died; other requests are not affected"
-            raise Refusal("worker-lost", detail, headers=(("Retry-After", "1"),)) from None
+            raise Refusal("worker-lost", detail, retry_after=1.0) from None
         except QueueTimeout:
             detail = "no compute process became free for this request in time; it was not begun"
-            raise Refusal("not-ready", detail, headers=(("Retry-After", "1"),)) from None
+            raise Refusal("not-ready", detail, retry_after=1.0) from None
         except Stopped:
             raise _stopped() from None
 
@@ -222,4 +209,4 @@ class Compute:
 
 
 def _stopped() -> Refusal:
-    return Refusal("shutting-down", "the service is being stopped", headers=(("Retry-After", "1"),))
+    return Refusal("shutting-down", "the service is being stopped", retry_after=1.0)

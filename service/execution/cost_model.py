@@ -1,7 +1,7 @@
 """What a question will cost, before it is answered: counts that the question tells, times measured costs per count.
 
-The costs stand in a table that `benchmarks.calibration` measures and writes. Times are the measuring machine's; counts
-and bytes hold on every machine.
+The costs are read from a table that `benchmarks.calibration` measures and writes. Times are the measuring machine's;
+counts hold on every machine.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from functools import cache, cached_property
 from importlib import resources
 from math import exp, floor, hypot, inf, log, sqrt
 from sys import float_info
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 from core.systems.budget import Budget
 
@@ -33,8 +33,8 @@ class Calibration:
 
     Attributes
     ----------
-    seconds, bytes : mapping of str to mapping of str to float
-        By operation, cost per count: of computing the answer, and of the answer as JSON.
+    seconds : mapping of str to mapping of str to float
+        By operation, cost per count of computing the answer.
     writing : float
         Time per byte of writing an answer (s).
     methods : mapping of str to mapping of str to float
@@ -43,7 +43,6 @@ class Calibration:
     """
 
     seconds: Mapping[str, Counts]
-    bytes: Mapping[str, Counts]
     writing: float
     methods: Mapping[str, Mapping[str, float]]
 
@@ -52,20 +51,7 @@ class Calibration:
 def calibration() -> Calibration:
     """Return the committed table."""
     table = json.loads(resources.files("service.execution").joinpath("calibration.json").read_text(encoding="utf-8"))
-    return Calibration(**{name: table[name] for name in ("seconds", "bytes", "writing", "methods")})
-
-
-@runtime_checkable
-class CostModel(Protocol):
-    """A price that also foresees how long the answer will be."""
-
-    def __call__(self, question: Any, budget: Budget) -> float:
-        """Return the predicted time of computing an answer (s)."""
-        ...
-
-    def size(self, question: Any, budget: Budget) -> float:
-        """Return the predicted length of an answer as JSON (bytes)."""
-        ...
+    return Calibration(**{name: table[name] for name in ("seconds", "writing", "methods")})
 
 
 @dataclass(frozen=True)
@@ -89,23 +75,13 @@ class CalibratedCost:
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
-        return _sum(self._seconds, self.counts(question, budget))
-
-    def size(self, question: Any, budget: Budget) -> float:
-        """Return the predicted length of an answer as JSON (bytes)."""
-        return _sum(calibration().bytes[self.operation], self.counts(question, budget))
+        costs = self._seconds
+        return sum((costs.get(name, 0.0) * count for name, count in self.counts(question, budget).items()), 0.0)
 
 
 def one(question: Any, budget: Budget) -> Counts:
     """Return what is counted of a question that always costs the same."""
     return {"question": 1.0}
-
-
-def _sum(costs: Counts, counts: Counts) -> float:
-    total = 0.0
-    for name, count in counts.items():
-        total += costs.get(name, 0.0) * count
-    return total
 
 
 def setting(method: Any) -> tuple[str, float]:

@@ -1,4 +1,4 @@
-"""What may wait for long, done in a thread of its own, and the event loop told of it."""
+"""Blocking calls in threads of their own, whose results reach the event loop."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 
 async def run_in_daemon_thread(work: Callable[[], Any]) -> Any:
-    """Return what a function returns that may wait for long, in a thread that holds up nobody's exit."""
+    """Return the result of a blocking call, made in a thread that does not delay the exit of the process."""
     loop = asyncio.get_running_loop()
     done: asyncio.Future[Any] = loop.create_future()
 
@@ -34,6 +34,6 @@ async def run_in_daemon_thread(work: Callable[[], Any]) -> Any:
 
 
 def call_soon_if_open(loop: asyncio.AbstractEventLoop, call: Callable[..., None], *arguments: Any) -> None:
-    """Call something in the event loop from another thread; nobody is told any more once the loop is closed."""
+    """Call something in the event loop from another thread, unless the loop is closed."""
     with contextlib.suppress(RuntimeError):
         loop.call_soon_threadsafe(call, *arguments)

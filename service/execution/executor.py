@@ -23,15 +23,7 @@ LONG = 0.02
 
 
 class Executor:
-    """Answers requests.
-
-    Parameters
-    ----------
-    handler : RequestHandler
-        Answers in this process.
-    compute : Compute
-        Answers in others.
-    """
+    """Answers requests: `handler` in this process, `compute` in others."""
 
     def __init__(self, handler: RequestHandler, compute: Compute, metrics: Metrics, settings: Settings) -> None:
         self._handler, self._compute, self._metrics = handler, compute, metrics

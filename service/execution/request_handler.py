@@ -18,17 +18,7 @@ from service.schemas import SIGNATURE
 
 
 class RequestHandler:
-    """Reads and answers questions.
-
-    Parameters
-    ----------
-    routes : iterable of PostRoute
-        What can be asked.
-    budget : Budget
-        What one question may cost.
-    limits : Limits
-        On documents.
-    """
+    """Reads and answers the questions of routes, within a budget for each and limits on documents."""
 
     def __init__(self, routes: Iterable[PostRoute], budget: Budget, limits: Limits) -> None:
         self._routes = tuple(routes)
@@ -45,17 +35,22 @@ class RequestHandler:
 
     def answer(self, route: PostRoute, question: Any) -> Answer:
         """Return the whole answer: signature, warnings, fields."""
-        answer = {"signature": SIGNATURE, "warnings": (), **route.handle(question, self._budget)}
-        answer["warnings"] = [_warning(notice) for notice in answer["warnings"]]
-        return answer
+        return signed(route.handle(question, self._budget))
 
     def warm(self) -> None:
         """Have every kernel that can be reached compiled or loaded, so that no client waits for that."""
         for route in self._routes:
             for question in (*(example.question for example in route.examples.values()), *route.warming):
                 self.answer(route, self.read(route, orjson.dumps(question)))
-        # What its methods import when one of them is first asked for would hold up the event loop.
+        # Its first use would otherwise import it, and hold up the event loop.
         import_module("scipy.integrate")
+
+
+def signed(fields: Answer) -> Answer:
+    """Return the whole answer that has such fields."""
+    answer = {"signature": SIGNATURE, "warnings": (), **fields}
+    answer["warnings"] = [_warning(notice) for notice in answer["warnings"]]
+    return answer
 
 
 def _warning(notice: Notice) -> dict[str, str]:

@@ -10,7 +10,7 @@ LARGEST = 8_192
 """Bytes of a question and its answer together that are cached, at most; so the number bounds the memory."""
 
 REMEMBERED = 16_384
-"""Number of questions that are remembered to have been asked once, at most."""
+"""Largest number of questions of which is remembered that they came once."""
 
 
 class ResponseCache:
@@ -28,7 +28,7 @@ class ResponseCache:
     def __init__(self, most: int) -> None:
         self._most = most
         self._answers: LRUCache[tuple[str, bytes], Representation] = LRUCache(most)
-        self._asked: set[int] = set()
+        self._seen: set[int] = set()
 
     def __len__(self) -> int:
         return len(self._answers)
@@ -38,13 +38,13 @@ class ResponseCache:
         return self._answers.get((path, body)) if self._answers else None
 
     def put(self, path: str, body: bytes, answer: Representation) -> None:
-        """Cache an answer if it is small and its question has been asked before."""
-        if not self._most or len(body) + len(answer.text) > LARGEST:
+        """Cache an answer if it is small and its question has come before."""
+        if not self._most or len(body) + len(answer.body) > LARGEST:
             return
         question = hash((path, body))
-        if question in self._asked:
+        if question in self._seen:
             self._answers[path, body] = answer
             return
-        if len(self._asked) >= REMEMBERED:
-            self._asked.clear()
-        self._asked.add(question)
+        if len(self._seen) >= REMEMBERED:
+            self._seen.clear()
+        self._seen.add(question)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 MEMORY = 20.0
-"""About how many of the last computations tell how fast the machine is."""
+"""About how many of the last computations enter into the estimate."""
 
 
 class SpeedCorrection:
@@ -20,6 +20,6 @@ class SpeedCorrection:
 
     def learn(self, price: float, seconds: float) -> None:
         """Take a computation into account."""
-        kept = 1.0 - 1.0 / MEMORY
-        self._predicted = kept * self._predicted + price
-        self._taken = kept * self._taken + seconds
+        weight = 1.0 - 1.0 / MEMORY
+        self._predicted = weight * self._predicted + price
+        self._taken = weight * self._taken + seconds

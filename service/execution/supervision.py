@@ -6,6 +6,8 @@ import asyncio
 import multiprocessing
 import os
 import signal
+from multiprocessing.util import get_temp_dir
+from shutil import rmtree
 
 from service.observability.logs import LOG
 
@@ -22,3 +24,12 @@ def end_with_supervisor() -> None:
         os.kill(os.getpid(), signal.SIGTERM)
 
     loop.add_reader(parent.sentinel, end)
+
+
+def remove_temporary_files() -> None:
+    """Remove what multiprocessing keeps for this process, if a supervisor started it.
+
+    uvicorn ends such a process by the signal that stopped it, before multiprocessing would remove anything.
+    """
+    if multiprocessing.parent_process() is not None:
+        rmtree(get_temp_dir(), ignore_errors=True)

@@ -97,13 +97,7 @@ def terms_of(settings: Settings, table: str) -> Terms:
     return Terms(
         table,
         Budget(samples=settings.max_samples, evaluations=settings.max_evaluations),
-        Limits(
-            settings.max_nesting,
-            settings.max_keys,
-            settings.max_arrays,
-            settings.max_strings,
-            settings.max_body_bytes,
-        ),
+        Limits(bytes=settings.max_body_bytes),
     )
 
 
@@ -133,8 +127,7 @@ def _guarded(terms: Terms, task: Task, work: Callable[[RequestHandler, PostRoute
     except MechanicsError as error:
         return problem_of(error)
     except MemoryError:
-        detail = "the machine lacks the memory for this answer"
-        return Problem(REGISTRY["no-room"], detail, headers=(("Retry-After", "1"),))
+        return Problem(REGISTRY["no-room"], "the machine lacks the memory for this answer", retry_after=1.0)
     except Exception:
         return Failed(traceback.format_exc())
 
@@ -149,7 +142,7 @@ def serve(channel: socket.socket, terms: Terms, work: Work, nice: int) -> None:
     # Where they compete for a core, the server process goes first.
     os.nice(nice)
     handler_of(terms)
-    # Once the connection is closed nobody waits for anything.
+    # The server closes the connection when it stops or gives the process up.
     with contextlib.suppress(ConnectionError), channel, channel.makefile("rb") as requests:
         channel.sendall(BEGUN)
         while length := requests.read(LENGTH):

@@ -36,7 +36,7 @@ PAUSE = 0.5
 """Seconds before another attempt where a process could not be started, or did not live until it was ready."""
 
 _EXIT_CODES = Lock()
-"""Whoever starts a process asks after all others; of two who read an exit code at the same time one would find none."""
+"""Starting a process polls all others; of two threads that read an exit code at the same time one would find none."""
 
 
 class WorkerDied(Exception):
@@ -88,7 +88,7 @@ class Job:
         return (self.until or perf_counter()) - self.since if self.since else 0.0
 
     def fail(self, error: Exception) -> None:
-        """Answer with an error, unless there is an answer or nobody waits for one."""
+        """Answer with an error, unless there is an answer or the client has left."""
         if not self.reply.done():
             self.reply.set_exception(error)
 
@@ -142,8 +142,8 @@ class Process(asyncio.BufferedProtocol):
     def kill(self) -> None:
         """End it at once, whatever it does."""
         self.killed = True
-        # Asked by its handle, it would seem dead as soon as the fork server is, which alone tells of its end. It lives
-        # as long as its connection does.
+        # Its handle learns of its end from the fork server alone, and would take it for dead once that has ended. It
+        # lives as long as its connection does.
         with contextlib.suppress(ProcessLookupError):
             os.kill(self.handle.pid or 0, signal.SIGKILL)
 
@@ -154,6 +154,7 @@ class Processes:
     Parameters
     ----------
     size : int
+        Number of processes.
     main : callable
         Runs in each process, given its end of the connection and `arguments`.
     preload : str
@@ -221,7 +222,7 @@ class Processes:
         if self._stopping:
             job.fail(Stopped())
             return job
-        job.timer = asyncio.get_running_loop().call_later(patience, self._impatient, job)
+        self._time(job, patience, self._give_up, QueueTimeout())
         self._waiting.append(client, job)
         self._hand_out()
         return job
@@ -245,14 +246,10 @@ class Processes:
 
     def drop(self, job: Job) -> None:
         """Make sure that nothing works on a request any more."""
-        job.until = job.until or perf_counter()
-        if job.timer is not None:
-            job.timer.cancel()
         job.reply.cancel()
-        if job.process is not None:
-            job.process.job = None
-            job.process.kill()
-            job.process = None
+        process = self._detach(job)
+        if process is not None:
+            process.kill()
         else:
             self._waiting.remove(job.client, job)
 
@@ -269,7 +266,7 @@ class Processes:
             return
         elif message is None:
             job.begun = True
-            self._time(job, job.longest, self._overdue)
+            self._time(job, job.longest, self._give_up, DeadlineExceeded())
             return
         else:
             self._detach(job)
@@ -318,41 +315,38 @@ class Processes:
             self._time(job, BEGIN_SECONDS, self._not_begun)
             process.give(job)
 
-    def _time(self, job: Job, seconds: float, late: Callable[[Job], None]) -> None:
+    def _time(self, job: Job, seconds: float, late: Callable[..., None], *arguments: Any) -> None:
         if job.timer is not None:
             job.timer.cancel()
-        job.timer = asyncio.get_running_loop().call_later(seconds, late, job)
+        job.timer = asyncio.get_running_loop().call_later(seconds, late, job, *arguments)
 
     def _not_begun(self, job: Job) -> None:
         """Take a request from a process that does nothing, which is killed and replaced."""
-        if job.process is not None:
-            LOG.error("a compute process did not begin a request", extra={"pid": job.process.handle.pid})
-            job.process.job = None
-            job.process.kill()
-            job.process = None
+        process = self._detach(job)
+        if process is not None:
+            LOG.error("a compute process did not begin a request", extra={"pid": process.handle.pid})
+            process.kill()
             self._put_back(job)
 
     def _put_back(self, job: Job) -> None:
         if not job.reply.done():
             job.since = job.until = 0.0
-            self._time(job, job.longest, self._impatient)
+            self._time(job, job.longest, self._give_up, QueueTimeout())
             self._waiting.put_back(job.client, job)
             self._hand_out()
 
-    def _detach(self, job: Job) -> None:
-        job.until = perf_counter()
+    def _detach(self, job: Job) -> Process | None:
+        """Stop the clocks of a request, and separate it from the process that it was given to, which is returned."""
+        job.until = job.until or perf_counter()
         if job.timer is not None:
             job.timer.cancel()
-        if job.process is not None:
-            job.process.job = None
-            job.process = None
+        process, job.process = job.process, None
+        if process is not None:
+            process.job = None
+        return process
 
-    def _impatient(self, job: Job) -> None:
-        job.fail(QueueTimeout())
-        self.drop(job)
-
-    def _overdue(self, job: Job) -> None:
-        job.fail(DeadlineExceeded())
+    def _give_up(self, job: Job, error: Exception) -> None:
+        job.fail(error)
         self.drop(job)
 
     def _replace(self, pause: float) -> None:

@@ -16,7 +16,7 @@ from service.execution.request_handler import RequestHandler
 from service.execution.response_cache import ResponseCache
 from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.keys import Keys
-from service.http.limits import Bodies, ClientGone, negotiated, require_acceptable, require_readable
+from service.http.limits import Bodies, ClientGone, negotiated, require_readable
 from service.http.request_context import VARY, RequestContext
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
@@ -33,18 +33,7 @@ _VERSION = VERSION.encode()
 
 
 class Dispatcher:
-    """Serves the routes.
-
-    Parameters
-    ----------
-    routes : sequence of Route
-        The one table.
-    answering : RequestHandler
-        Answers questions in this process.
-    compute : Compute
-        Answers questions in others.
-    keys : Keys, optional
-        Without, no key is required.
+    """Serves the routes: `answering` answers questions in this process, `compute` in others.
 
     Attributes
     ----------
@@ -92,8 +81,9 @@ class Dispatcher:
         except asyncio.CancelledError:
             # The server is being stopped and will not wait any longer.
             if not context.started:
-                detail = "the service is being stopped"
-                await context.problem(Problem(REGISTRY["shutting-down"], detail, headers=(("Retry-After", "1"),)))
+                await context.problem(
+                    Problem(REGISTRY["shutting-down"], "the service is being stopped", retry_after=1.0)
+                )
         except Exception:
             if context.started:
                 # The answer is cut short, which the transfer coding shows the client.
@@ -101,13 +91,7 @@ class Dispatcher:
                 raise
             LOG.exception("failed", extra={"request_id": context.id, "operation": route.operation_id})
             detail = "the service failed; the failure is logged under this id"
-            await context.problem(
-                Problem(
-                    REGISTRY["internal-error"],
-                    detail,
-                    extra={"id": context.id, "instance": f"urn:polhode:request:{context.id}"},
-                )
-            )
+            await context.problem(Problem(REGISTRY["internal-error"], detail, extra={"id": context.id}))
 
     async def _question(self, route: PostRoute, context: RequestContext) -> None:
         headers = context.headers
@@ -117,7 +101,8 @@ class Dispatcher:
         media = None
         accept = headers.get(b"accept", b"*/*")
         if accept != b"*/*" and accept != b"application/json":
-            media = negotiated(accept, (*route.representations, archive.MEDIA_TYPE))
+            media = negotiated(accept, ("application/json", *route.representations, archive.MEDIA_TYPE))
+            media = None if media == "application/json" else media
         body = await self.bodies.read(context.receive, headers)
         answer = self._cache.get(route.path, body) if media is None else None
         if answer is not None:
@@ -130,7 +115,7 @@ class Dispatcher:
                 await self._stream(document, _etag_of_answer(route, body, media), context, _NPZ)
                 return
             if media is not None:
-                await context.represented(document.whole(), media.encode())
+                await context.answer(Representation(document.whole(), (b"content-type", media.encode()), (VARY,)))
                 return
             if document.large:
                 await self._stream(document, _etag_of_answer(route, body), context)
@@ -149,7 +134,7 @@ class Dispatcher:
     async def _page(self, route: GetRoute, context: RequestContext) -> None:
         reply = route.content()
         if b"accept" in context.headers:
-            require_acceptable(context.headers[b"accept"], reply.media_type.split(b";", 1)[0])
+            negotiated(context.headers[b"accept"], (route.media_type,))
         await context.page(reply.body, reply.media_type, reply.status)
 
     async def unrouted(self, scope: Scope, receive: Receive, send: Send) -> None:

@@ -1,4 +1,4 @@
-"""An answer as JSON in one piece, with its validator and the headers that depend on nothing else."""
+"""A document that is sent in one piece, with its validator and the headers that depend on nothing else."""
 
 from __future__ import annotations
 
@@ -11,24 +11,25 @@ NOSNIFF: Header = (b"x-content-type-options", b"nosniff")
 
 
 class Representation:
-    """An answer as JSON in one piece.
+    """A document that is sent in one piece, in whatever media type.
 
     Attributes
     ----------
-    text : bytes
-        The answer.
     etag : bytes
-        Strong validator: a hash of the text, which holds the version.
+        Strong validator: a hash of the body.
+    about : tuple of Header
+        Those that are sent without the body, too, where the client has it already.
     headers : tuple of Header
-        Those that belong to the text.
+        All that belong to the body.
     """
 
-    __slots__ = ("etag", "headers", "text")
+    __slots__ = ("about", "body", "etag", "headers")
 
-    def __init__(self, text: bytes) -> None:
-        self.text = text
-        self.etag = etag = etag_of(text)
-        self.headers = (JSON, (b"content-length", b"%d" % len(text)), (b"etag", etag), NOSNIFF)
+    def __init__(self, body: bytes, content_type: Header = JSON, more: tuple[Header, ...] = ()) -> None:
+        self.body = body
+        self.etag = etag = etag_of(body)
+        self.about = ((b"etag", etag), NOSNIFF, *more)
+        self.headers = (content_type, (b"content-length", b"%d" % len(body)), *self.about)
 
 
 def etag_of(first: bytes, *more: bytes) -> bytes:

@@ -17,7 +17,7 @@ import re
 import secrets
 import stat
 from collections.abc import Mapping
-from math import ceil, inf
+from math import inf
 from pathlib import Path
 from time import monotonic
 
@@ -92,13 +92,11 @@ class Key:
 
     def request(self) -> None:
         """Count a request, or refuse it."""
-        if self.limits[0] != inf:
-            _take(self._requests, 1.0, "the quota of requests of this key is used up")
+        _take(self._requests, 1.0, "the quota of requests of this key is used up")
 
     def work(self, seconds: float) -> None:
         """Count computation (s), or refuse it."""
-        if self.limits[1] != inf:
-            _take(self._work, seconds, "the quota of work of this key is used up")
+        _take(self._work, seconds, "the quota of work of this key is used up")
 
     def charge(self, seconds: float) -> None:
         """Count computation (s) that was done, or give back what was counted too much."""
@@ -108,7 +106,7 @@ class Key:
 def _take(allowance: Allowance, amount: float, detail: str) -> None:
     wait = allowance.take(amount)
     if wait > 0.0:
-        raise Refusal("quota-exceeded", detail, headers=(("Retry-After", str(max(1, ceil(wait)))),))
+        raise Refusal("quota-exceeded", detail, retry_after=wait)
 
 
 class Keys:
@@ -145,21 +143,17 @@ class Keys:
             401 without a known key, 429 beyond its rate, or after too many unknown keys from the address.
         """
         scheme, _, given = headers.get(b"authorization", b"").partition(b" ")
-        # What is looked up is a hash of what was sent: how long that takes tells nothing about any key.
+        # A hash is looked up, so that the time which that takes depends on no key.
         key = self._keys.get(hashlib.sha256(given.strip()).digest())
-        if key is None or scheme.lower() != b"bearer":
-            self._refuse(address)
-        else:
+        if key is not None and scheme.lower() == b"bearer":
             key.request()
             return key
-        detail = "send a known key as Authorization: Bearer"
-        raise Refusal("unauthorized", detail, headers=(("WWW-Authenticate", "Bearer"),))
-
-    def _refuse(self, address: str) -> None:
         allowance = self._wrong.get(address)
         if allowance is None:
             allowance = self._wrong[address] = Allowance(WRONG_KEYS_PER_SECOND, BURST)
         _take(allowance, 1.0, "too many requests with unknown keys came from this address")
+        detail = "send a known key as Authorization: Bearer"
+        raise Refusal("unauthorized", detail, headers=(("WWW-Authenticate", "Bearer"),))
 
     async def follow(self) -> None:
         """Read the file again whenever it has changed, until cancelled; the reading is done in another thread."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import re
-from collections.abc import Awaitable, Callable, Iterable, Mapping, MutableMapping
+from collections.abc import Awaitable, Callable, Mapping, MutableMapping, Sequence
 from time import monotonic
 from typing import Any
 
@@ -16,12 +16,13 @@ Headers = Mapping[bytes, bytes]
 LONGEST_ACCEPT = 1_024
 """Bytes of an Accept header that is read."""
 
-_WEIGHT = re.compile(r"0(\.\d{0,3})?|1(\.0{0,3})?")
+# Java sends ".2", which RFC 9110 does not have.
+_WEIGHT = re.compile(r"0(\.\d{0,3})?|\.\d{1,3}|1(\.0{0,3})?")
 _CLOSE = ("Connection", "close")
 
 
 class ClientGone(Exception):
-    """The client closed the connection; there is nobody to answer."""
+    """The client closed the connection."""
 
 
 def require_readable(headers: Headers) -> bool:
@@ -39,39 +40,26 @@ def require_readable(headers: Headers) -> bool:
     return declared == b"application/x-npz"
 
 
-def require_acceptable(accept: bytes, offered: bytes = b"application/json") -> None:
-    """Refuse a request whose Accept header admits none of what is offered."""
-    accept = _short(accept).lower()
-    family = offered.split(b"/", 1)[0] + b"/*"
-    if accept and not (b"*/*" in accept or offered in accept or family in accept):
-        raise Refusal("not-acceptable", f"this answer is {offered.decode()}")
-
-
-def negotiated(accept: bytes, others: Iterable[str]) -> str | None:
-    """Return which of `others` an Accept header prefers to JSON, None where that is JSON (RFC 9110, 12.5.1).
+def negotiated(accept: bytes, offered: Sequence[str]) -> str:
+    """Return the media type that an Accept header prefers, the first of equals (RFC 9110, 12.5.1).
 
     Raises
     ------
     Refusal
         406 if it admits none, or is too long.
     """
-    weights = dict(_weighted(entry) for entry in _short(accept).decode("latin-1").lower().split(",") if entry.strip())
+    if len(accept) > LONGEST_ACCEPT:
+        raise Refusal("not-acceptable", f"the Accept header has more than {LONGEST_ACCEPT} bytes")
+    weights = dict(_weighted(entry) for entry in accept.decode("latin-1").lower().split(",") if entry.strip())
 
     def weight(media: str) -> float:
         ranges = (media, media.split("/", 1)[0] + "/*", "*/*")
         return next((weights[entry] for entry in ranges if entry in weights), 0.0) if weights else 1.0
 
-    offered = ("application/json", *others)
     best = max(offered, key=weight)
     if weight(best) <= 0.0:
         raise Refusal("not-acceptable", f"this answer is {' or '.join(offered)}")
-    return None if best == offered[0] else best
-
-
-def _short(accept: bytes) -> bytes:
-    if len(accept) > LONGEST_ACCEPT:
-        raise Refusal("not-acceptable", f"the Accept header has more than {LONGEST_ACCEPT} bytes")
-    return accept
+    return best
 
 
 def _weighted(entry: str) -> tuple[str, float]:
@@ -164,8 +152,7 @@ class Bodies:
                     raise self._too_large()
                 if self.held + self._others() > self._held_limit:
                     detail = f"requests and answers take more than {self._held_limit} bytes, the limit max_held_bytes"
-                    wait = {"retry_after_seconds": 1.0}
-                    raise Refusal("too-busy", detail, headers=(("Retry-After", "1"), _CLOSE), extra=wait)
+                    raise Refusal("too-busy", detail, headers=(_CLOSE,), retry_after=1.0)
                 if not message.get("more_body"):
                     return b"".join(parts)
                 message = await receive()

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable, Sequence
+from math import ceil
 from time import perf_counter
 
 from starlette.types import Receive, Scope, Send
 
-from service.http.etag import NOSNIFF, Header, Representation, etag_of
+from service.http.etag import NOSNIFF, Header, Representation
 from service.http.keys import Key
 from service.http.limits import ClientGone
 from service.observability.request_records import Records
 from service.problems import MEDIA_TYPE, Problem
 
 SHORT = 1_024
-"""Bytes below which a piece of a stream is not worth being sent by itself."""
+"""Bytes below which a piece of a stream is sent together with the next."""
 
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
 VARY: Header = (b"vary", b"accept")
@@ -31,17 +32,7 @@ _PAGE_HEADERS: tuple[Header, ...] = (
 
 
 class RequestContext:
-    """One request and its response.
-
-    Parameters
-    ----------
-    records : Records
-        Where the request is recorded.
-    operation : str
-        Under which the request is counted.
-    scope, receive, send
-        As ASGI gives them.
-    """
+    """One request and its response; the request is counted under the name of an operation."""
 
     __slots__ = (
         "_records",
@@ -82,35 +73,20 @@ class RequestContext:
             pass
 
     async def answer(self, answer: Representation) -> None:
-        """Send an answer in one piece, or that the client has it already."""
+        """Send a document in one piece, or that the client has it already."""
         if self._has(answer.etag):
-            await self._respond(304, b"", [(b"etag", answer.etag), NOSNIFF])
+            await self._respond(304, b"", answer.about)
         else:
-            await self._respond(200, answer.text, [*answer.headers])
+            await self._respond(200, answer.body, answer.headers)
 
     async def page(self, body: bytes, media_type: bytes, status: int) -> None:
-        """Send a document in one piece, or that the client has it already."""
-        headers: list[Header] = [_REVALIDATE, NOSNIFF]
-        if media_type.startswith(b"text/html"):
-            headers += _PAGE_HEADERS
+        """Send the document of a GET route, which clients revalidate."""
+        guards = _PAGE_HEADERS if media_type.startswith(b"text/html") else ()
+        page = Representation(body, (b"content-type", media_type), (_REVALIDATE, *guards))
         if status == 200:
-            etag = etag_of(body)
-            headers.append((b"etag", etag))
-            if self._has(etag):
-                await self._respond(304, b"", headers)
-                return
-        headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
-        await self._respond(status, b"" if self.scope["method"] == "HEAD" else body, headers)
-
-    async def represented(self, body: bytes, media_type: bytes) -> None:
-        """Send an answer that is not JSON, or that the client has it already."""
-        etag = etag_of(body)
-        headers: list[Header] = [(b"etag", etag), VARY, NOSNIFF]
-        if self._has(etag):
-            await self._respond(304, b"", headers)
-            return
-        headers += [(b"content-type", media_type), (b"content-length", b"%d" % len(body))]
-        await self._respond(200, body, headers)
+            await self.answer(page)
+        else:
+            await self._respond(status, body, [header for header in page.headers if header[0] != b"etag"])
 
     async def problem(self, problem: Problem) -> None:
         """Send a problem document."""
@@ -118,7 +94,9 @@ class RequestContext:
         body = problem.body(self.id)
         headers = [_PROBLEM, (b"content-length", b"%d" % len(body)), NOSNIFF]
         headers += [(name.lower().encode(), value.encode()) for name, value in problem.headers]
-        await self._respond(problem.type.status, b"" if self.scope["method"] == "HEAD" else body, headers)
+        if problem.retry_after is not None:
+            headers.append((b"retry-after", b"%d" % max(1, ceil(problem.retry_after))))
+        await self._respond(problem.type.status, body, headers)
 
     async def stream(
         self, pieces: Iterable[bytes | memoryview], etag: bytes, patience: float, headers: Sequence[Header]
@@ -131,15 +109,15 @@ class RequestContext:
             If the client has left, or has taken nothing for longer than `patience` (s).
         """
         if self._has(etag):
-            kept = [header for header in headers if header[0] != b"content-type"]
-            await self._respond(304, b"", [*kept, (b"etag", etag), NOSNIFF])
+            about = [header for header in headers if header[0] != b"content-type"]
+            await self._respond(304, b"", [*about, (b"etag", etag), NOSNIFF])
             return
         await self._start(200, [*headers, (b"etag", etag), NOSNIFF])
         leaving = asyncio.ensure_future(self.gone())
         gathered: list[bytes | memoryview] = []
         try:
             for piece in pieces:
-                # A server takes what is sent to nobody without a word; all of it would be written for nothing.
+                # Servers accept and drop what is sent on a closed connection: the rest would be written in vain.
                 if leaving.done():
                     raise ClientGone
                 gathered.append(piece)
@@ -168,14 +146,16 @@ class RequestContext:
         # The comparison is weak (RFC 9110, 13.1.2): a proxy that compresses an answer marks its validator as weak.
         return known == b"*" or etag in [tag.strip().removeprefix(b"W/") for tag in known.split(b",")]
 
-    async def _respond(self, status: int, body: bytes, headers: list[Header]) -> None:
+    async def _respond(self, status: int, body: bytes, headers: Iterable[Header]) -> None:
         await self._start(status, headers)
-        await self._send({"type": "http.response.body", "body": body})
+        await self._send({"type": "http.response.body", "body": b"" if self.scope["method"] == "HEAD" else body})
         self.close(status)
 
-    async def _start(self, status: int, headers: list[Header]) -> None:
-        milliseconds = 1e3 * (perf_counter() - self._since)
-        headers.append((b"x-request-id", self.identity))
-        headers.append((b"server-timing", b"total;dur=%.3f" % milliseconds))
+    async def _start(self, status: int, headers: Iterable[Header]) -> None:
+        timing = b"total;dur=%.3f" % (1e3 * (perf_counter() - self._since))
+        own = [(b"x-request-id", self.identity), (b"server-timing", timing)]
+        if self.scope.get("http_version") == "1.0" and b"transfer-encoding" in self.headers:
+            # A proxy of that version may have framed the request otherwise (RFC 9112, 6.1).
+            own.append((b"connection", b"close"))
         self.started = True
-        await self._send({"type": "http.response.start", "status": status, "headers": headers})
+        await self._send({"type": "http.response.start", "status": status, "headers": [*headers, *own]})

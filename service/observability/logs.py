@@ -35,7 +35,7 @@ class JsonLines(logging.Formatter):
 
 
 def _writable(value: Any) -> Any:
-    """Return a member as it is, or as text where JSON has no form for it: a line that is lost tells nothing."""
+    """Return a member as it is, or as text where JSON has no form for it, so that no line is lost."""
     try:
         return orjson.Fragment(orjson.dumps(value, default=str))
     except TypeError:
@@ -63,5 +63,5 @@ def configure(level: str) -> None:
     handler.setFormatter(TextLines() if terminal else JsonLines())
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
     if terminal:
-        # What the server says about its own start and stop, the service says in fewer words.
+        # The service logs its own start and stop.
         logging.getLogger("uvicorn.error").setLevel(logging.WARNING)

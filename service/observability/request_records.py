@@ -13,14 +13,7 @@ _PLAIN_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
 
 class Records:
-    """The records of one server process.
-
-    Parameters
-    ----------
-    metrics : Metrics
-    log_requests : {"none", "failures", "all"}
-        Which requests are logged.
-    """
+    """The records of one server process; `log_requests` is the setting of that name."""
 
     def __init__(self, metrics: Metrics, log_requests: str) -> None:
         self._observe = metrics.observe

@@ -1,8 +1,8 @@
-"""What several server processes count, told by each of them as one sum.
+"""The sum of the counts of several server processes, given by each of them.
 
-Each process writes what it has counted into a file of its own in one directory, once a second and by replacing the
-file, and reads the others' files when it is asked for metrics. Nothing is mapped into memory: where there is no room,
-the file that was written last stays, and the others' counts are as old as that.
+Each process writes its counts to a file of its own in one directory, once a second and by replacing the file, and reads
+the others' files for GET /metrics. Nothing is mapped into memory: on a full disk the previous file stays, and the
+others' counts are as old as that.
 """
 
 from __future__ import annotations
@@ -44,20 +44,13 @@ def sharing() -> Iterator[None]:
 
 
 class SharedCounts(Collector):
-    """The sums of this process's metrics and of all others'.
-
-    Parameters
-    ----------
-    own : CollectorRegistry
-        Of this process.
-    directory : Path
-    """
+    """The sums of this process's metrics, in the registry `own`, and of all others'."""
 
     def __init__(self, own: CollectorRegistry, directory: Path) -> None:
         self._own, self._file = own, directory / str(os.getpid())
 
     def publish(self) -> None:
-        """Write what this process has counted, if there is room."""
+        """Write the counts of this process, unless the disk is full."""
         whole = self._file.with_suffix(".new")
         try:
             whole.write_bytes(pickle.dumps(list(self._own.collect())))

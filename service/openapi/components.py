@@ -74,7 +74,7 @@ def _types(schema: dict[str, Any]) -> set[str]:
 
 
 def require_tags(document: dict[str, Any]) -> None:
-    """Mark the field by which the members of a union are told apart as required, which on the wire it is."""
+    """Mark the discriminator of a union as required, which on the wire it is."""
     for node in _within(document):
         for reference in node.get("discriminator", {}).get("mapping", {}).values() if "oneOf" in node else ():
             schema = document["components"]["schemas"][reference.removeprefix(PREFIX)]

@@ -60,7 +60,7 @@ ABOUT: Mapping[str, Any] = {
     "redirect_slashes": False,
     "separate_input_output_schemas": False,
 }
-"""What FastAPI is told about the application as a whole."""
+"""Arguments of the FastAPI application."""
 
 
 class _Dispatched(Response):

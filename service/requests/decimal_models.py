@@ -63,7 +63,7 @@ class Numeral:
 
 @dataclass(frozen=True)
 class OneOrMany:
-    """Mark of one number for all or a list with one for each; core tells them apart."""
+    """Mark of one number for all or a list with one for each; core distinguishes them."""
 
     rows: Rows
 
@@ -171,7 +171,7 @@ DecimalTimes = Annotated[DecimalSpan | Annotated[list[DecimalTime], Field(min_le
 
 
 def body_of(body: BaseModel) -> ExactMass:
-    """Return a question's body; faults are told as seen from the question."""
+    """Return a question's body; pointers of faults lead into the question."""
     try:
         return exact_body(explicit_fields(body))
     except InvalidParameter as fault:

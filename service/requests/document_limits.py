@@ -23,7 +23,10 @@ LONGEST_KEY_SHOWN = 40
 
 
 class Limits(NamedTuple):
-    """What a document may have: levels of nesting, keys, arrays and objects, strings; an archive, bytes unpacked."""
+    """What a document may have: levels of nesting, keys, arrays and objects, strings; an archive, bytes unpacked.
+
+    All but the last are constants of the service: the worst document within them is refused in some 50 ms.
+    """
 
     nesting: int = 32
     keys: int = 4000
@@ -37,16 +40,16 @@ def enforce_document_limits(body: bytes, limits: Limits) -> None:
     deepest, most_keys, most_arrays, most_strings, _ = limits
     # Each string has two quotes; what is escaped in one costs about as much to read as one more would.
     if len(body) > 2 * most_strings and body.count(b'"') + body.count(b"\\") > 2 * most_strings:
-        raise Refusal("too-complex", f"the body has more than {most_strings} strings or escapes, the limit max_strings")
+        raise Refusal("too-complex", f"the body has more than {most_strings} strings or escapes")
     # A key with its value and comma takes five bytes, so a short document cannot have too many.
     if len(body) > 5 * most_keys and body.count(b":") > most_keys and len(_KEY_END.findall(body)) > most_keys:
-        raise Refusal("too-complex", f"the body has more than {most_keys} keys, the limit max_keys")
+        raise Refusal("too-complex", f"the body has more than {most_keys} keys")
     opened = body.count(b"[") + body.count(b"{")
     if opened > most_arrays:
-        detail = f"the body has more than {most_arrays} arrays and objects, the limit max_arrays; send rows as npz"
+        detail = f"the body has more than {most_arrays} arrays and objects; send rows as npz"
         raise Refusal("too-complex", detail)
     if opened > deepest and _depth(body) > deepest:
-        raise Refusal("too-complex", f"the body is nested deeper than {deepest} levels, the limit max_nesting")
+        raise Refusal("too-complex", f"the body is nested deeper than {deepest} levels")
 
 
 def _depth(body: bytes) -> int:

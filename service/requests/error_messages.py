@@ -29,20 +29,16 @@ LOOKED_AT = 3 * MOST_FAULTS
 
 _RULES: Mapping[str, str] = {
     "missing": "is required",
-    "missing_argument": "is required",
     "extra_forbidden": "is not known here",
     "unexpected_keyword_argument": "is not known here",
     "finite_number": "must be finite",
     "float_type": "must be a number",
-    "float_parsing": "must be a number",
     "int_type": "must be an integer",
-    "int_parsing": "must be an integer",
     "int_parsing_size": "must be an integer of moderate size",
     "int_from_float": "must be an integer",
     "bool_type": "must be true or false",
     "string_type": "must be a string",
     "model_type": "must be an object",
-    "model_attributes_type": "must be an object",
     "dataclass_type": "must be an object",
     "dict_type": "must be an object",
     "list_type": "must be an array",
@@ -64,8 +60,8 @@ _REMEDIES: Mapping[str, str] = {
     "finite_number": "NaN, infinities and numbers beyond 1.8e308 are not read",
     "neither": "give numbers in an array, or start, stop and count in an object",
 }
-_TYPES = ("model_type", "model_attributes_type", "dataclass_type", "list_type", "tuple_type")
-_OBJECTS = ("model_type", "model_attributes_type", "dataclass_type", "dict_type")
+_TYPES = ("model_type", "dataclass_type", "list_type", "tuple_type")
+_OBJECTS = ("model_type", "dataclass_type", "dict_type")
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 _BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 _MISSING, _NOT_KNOWN = "is required", "is not known here"
@@ -82,7 +78,7 @@ class Layout:
     Attributes
     ----------
     tags : mapping of str to tuple of str
-        For each name of a field that holds members of a union, the tags by which they are told apart.
+        For each name of a field that holds members of a union, their tags.
     names : mapping of str to tuple of str
         For each tag, or name of a field that holds an object, the keys of the object; for ``""`` those of the document.
     lengths : mapping of str to int
@@ -133,18 +129,18 @@ class Layout:
         document : callable
             Returns what the client sent, for the faults whose remedy depends on a value.
         """
-        told: list[tuple[Fault, str]] = []
+        faults: list[tuple[Fault, str]] = []
         for entry in islice(_of_the_member_meant(_lengths_once(found)), LOOKED_AT):
             steps, owner = self._steps(entry["loc"])
             cause = entry.get("ctx", {}).get("error")
             if isinstance(cause, InvalidParameter):
                 rule = f"must {cause.rule}"
                 remedy = cause.remedy or (_REMEDIES["float_type"] if rule == _RULES["float_type"] else None)
-                told.append((Fault(pointer_of((*steps, *cause.path)), rule, remedy), code_of(cause)))
+                faults.append((Fault(pointer_of((*steps, *cause.path)), rule, remedy), code_of(cause)))
             else:
-                told.append((self._fault(entry, steps, owner, document), "invalid-parameter"))
-        told = sorted(told, key=lambda one: _rank(one[0]))[:MOST_FAULTS]
-        return _lists_once([fault for fault, _ in told]), {code for _, code in told}
+                faults.append((self._fault(entry, steps, owner, document), "invalid-parameter"))
+        faults = sorted(faults, key=lambda one: _rank(one[0]))[:MOST_FAULTS]
+        return _lists_once([fault for fault, _ in faults]), {code for _, code in faults}
 
     def _steps(self, location: Sequence[Step]) -> tuple[tuple[Step, ...], str]:
         """Return a location without the names of members of unions, and by what the object around its end is known."""
@@ -228,12 +224,12 @@ def _known(names: Names) -> str | None:
 
 
 def _lists_once(faults: Sequence[Fault]) -> list[Fault]:
-    """Return the faults with every list of names told once: where many keys are unknown, it would leave no room."""
-    told: set[str | None] = set()
+    """Return the faults with every list of names once: repeated for many unknown keys, it would fill the document."""
+    given: set[str | None] = set()
     found = []
     for fault in faults:
-        repeated = fault.remedy in told and str(fault.remedy).startswith(KNOWN)
-        told.add(fault.remedy)
+        repeated = fault.remedy in given and str(fault.remedy).startswith(KNOWN)
+        given.add(fault.remedy)
         found.append(replace(fault, remedy=None) if repeated else fault)
     return found
 
@@ -323,7 +319,7 @@ class _Walk:
 
 
 def _lengths_once(found: Sequence[Any]) -> Iterator[Any]:
-    """Yield the faults, those of the missing entries of one array as a single one that tells its length."""
+    """Yield the faults, those of the missing entries of one array as a single one that gives its length."""
     length: dict[tuple[Step, ...], tuple[int, int]] = {}
     for entry in found:
         if _missing_entry(entry):

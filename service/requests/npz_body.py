@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import zlib
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
@@ -26,6 +27,9 @@ ENTRY = b"PK\x01\x02"
 """How the entry of a member begins in the directory of an archive."""
 
 Arrays = Mapping[str, NDArray[Any]]
+
+_HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+"""By version of the format; the third is for names of fields, which arrays of plain numbers have not."""
 
 
 def unpacked(body: bytes, most_bytes: int) -> tuple[bytes, Arrays]:
@@ -71,17 +75,18 @@ def _plain(member: ZipInfo) -> bool:
 
 def _array(name: str, content: bytes) -> NDArray[Any]:
     """Return the array of a member."""
-    text = io.BytesIO(content)
+    stream = io.BytesIO(content)
     try:
-        version = npy.read_magic(text)
-        read_header = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-        shape, by_columns, dtype = read_header(text)
+        shape, by_columns, dtype = _HEADERS[npy.read_magic(stream)](stream)
     # A header is a literal of Python; what its reader makes of another text is not documented.
     except Exception as fault:
         raise _invalid(f"has a member whose header cannot be read: {name[:40]!r}") from fault
     if dtype.kind not in "iuf" or dtype.itemsize > 8 or len(shape) not in (1, 2):
         raise _invalid(f"has an array that is not one of plain numbers in one or two dimensions: {name[:40]!r}")
-    start = text.tell()
+    # Rows of nothing take no bytes, however many there are said to be; of two negative lengths the product may fit.
+    if min(shape) < 0 or shape[1:] == (0,):
+        raise _invalid(f"has an array with rows of no numbers, or of a negative length: {name[:40]!r}")
+    start = stream.tell()
     if len(content) - start != dtype.itemsize * int(np.prod(shape, dtype=object)):
         raise _invalid(f"has an array of another size than its header says: {name[:40]!r}")
     flat = np.frombuffer(content, dtype, offset=start)
@@ -92,18 +97,25 @@ def _invalid(rule: str) -> Refusal:
     return Refusal("invalid-archive", f"the body {rule}")
 
 
-def taking_arrays(schema: Any) -> Any:
-    """Return a validator's schema that takes ``{"array": name}`` for every list, with the arrays as its context."""
+def taking_arrays(schema: Any, most: int) -> Any:
+    """Return a validator's schema that takes ``{"array": name}`` for every list, with the arrays as its context.
+
+    Parameters
+    ----------
+    most : int
+        Numbers of an array that is made a list, each an object of its own however few bytes it has in the archive.
+    """
     if isinstance(schema, (list, tuple)):
-        return type(schema)(map(taking_arrays, schema))
+        return type(schema)(taking_arrays(entry, most) for entry in schema)
     if not isinstance(schema, Mapping):
         return schema
-    walked = {key: value if key == "metadata" else taking_arrays(value) for key, value in schema.items()}
+    walked = {key: value if key == "metadata" else taking_arrays(value, most) for key, value in schema.items()}
     if walked.get("type") == "any" and (walked.get("metadata") or {}).get("rows"):
         return {"type": "function-plain", "function": {"type": "with-info", "function": _array_for}}
     # A union of an object and a list has to see the list, so that faults are those of one.
     if walked.get("type") == "list" or (walked.get("type") == "union" and _has_list(schema["choices"])):
-        return {"type": "function-wrap", "function": {"type": "with-info", "function": _list_for}, "schema": walked}
+        function = {"type": "with-info", "function": partial(_list_for, most)}
+        return {"type": "function-wrap", "function": function, "schema": walked}
     return walked
 
 
@@ -118,9 +130,11 @@ def _array_for(value: Any, info: Any) -> Any:
     return info.context.get(name, value) if type(name) is str else value
 
 
-def _list_for(value: Any, handler: Any, info: Any) -> Any:
+def _list_for(most: int, value: Any, handler: Any, info: Any) -> Any:
     found = _array_for(value, info)
     if isinstance(found, np.ndarray):
+        if found.size > most:
+            raise Refusal("too-complex", f"an array that is read as a list has more than {most} numbers")
         # Rows of a fixed length are tuples to the validator.
         found = found.tolist() if found.ndim == 1 else list(map(tuple, found.tolist()))
     return handler(found)

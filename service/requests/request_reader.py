@@ -26,6 +26,9 @@ from service.requests.npz_body import Arrays, taking_arrays, unpacked
 
 Q = TypeVar("Q")
 
+DOUBLE = 8
+"""Bytes of a number."""
+
 LARGE = 65_536
 """Bytes of a document from which on objects are made by the ten thousand."""
 
@@ -54,7 +57,8 @@ class Reader(Generic[Q]):
 
     @cached_property
     def _validate_with_arrays(self) -> Any:
-        return SchemaValidator(_failing_fast(taking_arrays(self._schema)), _use_prebuilt=False).validate_json
+        schema = taking_arrays(self._schema, self._limits.bytes // DOUBLE)
+        return SchemaValidator(_failing_fast(schema), _use_prebuilt=False).validate_json
 
     def read(self, body: bytes, *, npz: bool = False) -> Q:
         """Return the question that a request's body asks.

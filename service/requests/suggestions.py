@@ -1,4 +1,4 @@
-"""What a client probably meant by a name that is not known: a slip of a letter, or another word for the same thing."""
+"""What a client probably meant by an unknown name: a misspelling, or another word for the same thing."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from math import isfinite
 from typing import Any
 
 LONGEST_NAME = 80
-"""Characters of a name that is compared with others; a longer one is nobody's slip."""
+"""Characters of a name that is compared with others; a longer one is no misspelling."""
 
 ALIKE = 0.78
-"""Share of its letters that a name must have in common with another to be taken for a slip of it."""
+"""Share of its letters that a name must have in common with another to be taken for a misspelling of it."""
 
 ALIKE_PATHS = 0.6
 """The same of paths, which share most of their letters and of which whole parts are left out."""
@@ -75,13 +75,13 @@ SYNONYMS: Mapping[str, tuple[str, ...]] = {
 """Other words for a name, exact after case and punctuation."""
 
 STEPS = ("step", "dt", "timestep", "delta", "spacing", "interval", "increment")
-"""What clients call the distance of evenly spaced times, of which the number is wanted."""
+"""Names that clients give the spacing of evenly spaced times, where the service takes their number."""
 
 FORCES = (
     "torque", "torques", "externaltorque", "appliedtorque", "moment", "force", "forces", "gravity", "g", "friction",
     "damping", "drag", "control",
 )  # fmt: skip
-"""What clients call that which a free rotation has not."""
+"""Names of forces and torques, which a free rotation does not have."""
 
 
 def plain(name: str) -> str:

@@ -1,6 +1,6 @@
 """The energy ellipsoid with the curves on it as SVG, seen from a fixed direction without perspective.
 
-An ellipsoid x = M u, |u| = 1, is seen as the ellipse P M u, P the projection: its planning_probe is the boundary of
+An ellipsoid x = M u, |u| = 1, is seen as the ellipse P M u, P the projection: its outline is the boundary of
 {P M u}, whose matrix is (P M)(P M)^T. A point is in front where its outward normal, along M^-T u, turns to the viewer.
 """
 

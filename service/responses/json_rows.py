@@ -87,26 +87,6 @@ def written(answer: Any) -> bytes:
     return text
 
 
-def chunks(answer: Any) -> Iterator[bytes | memoryview]:
-    """Yield an answer as JSON in chunks, of which the arrays' are bounded in size.
-
-    Raises
-    ------
-    NotFinite
-        Before the first chunk, for NaN and infinities.
-    """
-    require_finite(answer)
-    return _chunks(answer)
-
-
-def _chunks(answer: Any) -> Iterator[bytes | memoryview]:
-    for part in parts(answer):
-        if isinstance(part, np.ndarray):
-            yield from rows(part)
-        else:
-            yield part
-
-
 def parts(value: Any) -> Iterator[bytes | memoryview | np.ndarray[Any, Any]]:
     """Yield an answer as JSON, but for its large arrays of doubles, which `rows` writes; it has to be finite."""
     if array_size((value,)) <= UNDIVIDED:
@@ -169,7 +149,7 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"an answer cannot hold {type(value).__name__}")
 
 
-def require_finite(value: Any, name: str = "answer") -> None:
+def require_finite(value: Any) -> None:
     """Raise `NotFinite` if NaN or an infinity is anywhere in an answer."""
     kind = type(value)
     if kind is dict or kind is list or kind is tuple:
@@ -178,16 +158,16 @@ def require_finite(value: Any, name: str = "answer") -> None:
             # Plain numbers are looked at here: a call for each would cost more than writing the answer.
             if inner is float:
                 if not isfinite(entry):
-                    raise NotFinite(name)
+                    raise NotFinite
             elif inner not in _NO_NUMBERS:
-                require_finite(entry, name)
+                require_finite(entry)
     elif kind is np.ndarray:
         if value.dtype.kind == "f" and not _all_finite(value):
-            raise NotFinite(name)
+            raise NotFinite
     elif is_dataclass(kind):
-        require_finite([getattr(value, entry) for entry in _names(kind)], name)
+        require_finite([getattr(value, name) for name in _names(kind)])
     elif isinstance(value, float) and not isfinite(value):
-        raise NotFinite(name)
+        raise NotFinite
 
 
 @cache

@@ -27,7 +27,7 @@ Part = bytes | memoryview | np.ndarray[Any, Any]
 
 @dataclass(frozen=True)
 class Document:
-    """An answer in the media type that was asked for.
+    """An answer in the media type of the response.
 
     Attributes
     ----------
@@ -76,15 +76,14 @@ def composed(route: PostRoute, answer: Answer, media: str | None) -> Document:
     numbers = array_size(answer)
     # A drawing is made point by point.
     spend(numbers / (1 if media in route.representations else NUMBERS_PER_UNIT))
-    if media == archive.MEDIA_TYPE:
-        return Document(numbers, tuple(archive.archive(answer)))
-    if media is not None:
-        require_finite(answer)
-        return Document(numbers, (route.representations[media](answer),))
-    if numbers <= ONE_PIECE:
+    if media is None and numbers <= ONE_PIECE:
         return Document(numbers, (written(answer),))
     require_finite(answer)
-    return Document(numbers, tuple(_joined(parts(answer))))
+    if media is None:
+        return Document(numbers, tuple(_joined(parts(answer))))
+    if media == archive.MEDIA_TYPE:
+        return Document(numbers, tuple(archive.archive(answer)))
+    return Document(numbers, (route.representations[media](answer),))
 
 
 def _joined(found: Iterator[Part]) -> Iterator[Part]:

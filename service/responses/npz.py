@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, cast
 from zipfile import ZIP_STORED, ZipFile, ZipInfo
 
 import numpy as np
 from numpy.lib import format as npy
 
-from service.responses.json_rows import chunks, require_finite
+from service.responses.json_rows import parts
 
 MEDIA_TYPE = "application/x-npz"
 
@@ -28,18 +28,7 @@ _ZIP64_FROM = 2**31
 
 
 def archive(answer: Any) -> Iterator[bytes]:
-    """Yield an answer as a numpy archive, not compressed, in chunks; equal answers give equal bytes.
-
-    Raises
-    ------
-    NotFinite
-        Before the first chunk, for NaN and infinities.
-    """
-    require_finite(answer)
-    return _archive(answer)
-
-
-def _archive(answer: Any) -> Iterator[bytes]:
+    """Yield a finite answer as a numpy archive, not compressed, in chunks; equal answers give equal bytes."""
     arrays: dict[str, np.ndarray[Any, Any]] = {}
     metadata = _without_arrays(answer, "", arrays)
     sink = _Sink()
@@ -53,8 +42,9 @@ def _archive(answer: Any) -> Iterator[bytes]:
                     member.write(data[start : start + CHUNK])
                     yield sink.drained()
         with file.open(ZipInfo(METADATA), "w") as member:
-            for piece in chunks(metadata):
-                member.write(piece)
+            for text in parts(metadata):
+                # No array is left in it.
+                member.write(cast(bytes, text))
                 yield sink.drained()
     yield sink.drained()
 

@@ -23,10 +23,10 @@ from service.routing import PostRoute
 
 
 def questions() -> tuple[PostRoute, ...]:
-    """Return every question that can be asked, in the order of the documentation."""
+    """Return every route that takes a question, in the order of the documentation."""
     certified = (*CERTIFIED_ROTATION, CERTIFIED_ELLIPSOID, *certified_scenes())
     paths = [route.path for route in certified]
     rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
     ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
-    asked = (*(naming_certified(route, paths) for route in ordinary), *certified)
-    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*asked, planning(asked)))
+    answering = (*(naming_certified(route, paths) for route in ordinary), *certified)
+    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, planning(answering)))

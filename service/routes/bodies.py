@@ -20,7 +20,7 @@ from core.quantities import Unit
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, quickest, speed_of
 from service.routing import Answer, PostRoute
-from service.schemas import Envelope, Matrix, Ratio, Request, Vector, View
+from service.schemas import Envelope, Matrix, Ratio, Request, Vector, View, number_of
 
 LOOKED_INTO = 8_000
 """Points of a body, as `counts` has them, up to which it is looked at to foresee a motion; larger ones are not answered
@@ -83,7 +83,7 @@ class MassPropertiesAnswer(Envelope):
 
 
 def properties_of(body: Any) -> MassProperties:
-    """Return the mass properties of a question's body; faults are told as seen from the question."""
+    """Return the mass properties of a question's body; pointers of faults lead into the question."""
     try:
         properties: MassProperties = body.mass_properties()
     except InvalidParameter as fault:
@@ -124,7 +124,7 @@ def is_small(question: Any) -> bool:
 
 def few_times(times: Any) -> bool:
     """Return whether a question's times are few."""
-    return (len(times) if isinstance(times, list) else times.count) <= FEW_SAMPLES
+    return number_of(times) <= FEW_SAMPLES
 
 
 def moments_to_foresee(methods: Iterable[Any], body: Any) -> list[float] | None:
@@ -172,6 +172,13 @@ def _extents(kind: Any) -> tuple[str, ...]:
     return tuple(entry.name for entry in fields(kind) if entry.name in ("positions", "faces", "parts"))
 
 
+# More points than are summed in whole numbers.
+CLOUD = {
+    "kind": "point-masses",
+    "masses": 1.0,
+    "positions": [[float(i % 7), float(i % 11), float(i % 13)] for i in range(500)],
+}
+
 TETRAHEDRON = {
     "kind": "mesh",
     "density": 1.0,
@@ -190,6 +197,6 @@ BODIES = (
         mass_properties,
         CalibratedCost("mass_properties", counts),
         is_small,
-        warming=({"body": TETRAHEDRON},),
+        warming=({"body": TETRAHEDRON}, {"body": CLOUD}),
     ),
 )

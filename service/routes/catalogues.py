@@ -1,4 +1,4 @@
-"""What there is to choose from: methods of integration, and what can go wrong."""
+"""Catalogues: methods of integration, scenes, and problems."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def methods() -> list[dict[str, Any]]:
 
 
 def _catalogue(path: str, operation_id: str, summary: str, answer: type[Signed], build: Callable[[], Any]) -> GetRoute:
-    """Return the route of a catalogue, which is built when it is first asked for; its example has one entry."""
+    """Return the route of a catalogue, which is built at the first request; its example has one entry."""
     name = path.rsplit("/", 1)[1]
 
     @cache

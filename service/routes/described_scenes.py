@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
+import numpy as np
+
 from core.multibody.answer import SceneModel
 from core.multibody.columns import worst
 from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
@@ -15,7 +17,8 @@ from service.execution.cost_model import CalibratedCost, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.routes.described_answer import DescribedSceneAnswer
 from service.routes.examples import examples
-from service.routing import Answer, PostRoute
+from service.routes.planning_probes import few_of
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import fields_of, sample_count, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
@@ -31,6 +34,9 @@ Not covered yet: contact, friction, impacts, strings that become taut again, con
 are refused, and a string that becomes slack ends the motion. There is no choice of method, no rounding and no
 propagated uncertainty. It is not proven that all equilibria are found. A plan reads numbers as doubles, and does not
 foresee for how long a motion can be followed."""
+
+NEAR = 0.01
+"""How far (s) a motion is followed when it is planned."""
 
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
@@ -108,9 +114,16 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     return found
 
 
-def without_motion(question: DescribedSceneRequest) -> DescribedSceneRequest:
-    """Return the question about the start alone."""
-    return question.model_copy(update={"times": None, "outputs": ["accelerations"]})
+def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
+    """Answer a question at few times near the start, where the rows are as long; its error is known from the whole."""
+    if question.times is None:
+        return PlanningProbe(solved(question, budget))
+    instants = sample_times(question.times, budget)
+    few = instants[few_of(instants.size)]
+    near = few * min(1.0, NEAR / max(NEAR, float(np.abs(few).max())))
+    fields = solved(question.model_copy(update={"times": near.tolist()}), budget)
+    del fields["accuracy"]
+    return PlanningProbe(fields, {"trajectory": instants.size / few.size})
 
 
 DESCRIBED_SCENES = (
@@ -123,7 +136,7 @@ DESCRIBED_SCENES = (
         DescribedSceneAnswer,
         solved,
         CalibratedCost(OPERATION, counted),
-        planning_probe=without_motion,
+        planning_probe=probed,
         description=DESCRIPTION,
     ),
 )

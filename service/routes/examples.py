@@ -1,4 +1,4 @@
-"""Examples of questions, by operation: shown in the documentation, asked while the service warms up."""
+"""Examples of questions, by operation: shown in the documentation, answered while the service warms up."""
 
 from __future__ import annotations
 

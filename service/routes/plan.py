@@ -7,29 +7,25 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import Field
 
-from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError
+from core.errors import BudgetExceeded, MechanicsError
 from core.notices import Notice
 from core.quantities import Unit
 from core.systems.budget import Budget
 from core.systems.methods import Method
-from service.execution import cost_model as pricing
-from service.execution.cost_model import CalibratedCost, CostModel, one
+from service.execution.cost_model import UNCOUNTABLE, CalibratedCost, calibration, one
+from service.execution.request_handler import signed
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
-from service.routes.bodies import speed_to_follow
 from service.routes.described_answer import ScenePart
-from service.routing import Answer, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
 
 WITHIN = "/request"
-CHEAP = 0.02
-"""A question without an planning_probe of its own is looked into only if it takes less than this (s)."""
 
 
 class PlanRequest(Request):
@@ -135,40 +131,32 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
 
 def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
     seconds = route.price(asked, budget)
-    method = getattr(asked, "method", None)
-    evaluations = _evaluations(asked, budget)
-    fields: Answer = {}
-    if route.planning_probe is not None or seconds < CHEAP:
-        try:
-            fields = route.handle(asked if route.planning_probe is None else route.planning_probe(asked), budget)
-        except AccuracyUnreachable as fault:
-            # Times and accuracies that are beyond the closed form do not keep a method that is named from its run.
-            if method is None or method.kind == "closed-form" or fault.path[:1] not in (("times",), ("accuracy",)):
-                raise
-    length = route.price.size(asked, budget) if isinstance(route.price, CostModel) else 0.0
-    length -= _spared(route, asked, fields)
-    model, stated = fields.get("model"), _stated(fields)
+    method, evaluations = getattr(asked, "method", None), _evaluations(route, asked, budget)
+    probed = route.planning_probe
+    probe = PlanningProbe(route.handle(asked, budget)) if probed is None else probed(asked, budget)
+    fields, exact = probe.fields, probe.exact
+    length = _length(fields, probe.growth)
+    model, stated, notices = fields.get("model"), _stated(fields), list(fields.get("warnings", ()))
     if model is None and fields.get("members"):
         model = fields["members"][0]["model"]
-    notices = [notice for notice in fields.get("warnings", ()) if notice.code not in OF_THE_OUTLINE]
-    if method is not None and method.kind == "closed-form":
-        method = None
-    if method is not None:
-        times, speed = asked.times, _speed(asked)
-        error = pricing.error_of(method, times, speed)
-        if error > asked.accuracy:
-            detail = f"the error of {method.kind} with this setting is expected to be of the order of {error:.1g}"
+    if probe.error is not None:
+        notices = [notice for notice in (exact or fields)["warnings"] if notice.code not in OF_FEW_STEPS]
+        if probe.error > asked.accuracy:
+            detail = f"with this setting the error of {asked.method.kind} is of the order of {probe.error:.1g}"
             notices.append(Notice("accuracy-not-reached", detail, ("method",)))
-        stated = {"error": error, "how": "record of the method", "inherited": (stated or {}).get("inherited")}
+        inherited = (_stated(exact) or {}).get("inherited")
+        stated = {"error": probe.error, "how": "record of the method", "inherited": inherited}
+    elif stated:
+        method = {"kind": "closed-form"}
     return {
         "answerable": True,
         "model": model,
-        "method": method or ({"kind": "closed-form"} if stated else None),
+        "method": method,
         "cost": {
             "evaluations": evaluations,
             "samples": _samples(asked),
             "bytes": round(length),
-            "milliseconds": round(1e3 * (seconds + length * pricing.calibration().writing), 3),
+            "milliseconds": round(1e3 * (seconds + length * calibration().writing), 3),
         },
         "accuracy": stated,
         "errors": [],
@@ -176,23 +164,15 @@ def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
     }
 
 
-def _spared(route: PostRoute, asked: Any, fields: Answer) -> float:
-    """Return by how many bytes an answer is shorter because nothing changes: every row is the probe's only one."""
-    rows, model, samples = fields.get("angular_velocity"), fields.get("model"), _samples(asked)
-    if not isinstance(rows, np.ndarray) or rows.shape != (1, 3) or model is None or model.degrees_of_freedom != 0:
-        return 0.0
-    if samples is None or not isinstance(route.price, CalibratedCost) or asked.round is not None:
-        return 0.0
-    usual = pricing.calibration().bytes[route.price.operation]
-    row = len(written(rows[0])) + LENGTH_OF_A_TIME
-    return samples * max(0.0, usual["samples"] + 3 * usual["numbers"] - row)
+def _length(fields: Answer, growth: Mapping[str, float]) -> float:
+    """Return the length of an answer as JSON, of which some fields are so many times as long as those given."""
+    entries = signed(fields).items()
+    # Quotes, colon and comma of each entry, and the braces around all.
+    return 1.0 + sum(len(name) + 4 + len(written(value)) * growth.get(name, 1.0) for name, value in entries)
 
 
-LENGTH_OF_A_TIME = 20
-"""Characters of a time that has all its digits, with a comma."""
-
-OF_THE_OUTLINE = ("accuracy-not-reached", "rounded-beyond-accuracy")
-"""Warnings about a method or digits that the planning_probe of a question leaves out."""
+OF_FEW_STEPS = ("accuracy-not-reached", "rounded-beyond-accuracy")
+"""Warnings about the few steps that are run of a method."""
 
 
 def _stated(fields: Answer) -> dict[str, Any] | None:
@@ -206,24 +186,18 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
     return {"error": worst["error"], "how": worst["how"], "inherited": worst.get("inherited")}
 
 
-def _evaluations(asked: Any, budget: Budget) -> int | None:
-    method, times = getattr(asked, "method", None), getattr(asked, "times", None)
-    if any(getattr(asked, name, None) is not None for name in ("methods", "measure", "connections")):
-        return None
-    if method is None or times is None:
+def _evaluations(route: PostRoute, asked: Any, budget: Budget) -> int | None:
+    if not isinstance(route.price, CalibratedCost):
         return 0
-    speed = _speed(asked)
-    count = round(min(1e18, pricing.evaluations(method, times, speed)))
-    name, _ = pricing.setting(method) if method.kind != "closed-form" else ("", 0.0)
-    if name == "step" and count > budget.evaluations:
+    counted = route.price.counts(asked, budget)
+    # How many steps ladders and described scenes take is only known by running them.
+    if "ladders" in counted or "connections" in counted:
+        return None
+    count = round(min(UNCOUNTABLE, sum(n for name, n in counted.items() if name.startswith("evaluations of "))))
+    if hasattr(getattr(asked, "method", None), "step") and count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
     return count
-
-
-def _speed(asked: Any) -> float:
-    starts = getattr(asked, "angular_velocities", None) or [getattr(asked, "angular_velocity", (1.0,))]
-    return speed_to_follow((asked.method,), asked.body, max(pricing.speed_of(start) for start in starts))
 
 
 def _samples(asked: Any) -> int | None:
@@ -241,13 +215,5 @@ def _refused(path: str, problem: Problem, within: str) -> Answer:
     for fault in faults[:MOST_FAULTS]:
         entry = {"code": problem.type.code, "pointer": within + fault.pointer, "detail": fault.detail}
         errors.append(entry | {"remedy": fault.remedy} if fault.remedy else entry)
-    return {
-        "path": path,
-        "answerable": False,
-        "model": None,
-        "method": None,
-        "cost": None,
-        "accuracy": None,
-        "errors": errors,
-        "warnings": [],
-    }
+    nothing = dict.fromkeys(("model", "method", "cost", "accuracy"))
+    return {"path": path, "answerable": False, **nothing, "errors": errors, "warnings": []}

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
-from functools import cache
+from functools import cache, partial
 from typing import Any, Generic, Literal, cast, get_type_hints
 
 from pydantic import Field, create_model
 
 from core.quantities import Tolerance, members_of
 from core.scenes import Scene
-from core.scenes.answer import ConstrainedSystem, SceneEvent
+from core.scenes.answer import HORIZON, ConstrainedSystem, SceneEvent
 from core.systems.budget import Budget
 from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, numbers
 from service.routes.bodies import few_times
 from service.routes.examples import examples
+from service.routes.planning_probes import FEW, few_of
 from service.routes.rotation.trajectory import Accuracy
-from service.routing import Answer, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     ROUND,
     Envelope,
@@ -38,14 +39,12 @@ OUTPUTS: Any = Field(default=None, min_length=1, description="What to compute; b
 
 
 class SceneAnswer(Envelope, Generic[N]):
-    """What was asked for of a scene; each figure is there if it is one of the outputs."""
+    """The requested outputs of a scene; each figure is there if it is one of them."""
 
     model: Model
     work: Work
-    requested_samples: int = Field(description="Samples asked for; work.samples counts those that exist.")
-    ended: str | None = Field(
-        description="horizon, or the event that ended the motion; null if no motion was asked for."
-    )
+    requested_samples: int = Field(description="Number of requested times; work.samples counts the samples that exist.")
+    ended: str | None = Field(description="horizon, or the event that ended the motion; null without times.")
     events: list[SceneEvent[N]] | None = Field(default=None, description="What happens from t = 0 on, in order.")
 
 
@@ -89,7 +88,7 @@ def members() -> tuple[type[ConstrainedSystem], ...]:
 
 
 def name_of(scene: type[ConstrainedSystem]) -> str:
-    """Return the name by which requests tell a scene apart."""
+    """Return the name of a scene, the last step of its path."""
     return str(scene.__dict__["kind"])
 
 
@@ -104,7 +103,7 @@ def summary_of(scene: type[ConstrainedSystem]) -> str:
 
 
 def request_model(scene: type[ConstrainedSystem], title: str, **own: Any) -> type[Request]:
-    """Return the model of a question about a scene: fields of its own, and the outputs that can be asked for."""
+    """Return the model of a question about a scene: fields of its own, and the outputs to choose from."""
     # Built by a call, because a type made of names that are only known here is no type to the checker.
     outputs: Any = list.__class_getitem__(Literal.__getitem__(tuple(scene.outputs)))
     made: type[Request] = create_model(
@@ -134,13 +133,13 @@ def _in(hint: Any, number: type) -> Any:
 
 
 class SceneAnswerInDoubles(SceneAnswer[float]):
-    """What was asked for of a scene."""
+    """The requested outputs of a scene."""
 
     accuracy: Accuracy
 
 
 def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
-    """Return the request that has the scene's own fields, and beside them what is asked of it."""
+    """Return the request that has the scene's own fields, and beside them times and options."""
     hints = get_type_hints(scene, include_extras=True)
     own: dict[str, Any] = {
         entry.name: (hints[entry.name], ... if entry.default is MISSING else entry.default) for entry in fields(scene)
@@ -162,18 +161,23 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
         found = system.answer(times, wanted, question.accuracy)
         if question.round is not None:
             found = found.rounded(question.round)
-        return {
-            "model": found.model,
-            "accuracy": found.accuracy,
-            "work": found.work,
-            "requested_samples": found.requested_samples,
-            "ended": found.ended,
-            **found.figures,
-            "warnings": found.warnings,
-            **({} if found.trajectory is None else {"trajectory": dict(found.trajectory)}),
-        }
+        return answer_of(found, found.accuracy, found.work, found.requested_samples)
 
     return answer
+
+
+def answer_of(found: Any, accuracy: Any, work: Work, requested_samples: int) -> Answer:
+    """Return the fields of an answer that core has found, in either kind of number."""
+    return {
+        "model": found.model,
+        "accuracy": accuracy,
+        "work": work,
+        "requested_samples": requested_samples,
+        "ended": found.ended,
+        **found.figures,
+        "warnings": found.warnings,
+        **({} if found.trajectory is None else {"trajectory": dict(found.trajectory)}),
+    }
 
 
 def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
@@ -189,12 +193,27 @@ def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
     }
 
 
-def scene_probe(question: Any) -> Any:
-    """Return the question about the earliest and the latest time alone."""
+def scene_probe(
+    handle: Callable[[Any, Budget], Answer],
+    instants: Callable[[Any, Budget], Any],
+    most: int,
+    question: Any,
+    budget: Budget,
+) -> PlanningProbe:
+    """Answer a question about a scene, by `handle`, at few of its `instants` up to the end of the motion."""
     if question.times is None:
-        return question
-    times = question.times if isinstance(question.times, list) else [question.times.start, question.times.stop]
-    return question.model_copy(update={"times": [min(times), max(times)], "round": None})
+        return PlanningProbe(handle(question, budget))
+    times = instants(question.times, budget)
+    first, last = times.min(), times.max()
+    ends = question.model_copy(update={"times": [first, last]})
+    if question.outputs is not None and "trajectory" not in question.outputs:
+        return PlanningProbe(handle(ends, budget))
+    found = handle(ends.model_copy(update={"outputs": ["events", "ended"]}), budget)
+    end = last if found["ended"] == HORIZON else type(last)(found["events"][-1]["time"] or 0)
+    existing = times[times <= end]
+    few = list(dict.fromkeys([*existing[few_of(existing.size, most)], first, last]))
+    growth = {"trajectory": existing.size / max(1, sum(time <= end for time in few))}
+    return PlanningProbe(handle(question.model_copy(update={"times": few}), budget), growth)
 
 
 @cache
@@ -211,7 +230,7 @@ def questions() -> tuple[PostRoute, ...]:
             answering(scene),
             CalibratedCost(operation_of(scene), scene_counts),
             lambda question: question.times is None or few_times(question.times),
-            scene_probe,
+            partial(scene_probe, answering(scene), sample_times, FEW),
             warming=WARMING.get(name_of(scene), ()),
         )
         for scene in members()

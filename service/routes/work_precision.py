@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from math import exp, log
 from typing import Annotated
 
@@ -20,14 +19,15 @@ from core.work_precision import (
     STEPS_PER_OWN_TIME,
     TOLERANCES,
     Measurement,
+    check_distinct,
     work_precision,
 )
 from service.execution.cost_model import CalibratedCost, calibration, effort, extent, extreme, speed_of
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
-from service.routing import Answer, PostRoute
-from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, sample_count, sample_times
+from service.routing import Answer, PlanningProbe, PostRoute
+from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, fields_of, sample_count, sample_times
 
 LADDER_RADIANS = 50.0
 """How far the body turns in the motions on which ladders are measured."""
@@ -110,7 +110,7 @@ def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Ans
         repeats=question.repeats,
         budget=Budget(share, budget.samples),
     )
-    return {entry.name: getattr(found, entry.name) for entry in fields(found)} | {"warnings": system.warnings}
+    return fields_of(found) | {"warnings": system.warnings}
 
 
 def _runs(question: WorkPrecisionRequest) -> int:
@@ -152,10 +152,13 @@ def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> di
     return counts
 
 
-def work_precision_probe(question: WorkPrecisionRequest) -> WorkPrecisionRequest:
-    """Return the question about the closed form at the farthest time alone."""
+def work_precision_probe(question: WorkPrecisionRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about the closed form at the farthest time alone."""
+    if question.methods is not None:
+        check_distinct(question.methods)
     changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
-    return question.model_copy(update=changes)
+    growth = {"curves": float(_runs(question))}
+    return PlanningProbe(answer_work_precision(question.model_copy(update=changes), budget), growth)
 
 
 def drawn(answer: Answer) -> bytes:

@@ -64,7 +64,8 @@ def test_the_double_pendulum_agrees_with_lagrange_s_equations(answer_of):
     time = np.array(answer["trajectory"]["time"])
     exact = solve_ivp(rates, (0, 10), [0, np.pi / 2, 0, 0], "DOP853", time, rtol=1e-13, atol=1e-14).y
     found = columns(answer)
-    reached = np.stack([found["one.angle"], found["two.angle"], found["one.angular_velocity"], found["two.angular_velocity"]])
+    names = ("one.angle", "two.angle", "one.angular_velocity", "two.angular_velocity")
+    reached = np.stack([found[name] for name in names])
     # A motion of two angles that grow apart: what the integration rounds is amplified, too.
     np.testing.assert_allclose(reached[:, :4], exact[:, :4], rtol=0, atol=1e-10)
     np.testing.assert_allclose(reached, exact, rtol=0, atol=1e-7)

@@ -33,7 +33,6 @@ UNRESOLVED = {
     "no body, of": "a time lies beyond 2^48 periods",
     "lamina of 1e-": "a time lies beyond 2^48 periods",
     "one moment and its rate subnormal": "moments and rates lie too far apart",
-    "largest doubles": "hangs on the rounding of the constants of the motion",
 }
 """The only motions that are refused, by part of their names, and why."""
 
@@ -50,10 +49,14 @@ def asked_both_ways(path: str, question: Asked, **only_in_doubles: Any) -> tuple
     return found, exact
 
 
-def farthest(rows: list[list[float]], numerals: list[list[str]]) -> float:
-    """Return the largest distance of rows over the largest norm of the exact ones."""
+def farthest(rows: list[list[float]], numerals: list[list[str]], norm: float | None = None) -> float:
+    """Return the largest distance of rows over a norm, which by default is the largest of the exact ones."""
     exact = [[Fraction(x) for x in row] for row in numerals]
     largest = max(sum(x * x for x in row) for row in exact)
+    if norm is not None:
+        # That of the whole motion is not below that of any sample, by more than its rounding.
+        assert Fraction(norm) ** 2 * (1 + Fraction(1, 10**15)) >= largest
+        largest = Fraction(norm) ** 2
     worst = max(
         sum((Fraction(g) - x) ** 2 for g, x in zip(row, true, strict=True))
         for row, true in zip(rows, exact, strict=True)

@@ -16,6 +16,7 @@ from typing import Any
 import httpx
 import pytest
 
+from core.systems.budget import Budget
 from service.app import Service
 from service.routes import questions
 from service.routing import PostRoute
@@ -51,8 +52,16 @@ def inline_toys(**settings: Any) -> Service:
 
 
 def everything_inline() -> tuple[PostRoute, ...]:
-    """Return the route table with every question small."""
-    return tuple(replace(route, small=lambda question: True) for route in questions())
+    """Return the route table with every question small; what is refused by its price is refused all the same."""
+
+    def priced(route: PostRoute) -> PostRoute:
+        def handle(question: Any, budget: Budget) -> Any:
+            route.price(question, budget)
+            return route.handle(question, budget)
+
+        return replace(route, small=lambda question: True, handle=handle)
+
+    return tuple(map(priced, questions()))
 
 
 def inline_service(**settings: Any) -> Service:

@@ -8,20 +8,20 @@ from typing import NamedTuple
 from core.compiled import kernel
 from core.elliptic.integrals import one_less_e_over_k
 
+SMALL = 2.0**-16
+"""Rates are multiplied by it, so that those of the largest doubles do not overflow."""
+
 
 class ConditionBounds(NamedTuple):
-    """The bound start + rate t at the time t >= 0, in units of the rounding, relative to the largest rate."""
+    """The bound start + rate t/SMALL at the time t >= 0, in units of the rounding, relative to the largest rate."""
 
     start: float
     rate: float
 
     def at(self, uncertainty: float, horizon: float) -> float:
-        """Return what a relative uncertainty has grown to at a time, at most 2.
-
-        First order ends somewhere: a growth beyond a tenth is stated as what it can come to, the whole motion.
-        """
-        grown = uncertainty * (self.start + self.rate * horizon)
-        return grown if grown < 0.1 else 2.0
+        """Return what a relative uncertainty has grown to; infinite beyond a tenth, where the first order ends."""
+        grown = uncertainty * self.start + uncertainty / SMALL * horizon * self.rate
+        return grown if grown < 0.1 else math.inf
 
 
 NONE = ConditionBounds(0.0, 0.0)
@@ -55,4 +55,4 @@ def rounding_bounds(
     relative = 8.0 * (min(m / m1, cancellation) if m1 > 0.0 else cancellation)
     shift = 0.5 * _e_minus_m1_k(m, m1, K) * relative
     start = slope * (8.0 * abs(sn * cn) / dn + 8.0 * abs(u0) + shift) + 4.0
-    return ConditionBounds(start, slope * p * (8.0 + shift / K))
+    return ConditionBounds(start, slope * (SMALL * p) * (8.0 + shift / K))

@@ -17,13 +17,13 @@ from core.quantities import Duration, Quantity, Unit, check
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
-from core.systems.error_statements import drifts, measured
+from core.systems.error_statements import bound_of, drifts, measured
 from core.systems.methods import Method
 from core.systems.system import Floats
 from core.systems.trajectory import Work
 from core.work import spend
 
-SampleCount = Annotated[int, Quantity("1", at_least=3)]
+SampleCount = Annotated[int, Quantity("1", at_least=3, at_most=10**9)]
 Distance = Annotated[float, Quantity("rad s^-1", above=0)]
 
 
@@ -146,7 +146,7 @@ def measure_period(system: TorqueFree, measure: Measure, budget: Budget | None =
         distances = _distances(run.states, system.initial_state)
         back = first_return(distances, measure.tolerance)
         seen = slice(0, back + 1 if back is not None else None)
-        own = rotation.error(times[seen])
+        own = bound_of(rotation, times[seen])
         error = measured(run.states[seen], exact[seen], times[seen], rotation.largest_norm).beyond(own).largest
     except AccuracyUnreachable as fault:
         fault.path = ("measure", "duration")

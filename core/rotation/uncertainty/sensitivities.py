@@ -94,8 +94,9 @@ class Sensitivities:
         sums, crossed = np.zeros(at.COUNT), False
         dn, k1 = _start_of(moments, gaps, components, motion)
         if moments[0] == 0.0:
-            # A line of matter along a body axis, which no uncertainty gives a moment about itself.
-            moments = np.maximum(moments, moments[1])
+            # A line of matter along a body axis, which no uncertainty gives a moment about itself. Two moments below
+            # every double next to the third are those of no matter: bounds that divide by them grow beyond all.
+            moments = np.maximum(moments, max(moments[1], _THINNEST))
         if axes is None or tensors is None:
             dI, dw, turns = given_moment_sensitivities(moments, components)
             own, own_start = sum(moments.tolist()), math.hypot(*components.tolist())

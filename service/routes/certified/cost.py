@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,12 +17,7 @@ SET_UP = 5e-3
 
 @dataclass(frozen=True)
 class PerSample:
-    """Predicted time of a sample of d digits: constant + linear d + quadratic d^2 (s).
-
-    Attributes
-    ----------
-    constant, linear, quadratic : float
-    """
+    """Predicted time of a sample of d digits: constant + linear d + quadratic d^2 (s)."""
 
     constant: float
     linear: float
@@ -31,42 +26,6 @@ class PerSample:
     def seconds(self, digits: int) -> float:
         """Return the time of one sample (s)."""
         return self.constant + digits * (self.linear + digits * self.quadratic)
-
-
-@dataclass(frozen=True)
-class Cost:
-    """What a certified answer will cost.
-
-    Attributes
-    ----------
-    seconds : float
-        Time of computing, beside the set-up (s).
-    numbers : int
-        Decimal strings that are written.
-    text : float
-        Bytes beside them.
-    """
-
-    seconds: float
-    numbers: int
-    text: float = 600.0
-
-
-@dataclass(frozen=True)
-class CertifiedCost:
-    """Price of a certified question, by what is counted of it."""
-
-    cost: Callable[[Any, Budget], Cost]
-
-    def __call__(self, question: Any, budget: Budget) -> float:
-        """Return the predicted time of computing an answer (s)."""
-        return SET_UP + self.cost(question, budget).seconds
-
-    def size(self, question: Any, budget: Budget) -> float:
-        """Return the predicted length of an answer as JSON (bytes)."""
-        cost = self.cost(question, budget)
-        # A numeral has a sign, a point, two quotes and a comma.
-        return cost.text + cost.numbers * (int(question.digits) + 5.0)
 
 
 def affordable(times: Any, digits: int, numbers: int, budget: Budget) -> int:

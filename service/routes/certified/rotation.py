@@ -18,11 +18,11 @@ from service.requests.decimal_models import (
     DecimalTimes,
     DigitCount,
     body_of,
-    ends,
     instants,
 )
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices, times_written
-from service.routes.certified.cost import CertifiedCost, Cost, PerSample, affordable, summing
+from service.routes.certified.cost import SET_UP, PerSample, affordable, summing
+from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routes.rotation.precession import DISTURBANCE, PRECESSION, RATE, Equilibria, PrecessionFigures
 from service.routes.rotation.trajectory import (
     ANGULAR_VELOCITY,
@@ -32,7 +32,7 @@ from service.routes.rotation.trajectory import (
     TIMES,
     RotationSamples,
 )
-from service.routing import Answer
+from service.routing import Answer, PlanningProbe
 from service.schemas import DecimalString, Request, fields_of
 
 RATES = PerSample(2e-5, 6e-8, 1.7e-10)
@@ -140,28 +140,30 @@ def _numbers(wanted: tuple[Output, ...]) -> int:
     return 7 if "attitude" in wanted else 3
 
 
-def trajectory_cost(question: CertifiedTrajectoryRequest, budget: Budget) -> Cost:
-    """Return what is counted of a trajectory."""
-    wanted = wanted_outputs(question.outputs, question.attitude)
-    numbers, digits = _numbers(wanted), question.digits
-    samples = affordable(question.times, digits, numbers, budget)
+def trajectory_cost(question: CertifiedTrajectoryRequest, budget: Budget) -> float:
+    """Return the predicted time of a trajectory (s)."""
+    wanted, digits = wanted_outputs(question.outputs, question.attitude), question.digits
+    samples = affordable(question.times, digits, _numbers(wanted), budget)
     each = (RATES_AND_ATTITUDES if "attitude" in wanted else RATES).seconds(digits)
-    return Cost(summing(question.body) + samples * each, 10 + samples * (numbers + ("time" in wanted)))
+    return SET_UP + summing(question.body) + samples * each
 
 
-def trajectory_probe(question: CertifiedTrajectoryRequest) -> CertifiedTrajectoryRequest:
-    """Return the question about the farthest time alone."""
-    return question.model_copy(update={"times": [max(ends(question.times), key=abs)]})
+def trajectory_probe(question: CertifiedTrajectoryRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question at few times, the farthest among them."""
+    times = instants(question.times)
+    few = [*(times[k] for k in few_of(len(times), FEW_CERTIFIED)), max(times, key=abs)]
+    growth = dict.fromkeys(("time", "angular_velocity", "attitude"), len(times) / len(few))
+    return PlanningProbe(answer_trajectory(question.model_copy(update={"times": few}), budget), growth)
 
 
-def precession_cost(question: CertifiedPrecessionRequest, budget: Budget) -> Cost:
-    """Return what is counted of a question without times: a handful of figures that cost a few samples each."""
-    return Cost(summing(question.body) + FIGURES.seconds(question.digits), 9, 900.0)
+def precession_cost(question: CertifiedPrecessionRequest, budget: Budget) -> float:
+    """Return the same of a question without times: a handful of figures that cost a few samples each."""
+    return SET_UP + summing(question.body) + FIGURES.seconds(question.digits)
 
 
-def stability_cost(question: CertifiedStabilityRequest, budget: Budget) -> Cost:
-    """Return the same of the equilibria, of which each is explained in some 600 characters."""
-    return Cost(summing(question.body) + EQUILIBRIA.seconds(question.digits), 18, 3000.0)
+def stability_cost(question: CertifiedStabilityRequest, budget: Budget) -> float:
+    """Return the same of the equilibria."""
+    return SET_UP + summing(question.body) + EQUILIBRIA.seconds(question.digits)
 
 
 CERTIFIED_ROTATION = (
@@ -170,7 +172,7 @@ CERTIFIED_ROTATION = (
         question=CertifiedTrajectoryRequest,
         answer=CertifiedTrajectoryAnswer,
         handle=answer_trajectory,
-        price=CertifiedCost(trajectory_cost),
+        price=trajectory_cost,
         planning_probe=trajectory_probe,
     ),
     certified_route(
@@ -178,13 +180,13 @@ CERTIFIED_ROTATION = (
         question=CertifiedPrecessionRequest,
         answer=CertifiedPrecessionAnswer,
         handle=answer_precession,
-        price=CertifiedCost(precession_cost),
+        price=precession_cost,
     ),
     certified_route(
         PRECESSION[1],
         question=CertifiedStabilityRequest,
         answer=CertifiedStabilityAnswer,
         handle=answer_stability,
-        price=CertifiedCost(stability_cost),
+        price=stability_cost,
     ),
 )

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, partial
 from typing import Any
+
+import numpy as np
 
 from core.certified.scenes import certified_scene, exact_scene
 from core.errors import InvalidParameter
@@ -14,14 +16,24 @@ from core.systems.trajectory import Work
 from service.requests.decimal_models import (
     DecimalTimes,
     DigitCount,
-    ends,
     explicit_fields,
     fields_in_numerals,
     instants,
 )
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
-from service.routes.certified.cost import CertifiedCost, Cost, PerSample, affordable
-from service.routes.scenes import TIMES, SceneAnswer, answer_model, members, name_of, questions, request_model
+from service.routes.certified.cost import SET_UP, PerSample, affordable
+from service.routes.planning_probes import FEW_CERTIFIED
+from service.routes.scenes import (
+    TIMES,
+    SceneAnswer,
+    answer_model,
+    answer_of,
+    members,
+    name_of,
+    questions,
+    request_model,
+    scene_probe,
+)
 from service.routing import Answer, PostRoute
 from service.schemas import DecimalString
 
@@ -29,14 +41,11 @@ COLUMNS = 8
 """Numbers in a sample, at most."""
 
 QUESTION = ("times", "outputs", "digits")
-"""What is asked of a scene, beside the fields that are its own."""
+"""Fields of a question that are not the scene's own."""
 
 ELEMENTARY = PerSample(1.1e-5, 3e-8, 1e-10)
 SAMPLES: Mapping[str, PerSample] = {"rod-in-hole": PerSample(4.5e-5, 1.5e-7, 1.5e-9)}
 """Scenes with elliptic functions; the others are elementary."""
-
-WRITTEN: Mapping[str, int] = {"rod-in-hole": 5, "chain-on-wedge": 4}
-"""Numbers that are written of a sample, its time among them, where they are not as many as may be."""
 
 
 def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
@@ -55,18 +64,10 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
                 # Evenly spaced times have no entries to point at.
                 raise InvalidParameter("times", fault.rule, remedy=fault.remedy) from None
             raise
-        fields: Answer = {
-            "model": found.model,
-            "accuracy": accuracy(digits),
-            "work": Work(0 if found.trajectory is None else len(found.trajectory["time"])),
-            "requested_samples": samples,
-            "ended": found.ended,
-            **found.figures,
-            "warnings": found.warnings,
-        }
+        work = Work(0 if found.trajectory is None else len(found.trajectory["time"]))
+        fields = answer_of(found, accuracy(digits), work, samples)
         if found.trajectory is not None:
-            columns = dict(found.trajectory)
-            fields["trajectory"] = columns | {"time": times_written(columns["time"], digits)}
+            fields["trajectory"]["time"] = times_written(found.trajectory["time"], digits)
         return fields
 
     return answer
@@ -76,13 +77,12 @@ def _samples(question: Any, budget: Budget) -> int:
     return 0 if question.times is None else affordable(question.times, question.digits, COLUMNS, budget)
 
 
-def scene_probe(question: Any) -> Any:
-    """Return the question about the earliest and the latest time alone."""
-    return question if question.times is None else question.model_copy(update={"times": list(ends(question.times))})
+def _instants(times: Any, budget: Budget) -> Any:
+    return np.array(instants(times), dtype=object)
 
 
 class CertifiedSceneAnswer(Certified, SceneAnswer[DecimalString]):
-    """What was asked for of a scene, numbers as decimal strings."""
+    """The requested outputs of a scene, numbers as decimal strings."""
 
 
 @cache
@@ -92,12 +92,10 @@ def certified_scenes() -> tuple[PostRoute, ...]:
 
 
 def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
-    name = name_of(scene)
-    each = SAMPLES.get(name, ELEMENTARY)
+    each = SAMPLES.get(name_of(scene), ELEMENTARY)
 
-    def cost(question: Any, budget: Budget) -> Cost:
-        samples = _samples(question, budget)
-        return Cost(samples * each.seconds(question.digits), 10 + samples * WRITTEN.get(name, COLUMNS))
+    def cost(question: Any, budget: Budget) -> float:
+        return SET_UP + _samples(question, budget) * each.seconds(question.digits)
 
     own = fields_in_numerals(scene) | {"times": (DecimalTimes | None, TIMES), "digits": (DigitCount, ...)}
     return certified_route(
@@ -105,6 +103,6 @@ def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
         question=request_model(scene, "Certified", **own),
         answer=answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString),
         handle=answering(scene),
-        price=CertifiedCost(cost),
-        planning_probe=scene_probe,
+        price=cost,
+        planning_probe=partial(scene_probe, answering(scene), _instants, FEW_CERTIFIED),
     )

@@ -14,28 +14,30 @@ from service.requests.decimal_models import DecimalAngularVelocity, DecimalBody,
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices
-from service.routes.certified.cost import CertifiedCost, Cost, PerSample, summing
+from service.routes.certified.cost import SET_UP, PerSample, summing
 from service.routes.rotation.surfaces import (
+    ENERGY,
+    POINTS,
+    SEPARATRIX,
+    STATE,
     SURFACES,
     Count,
     Drawn,
     EllipsoidSurface,
     curve_points,
     curves_drawn,
-    require_one,
+    probe_of_curves,
 )
-from service.routing import Answer
-from service.schemas import DecimalString, Request, fields_of
+from service.routing import Answer, PlanningProbe
+from service.schemas import DecimalString, Request, fields_of, require_one
 
 
 class CertifiedEllipsoidRequest(Request):
     """A body and the energy of its rotation, or a state that has it."""
 
     body: DecimalBody
-    energy: DecimalEnergy | None = Field(default=None, description="Kinetic energy; this or angular_velocity.")
-    angular_velocity: DecimalAngularVelocity | None = Field(
-        default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
-    )
+    energy: DecimalEnergy | None = ENERGY
+    angular_velocity: DecimalAngularVelocity | None = STATE
     resolution: Count | None = Field(
         default=None,
         description="Parts of an icosahedron's edge, or points from pole to pole; 16 if only the layout is given. "
@@ -49,10 +51,8 @@ class CertifiedEllipsoidRequest(Request):
         description="Draw polhodes through random starts: the same doubles as in the ordinary question, each "
         "then scaled to the energy exactly.",
     )
-    separatrix: bool = Field(default=False, description="Draw the separatrix.")
-    points: Count = Field(
-        default=256, description="Points of each curve; a multiple of 4 has the extreme points among them."
-    )
+    separatrix: bool = SEPARATRIX
+    points: Count = POINTS
     digits: DigitCount
 
 
@@ -61,11 +61,11 @@ class CertifiedEllipsoidAnswer(Certified, EllipsoidSurface[DecimalString]):
 
 
 def energy_ellipsoid(question: CertifiedEllipsoidRequest, budget: Budget) -> Answer:
-    """Answer with the semi-axes, and with the surface and the curves that are asked for."""
+    """Answer with the semi-axes, and with the requested surface and curves."""
     body, digits = body_of(question.body), question.digits
     curve_points(question, budget)
     check_digits(digits, _numbers(question))
-    require_one(question)
+    require_one(question, "energy", "angular_velocity")
     if question.energy is not None:
         surface = CertifiedEllipsoid.of(body.of_motion, question.energy)
     else:
@@ -117,8 +117,8 @@ VERTEX = PerSample(5e-6, 1e-8, 6e-11)
 FACE = PerSample(2e-5, 2.5e-8, 1.5e-10)
 
 
-def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> Cost:
-    """Return what is counted: points of curves, vertices, and triangles, of which angles are measured.
+def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> float:
+    """Return the predicted time (s), by points of curves, vertices, and triangles, of which angles are measured.
 
     Raises
     ------
@@ -130,27 +130,22 @@ def ellipsoid_cost(question: CertifiedEllipsoidRequest, budget: Budget) -> Cost:
     check_digits(digits, _numbers(question))
     layout, resolution = _surface(question)
     faces = 20 * resolution**2 if layout == "triangles" else 0
-    seconds = (
-        summing(question.body)
+    return (
+        SET_UP
+        + summing(question.body)
         + curves * CURVE.seconds(digits)
         + points * POINT.seconds(digits)
         + _vertices(question) * VERTEX.seconds(digits)
         + faces * FACE.seconds(digits)
     )
-    # A third of the axes' components are zeros.
-    return Cost(seconds, 8 + _numbers(question), 600.0 + 14 * faces)
 
 
-def ellipsoid_probe(question: CertifiedEllipsoidRequest) -> CertifiedEllipsoidRequest:
-    """Return the question about a coarse surface and few points."""
-    changes: dict[str, Any] = {"points": min(question.points, 16)}
-    if question.resolution is not None and question.resolution <= 200:
-        changes["resolution"] = min(question.resolution, 4)
-    elif question.layout is not None and question.resolution is None:
-        changes["resolution"] = 4
-    if question.polhodes is not None:
-        changes["polhodes"] = question.polhodes.model_copy(update={"count": min(question.polhodes.count, 4)})
-    return question.model_copy(update=changes)
+def ellipsoid_probe(question: CertifiedEllipsoidRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
+    layout, resolution = _surface(question)
+    few = {} if layout is None or resolution > 200 else {"resolution": min(resolution, 4)}
+    whole = question if layout is None else question.model_copy(update={"resolution": resolution})
+    return probe_of_curves(energy_ellipsoid, whole, few, 16, budget)
 
 
 CERTIFIED_ELLIPSOID = certified_route(
@@ -158,7 +153,7 @@ CERTIFIED_ELLIPSOID = certified_route(
     question=CertifiedEllipsoidRequest,
     answer=CertifiedEllipsoidAnswer,
     handle=energy_ellipsoid,
-    price=CertifiedCost(ellipsoid_cost),
+    price=ellipsoid_cost,
     planning_probe=ellipsoid_probe,
     representations={SVG: ellipsoid_figure},
 )

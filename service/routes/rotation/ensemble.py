@@ -9,7 +9,6 @@ import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
-from core.errors import InvalidParameter
 from core.notices import Notice
 from core.quantities import AngularVelocity, Energy, Tolerance
 from core.rotation.ensemble import ensemble
@@ -20,11 +19,12 @@ from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
+from service.routes.planning_probes import few_of, in_closed_form, probe_in_samples
 from service.routes.rotation.surfaces import Count, Seed
-from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy, in_closed_form
-from service.routing import Answer, PostRoute
+from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     ROUND,
     AngularVelocityRow,
@@ -35,6 +35,7 @@ from service.schemas import (
     Seconds,
     Times,
     View,
+    require_one,
     sample_count,
     sample_times,
 )
@@ -42,7 +43,7 @@ from service.schemas import (
 FEW_MEMBERS = 8
 """Members of an ensemble up to which it may be begun in the event loop."""
 
-OUTLINED = 16
+PROBED = 8
 """Members of an ensemble by which all of it is planned."""
 
 
@@ -118,66 +119,61 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
         "members": members,
         "time": many.time,
         "angular_velocity": many.angular_velocity,
-        "warnings": (
-            *inherited_notices(body),
-            *many.warnings,
-            *outside[:1],
-        ),
+        "warnings": (*inherited_notices(body), *many.warnings, *outside[:1]),
     }
 
 
 def _starts(question: EnsembleRequest, body: Any) -> Any:
-    if (question.angular_velocities is None) == (question.sample is None):
-        raise InvalidParameter(
-            "angular_velocities",
-            "be given, or sample, and not both",
-            remedy="give one of angular_velocities and sample",
-        )
+    require_one(question, "angular_velocities", "sample")
     if question.sample is not None:
         return initial_states(body, question.sample.energy, question.sample.count, question.sample.seed)
     return np.array(question.angular_velocities)
 
 
 def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of an ensemble; of a sample's starts it is known how fast they are on average."""
-    starts = question.angular_velocities or []
-    members = question.sample.count if question.sample is not None else len(starts)
-    samples = sample_count(question.times, budget)
-    moments = moments_to_foresee((question.method,), question.body)
-    speed = max((speed_of(start) for start in starts), default=1.0)
-    if question.sample is not None and moments and moments[0] > 0.0:
-        # The root of the mean square over the directions of the sample.
-        speed = speed_of([sqrt(question.sample.energy / 1.5) / sqrt(moment) for moment in moments])
-    speed = speed_to_follow((question.method,), question.body, speed)
+    """Return what is counted of an ensemble."""
+    members, samples = _members(question), sample_count(question.times, budget)
     return {
         **counts(question, budget),
         "members": members,
         "samples": samples * members,
         "times": samples,
-        **effort(question.method, question.times, speed, samples, members),
+        **effort(question.method, question.times, _speed(question), samples, members),
         **numbers(3 * samples * members, question.round),
     }
 
 
+def _members(question: EnsembleRequest) -> int:
+    return question.sample.count if question.sample is not None else len(question.angular_velocities or ())
+
+
+def _speed(question: EnsembleRequest) -> float:
+    """Return the speed that methods follow; of a sample's starts it is known how fast they are on average."""
+    moments = moments_to_foresee((question.method,), question.body)
+    speed = max((speed_of(start) for start in question.angular_velocities or ()), default=1.0)
+    if question.sample is not None and moments and moments[0] > 0.0:
+        # The root of the mean square over the directions of the sample.
+        speed = speed_of([sqrt(question.sample.energy / 1.5) / sqrt(moment) for moment in moments])
+    return speed_to_follow((question.method,), question.body, speed)
+
+
 def is_small_ensemble(question: EnsembleRequest) -> bool:
     """Return whether an ensemble has few members and few samples, in closed form."""
-    sample, starts = question.sample, question.angular_velocities
-    members = sample.count if sample is not None else len(starts or ())
-    return (
-        members <= FEW_MEMBERS and in_closed_form(question.method) and few_times(question.times) and is_small(question)
-    )
+    few = _members(question) <= FEW_MEMBERS and few_times(question.times)
+    return few and in_closed_form(question.method) and is_small(question)
 
 
-def ensemble_probe(question: EnsembleRequest) -> EnsembleRequest:
-    """Return the question about a few members at the farthest time alone, in closed form."""
-    changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
-    if question.method is not None and question.method.kind != "closed-form":
-        changes["accuracy"] = 0.5
-    if question.angular_velocities is not None:
-        changes["angular_velocities"] = question.angular_velocities[:OUTLINED]
+def ensemble_probe(question: EnsembleRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about a few members at few times."""
+    changes: dict[str, Any] = {}
+    if question.angular_velocities:
+        which = few_of(len(question.angular_velocities), PROBED)
+        changes["angular_velocities"] = [question.angular_velocities[k] for k in which]
     if question.sample is not None:
-        changes["sample"] = question.sample.model_copy(update={"count": min(OUTLINED, question.sample.count)})
-    return question.model_copy(update=changes)
+        changes["sample"] = question.sample.model_copy(update={"count": min(PROBED, question.sample.count)})
+    fewer = question.model_copy(update=changes)
+    members = _members(question) / max(1, _members(fewer))
+    return probe_in_samples(answer_ensemble, fewer, _speed(question), budget, members)
 
 
 ENSEMBLE = (

@@ -1,7 +1,8 @@
-"""Questions about rates and angles of a free rotation; none of them integrates unless a measurement is asked for."""
+"""Questions about rates and angles of a free rotation; none of them integrates unless a measurement is requested."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any, Generic, Literal
 
 import numpy as np
@@ -15,10 +16,11 @@ from core.rotation.precession.precession import Precession, Regime, precession
 from core.rotation.stability.stability import stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
+from core.systems.methods import ClosedFormEvaluation
 from service.execution.cost_model import CalibratedCost, effort, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
-from service.routing import Answer, PostRoute
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     Envelope,
     N,
@@ -31,6 +33,9 @@ from service.schemas import (
     UnitVector,
     View,
 )
+
+COARSE = 1000
+"""Samples by which a measurement of more of them is foreseen."""
 
 
 class PrecessionRequest(Request):
@@ -69,7 +74,7 @@ class PrecessionFigures(Envelope, Generic[N]):
 class PrecessionAnswer(PrecessionFigures[float]):
     """Rates and angles; null where the motion has no such thing."""
 
-    measured: MeasuredPeriod | None = Field(default=None, description="The period by an integrator, if asked for.")
+    measured: MeasuredPeriod | None = Field(default=None, description="The period by an integrator, if requested.")
 
 
 RATE: Any = Field(default=1.0, description="About each principal axis in turn.")
@@ -118,7 +123,7 @@ class Equilibria(Envelope, Generic[N]):
     """Every equilibrium of a free body at one rate: about its axes in ascending order of moments, and at rest."""
 
     symmetry: Symmetry = Field(description="Which of the principal moments are equal.")
-    rate: RadiansPerSecond[N] = Field(description="As asked.")
+    rate: RadiansPerSecond[N] = Field(description="As in the request.")
     equilibria: list[Equilibrium[N]] = Field(description="About the axes in ascending order of moments, and at rest.")
     flip: Flip[N] | None = Field(description="Of the disturbance; null without one.")
 
@@ -128,7 +133,7 @@ class StabilityAnswer(Equilibria[float]):
 
 
 def answer_precession(question: PrecessionRequest, budget: Budget) -> Answer:
-    """Answer with the figures and, if asked for, the measurement."""
+    """Answer with the figures and, if requested, the measurement."""
     body = properties_of(question.body)
     found: Precession = precession(body, question.angular_velocity)
     answer = found._asdict()
@@ -154,9 +159,12 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     return found | effort(measure.method, times, speed, measure.samples)
 
 
-def precession_probe(question: PrecessionRequest) -> PrecessionRequest:
-    """Return the question without its measurement."""
-    return question.model_copy(update={"measure": None})
+def precession_probe(question: PrecessionRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question with a measurement of the closed form on a grid that is not fine."""
+    measure = question.measure
+    if measure is not None:
+        measure = replace(measure, method=ClosedFormEvaluation(), samples=min(measure.samples, COARSE))
+    return PlanningProbe(answer_precession(question.model_copy(update={"measure": measure}), budget))
 
 
 PRECESSION = (

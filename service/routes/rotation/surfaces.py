@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any, Generic, Literal
 
 import numpy as np
@@ -9,7 +10,7 @@ from pydantic import Field
 
 from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
-from core.errors import BudgetExceeded, InvalidParameter
+from core.errors import BudgetExceeded
 from core.quantities import AngularVelocity, Energy
 from core.rotation.equal_moments import curve_notices
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
@@ -21,7 +22,8 @@ from service.execution.cost_model import CalibratedCost
 from service.responses.ellipsoid_svg import ellipsoid_figure
 from service.responses.svg import SVG
 from service.routes.bodies import FEW_SAMPLES, counts, is_small, properties_of
-from service.routing import Answer, PostRoute
+from service.routes.planning_probes import FEW
+from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     AngularMomentumMagnitude,
     AngularVelocityRow,
@@ -35,6 +37,7 @@ from service.schemas import (
     Request,
     View,
     fields_of,
+    require_one,
 )
 
 Count = Annotated[int, Field(ge=1, le=10**9)]
@@ -52,21 +55,26 @@ class Drawn(Request):
     seed: Seed = SEED
 
 
+# Fields of ordinary and of certified questions, each in the types of its own.
+ENERGY: Any = Field(default=None, description="Kinetic energy; this or angular_velocity.")
+STATE: Any = Field(
+    default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
+)
+SEPARATRIX: Any = Field(default=False, description="Draw the separatrix.")
+POINTS: Any = Field(default=256, description="Points of each curve; a multiple of 4 has the extreme points among them.")
+
+
 class EllipsoidRequest(Request):
     """A body and the energy of its rotation, or a state that has it."""
 
     body: Body
-    energy: Energy | None = Field(default=None, description="Kinetic energy; this or angular_velocity.")
-    angular_velocity: AngularVelocity | None = Field(
-        default=None, description="A state of that energy, in body axes; its polhode is drawn unless polhodes is given."
-    )
+    energy: Energy | None = ENERGY
+    angular_velocity: AngularVelocity | None = STATE
     resolution: Count = Field(default=16, description="Parts of an icosahedron's edge, or points from pole to pole.")
     layout: Literal["triangles", "grid"] = Field(default="triangles", description="How the surface is written.")
     polhodes: Drawn | None = Field(default=None, description="Draw polhodes of that energy through random starts.")
-    separatrix: bool = Field(default=False, description="Draw the separatrix.")
-    points: Count = Field(
-        default=256, description="Points of each curve; a multiple of 4 has the extreme points among them."
-    )
+    separatrix: bool = SEPARATRIX
+    points: Count = POINTS
 
 
 class MeshQuality(View, Generic[N]):
@@ -133,12 +141,12 @@ class StatesAnswer(Envelope):
     """Angular velocities of one energy, in body axes."""
 
     angular_velocities: list[AngularVelocityRow[float]] = Field(description="One row per start.")
-    energy: Joules[float] = Field(description="As asked.")
-    seed: int = Field(description="As asked.")
+    energy: Joules[float] = Field(description="As in the request.")
+    seed: int = Field(description="As in the request.")
 
 
 def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
-    """Answer with the surface and what is asked for on it."""
+    """Answer with the surface and the curves on it."""
     body = properties_of(question.body)
     surface = _surface(question, body)
     answer: Answer = {
@@ -165,16 +173,8 @@ def energy_ellipsoid(question: EllipsoidRequest, budget: Budget) -> Answer:
     return answer
 
 
-def require_one(question: Any) -> None:
-    """Raise `InvalidParameter` unless a question gives one of energy and angular velocity."""
-    if (question.energy is None) == (question.angular_velocity is None):
-        raise InvalidParameter(
-            "energy", "be given, or angular_velocity, and not both", remedy="give one of energy and angular_velocity"
-        )
-
-
 def _surface(question: EllipsoidRequest, body: MassProperties) -> EnergyEllipsoid:
-    require_one(question)
+    require_one(question, "energy", "angular_velocity")
     if question.energy is not None:
         return EnergyEllipsoid.of(body, question.energy)
     return EnergyEllipsoid.through(body, np.array(question.angular_velocity))
@@ -214,15 +214,29 @@ def is_small_ellipsoid(question: EllipsoidRequest) -> bool:
     return question.resolution <= COARSE and curves * question.points <= FEW_POINTS and is_small(question)
 
 
-def ellipsoid_probe(question: EllipsoidRequest) -> EllipsoidRequest:
-    """Return the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
-    changes: dict[str, Any] = {"points": min(question.points, 16)}
-    if question.resolution <= FINEST_PRICED:
-        changes["resolution"] = min(question.resolution, 4)
+def ellipsoid_probe(question: EllipsoidRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about a coarse surface and few points; one that may be refused is left as fine as it is."""
+    coarse = min(question.resolution, {"triangles": 8, "grid": 16}[question.layout])
+    changes = {"resolution": coarse} if question.resolution <= FINEST_PRICED else {}
+    return probe_of_curves(energy_ellipsoid, question, changes, FEW, budget)
+
+
+def probe_of_curves(
+    handle: Callable[[Any, Budget], Answer], question: Any, changes: dict[str, Any], points: int, budget: Budget
+) -> PlanningProbe:
+    """Answer, by `handle`, a question about a surface with changes and with few curves of few points."""
+    changes["points"] = min(question.points, points)
     if question.polhodes is not None:
-        few = min(question.polhodes.count, 4)
-        changes["polhodes"] = question.polhodes.model_copy(update={"count": few})
-    return question.model_copy(update=changes)
+        changes["polhodes"] = question.polhodes.model_copy(update={"count": min(question.polhodes.count, 4)})
+    few = question.model_copy(update=changes)
+    fields = handle(few, budget)
+    surface = (question.resolution / few.resolution) ** 2 if few.resolution else 1.0
+    length = (question.points + 1) / (few.points + 1)
+    polhodes = question.polhodes.count / few.polhodes.count if few.polhodes is not None else 1.0
+    # That of a steady rotation is a single point.
+    if any(curve["closed"] for curve in fields.get("polhodes", ())):
+        polhodes *= length
+    return PlanningProbe(fields, {"mesh": surface, "grid": surface, "polhodes": polhodes, "separatrix": length})
 
 
 def states(question: StatesRequest, budget: Budget) -> Answer:
@@ -234,6 +248,13 @@ def states(question: StatesRequest, budget: Budget) -> Answer:
         "seed": question.seed,
         "warnings": tuple(notice.inside("body") for notice in body.warnings),
     }
+
+
+def states_probe(question: StatesRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question about few starts."""
+    few = min(question.count, FEW)
+    growth = {"angular_velocities": question.count / few}
+    return PlanningProbe(states(question.model_copy(update={"count": few}), budget), growth)
 
 
 def states_counts(question: StatesRequest, budget: Budget) -> dict[str, float]:
@@ -266,5 +287,6 @@ SURFACES = (
         states,
         CalibratedCost("initial_states", states_counts),
         lambda question: question.count <= FEW_SAMPLES and is_small(question),
+        states_probe,
     ),
 )

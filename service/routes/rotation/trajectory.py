@@ -8,13 +8,14 @@ from pydantic import Field
 
 from core.bodies import Body
 from core.quantities import AngularVelocity, Quaternion, Tolerance, Uncertainty
-from core.rotation.sampled_rotation import Output, require_closed_form, sample_rotation, wanted_outputs
+from core.rotation.sampled_rotation import Output, sample_rotation, wanted_outputs
 from core.systems.budget import Budget
-from core.systems.methods import ClosedFormEvaluation, Method
+from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import How, Work
-from service.execution.cost_model import CalibratedCost, effort, extreme, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
+from service.routes.planning_probes import in_closed_form, probe_in_samples
 from service.routing import Answer, PostRoute
 from service.schemas import (
     ROUND,
@@ -206,15 +207,13 @@ def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, 
     found = counts(question, budget) | {"samples": samples}
     if "attitude" in wanted:
         found |= {"attitudes": 1.0, "attitude samples": samples}
-    speed = speed_to_follow((question.method,), question.body, speed_of(question.angular_velocity))
-    found |= effort(question.method, question.times, speed, samples)
+    found |= effort(question.method, question.times, _speed(question), samples)
     columns = 3 * ("angular_velocity" in wanted) + 4 * ("attitude" in wanted)
     return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
 
 
-def in_closed_form(method: Any) -> bool:
-    """Return whether nothing is to be integrated."""
-    return method is None or isinstance(method, ClosedFormEvaluation)
+def _speed(question: TrajectoryRequest) -> float:
+    return speed_to_follow((question.method,), question.body, speed_of(question.angular_velocity))
 
 
 def is_small_trajectory(question: TrajectoryRequest) -> bool:
@@ -222,18 +221,13 @@ def is_small_trajectory(question: TrajectoryRequest) -> bool:
     return in_closed_form(question.method) and few_times(question.times) and is_small(question)
 
 
-def trajectory_probe(question: TrajectoryRequest) -> TrajectoryRequest:
-    """Return the question about the farthest time alone, in closed form."""
-    if "attitude" in wanted_outputs(question.outputs, question.attitude):
-        require_closed_form(question.method)
-    changes: dict[str, Any] = {"times": [extreme(question.times)], "method": None, "round": None}
-    if question.method is not None and not isinstance(question.method, ClosedFormEvaluation):
-        # A method that is named is answered whatever its error.
-        changes["accuracy"] = 0.5
-    return question.model_copy(update=changes)
-
-
 T_HANDLE = {"kind": "principal-moments", "moments": [795.7921810699588, 713.5092592592592, 395.7829218106996]}
+
+NEARLY_SYMMETRIC = {
+    "body": {"kind": "principal-moments", "moments": [1.0, 1.0 + 2.0**-52, 2.0]},
+    "angular_velocity": [1.0, 1.0, 1.0],
+    "times": [1.0],
+}
 
 RESTING, STEADY = (
     {"body": T_HANDLE, "angular_velocity": rates, "attitude": [1.0, 0.0, 0.0, 0.0], "times": [1.0]}
@@ -244,14 +238,14 @@ ROTATION = (
     PostRoute(
         "/v1/rotation/trajectory",
         "rotation_trajectory",
-        "The free rotation of a body: angular velocity and, if asked, attitude at given times",
+        "The free rotation of a body: angular velocity and, if requested, attitude at given times",
         "rotation",
         TrajectoryRequest,
         TrajectoryAnswer,
         trajectory,
         CalibratedCost("rotation_trajectory", trajectory_counts),
         is_small_trajectory,
-        trajectory_probe,
-        warming=(RESTING, STEADY),
+        lambda question, budget: probe_in_samples(trajectory, question, _speed(question), budget),
+        warming=(RESTING, STEADY, NEARLY_SYMMETRIC),
     ),
 )

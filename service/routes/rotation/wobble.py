@@ -6,13 +6,12 @@ from typing import Annotated
 
 from pydantic import Field
 
-from core.errors import InvalidParameter
 from core.quantities import Quantity, Unit
 from core.rotation.wobble import Day, EarthFigures, from_ellipticity, from_period
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, one
 from service.routing import Answer, PostRoute
-from service.schemas import Envelope, Ratio, Request
+from service.schemas import Envelope, Ratio, Request, fields_of, require_one
 
 
 class WobbleRequest(Request):
@@ -41,13 +40,11 @@ class WobbleAnswer(Envelope):
 
 def wobble(question: WobbleRequest, budget: Budget) -> Answer:
     """Answer with the wobble."""
-    if question.period is not None and question.ellipticity is None:
-        found = from_period(question.period, question.day)
-    elif question.ellipticity is not None and question.period is None:
-        found = from_ellipticity(question.ellipticity, question.day)
-    else:
-        raise InvalidParameter("period", "be given, or ellipticity, and not both", remedy="give one of the two")
-    return {name: getattr(found, name) for name in found.__dataclass_fields__}
+    require_one(question, "period", "ellipticity")
+    if question.period is not None:
+        return fields_of(from_period(question.period, question.day))
+    assert question.ellipticity is not None
+    return fields_of(from_ellipticity(question.ellipticity, question.day))
 
 
 WOBBLE = (

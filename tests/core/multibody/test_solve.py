@@ -535,3 +535,17 @@ def test_free_asymmetric_body_keeps_momentum_and_energy() -> None:
 
         expected = integrated(rate, ["0.1", 1, "0.1"], 7)
         assert mpmath.norm([spin.values[1, k] - expected[k] for k in range(3)]) <= spin.error
+
+
+def test_angles_of_bodies_in_different_parts_are_followed_apart() -> None:
+    one = {"mass": 1, "inertia": 0.1, "at": [0, -1], "velocity": [9, 0], "places": {"top": [0, 1]}}
+    two = {"mass": 1, "inertia": 0.2, "at": [5, -1], "velocity": [-20, 0], "places": {"top": [0, 1]}}
+    pins = [{"kind": "pin", "a": "one.top", "b": [0, 0]}, {"kind": "pin", "a": "two.top", "b": [5, 0]}]
+    both = solve_scene(
+        read({"gravity": [0, -9.81], "bodies": {"one": one, "two": two}, "connections": pins}), [7.3, -2]
+    )
+    for name, body, pin in (("one", one, pins[0]), ("two", two, pins[1])):
+        alone = solve_scene(read({"gravity": [0, -9.81], "bodies": {name: body}, "connections": [pin]}), [7.3, -2])
+        together, apart = column(both, f"{name}.angle"), column(alone, f"{name}.angle")
+        assert np.abs(together.values - apart.values).max() <= together.error + apart.error
+        assert np.abs(apart.values).max() > 8

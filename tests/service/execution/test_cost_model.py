@@ -22,7 +22,6 @@ from core.systems.methods import ExplicitEuler, Method
 from service.execution.cost_model import (
     UNCOUNTABLE,
     CalibratedCost,
-    CostModel,
     calibration,
     effort,
     error_of,
@@ -83,12 +82,11 @@ class TestTable:
         assert len(operations) >= 10
         for operation in operations:
             assert calibration().seconds[operation]
-            assert calibration().bytes[operation]
         assert set(calibration().methods) == set(INTEGRATORS)
 
     def test_nothing_costs_less_than_nothing(self) -> None:
         table = calibration()
-        for costs in (*table.seconds.values(), *table.bytes.values(), {"writing": table.writing}):
+        for costs in (*table.seconds.values(), {"writing": table.writing}):
             assert all(isfinite(cost) and cost >= 0.0 for cost in costs.values())
 
     def test_finer_settings_cost_more_and_err_less(self) -> None:
@@ -98,10 +96,6 @@ class TestTable:
             # By steps it is counted, by tolerance it follows a power.
             assert ("exponent" in costs) == (dataclasses.fields(INTEGRATORS[kind])[0].name == "tolerance")
             assert costs.get("exponent", -1.0) < 0.0
-
-    @pytest.mark.parametrize("route", ROUTES.values(), ids=ROUTES)
-    def test_every_question_has_a_price_that_foresees(self, route: PostRoute) -> None:
-        assert isinstance(route.price, CostModel)
 
 
 class TestPriced:
@@ -114,13 +108,11 @@ class TestPriced:
         many = few | {name: data.draw(st.floats(few[name], UNCOUNTABLE)) for name in costs}
         price = CalibratedCost(operation, lambda counts, budget: counts)
         assert 0.0 <= price(few, Budget()) <= price(many, Budget()) < inf
-        assert 0.0 <= price.size(few, Budget()) <= price.size(many, Budget()) < inf
 
     def test_it_is_the_sum_of_costs_times_counts(self) -> None:
-        costs, length = calibration().seconds["wobble"], calibration().bytes["wobble"]
+        costs = calibration().seconds["wobble"]
         price = CalibratedCost("wobble", lambda counts, budget: counts)
         assert CalibratedCost("wobble", one)(None, Budget()) == costs["question"] > 0.0
-        assert CalibratedCost("wobble", one).size(None, Budget()) == length["question"] > 0.0
         assert price({"question": 3.0}, Budget()) == 3.0 * costs["question"]
         # What has no cost of its own is part of the others.
         assert price({"question": 1.0, "unheard of": 1e9}, Budget()) == costs["question"]
@@ -140,10 +132,7 @@ class TestQuestions:
         for shown in route.examples.values():
             asked = ANSWERING.read(route, json.dumps(shown.question).encode())
             seconds = route.price(asked, Budget())
-            assert isinstance(route.price, CostModel)
-            length = route.price.size(asked, Budget())
             assert 0.0 < seconds < inf
-            assert 0.0 < length < inf
 
     @given(
         st.sampled_from(["/v1/rotation/trajectory", "/v1/rotation/ensemble"]),
@@ -173,8 +162,6 @@ class TestQuestions:
         except (MechanicsError, Refusal):
             assume(False)
         assert 0.0 < seconds < inf
-        assert isinstance(route.price, CostModel)
-        assert 0.0 < route.price.size(asked, Budget()) < inf
         assert 0.0 <= error_of(asked.method, asked.times, speed_of(rate)) <= 2.0
 
 

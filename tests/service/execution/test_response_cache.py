@@ -25,7 +25,7 @@ def test_an_answer_is_cached_when_its_question_comes_again() -> None:
     cache.put("/a", b"1", answer(1))
     found = cache.get("/a", b"1")
     assert found is not None
-    assert found.text == answer(1).text
+    assert found.body == answer(1).body
 
 
 def test_questions_that_come_once_drive_nothing_out() -> None:

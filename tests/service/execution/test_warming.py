@@ -39,6 +39,8 @@ def entry_kernels() -> set[Kernel]:
     trees = {
         ".".join(path.relative_to(ROOT).with_suffix("").parts): ast.parse(path.read_text())
         for path in (ROOT / "core").rglob("*.py")
+        # No request reaches described scenes yet.
+        if "multibody" not in path.parts
     }
     kernels = {(module, node.name) for module, tree in trees.items() for node in ast.walk(tree) if is_kernel(node)}  # type: ignore[attr-defined]
     found = set()

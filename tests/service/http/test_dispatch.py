@@ -327,9 +327,8 @@ async def test_the_application_may_be_mounted(service: Service, client: httpx.As
 
 
 def test_the_module_has_an_application_for_servers() -> None:
-    assert isinstance(app_module.app, Service)
-    with pytest.raises(AttributeError):
-        app_module.application  # noqa: B018
+    """Some servers look into the module itself, so that it must be there without having been asked for."""
+    assert isinstance(vars(app_module)["app"], Service)
 
 
 def scope(method: str, path: str, headers: dict[str, str]) -> dict[str, Any]:

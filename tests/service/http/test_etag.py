@@ -10,7 +10,7 @@ def test_headers_describe_the_text() -> None:
     answer = Representation(b'{"a":1}')
     headers = dict(answer.headers)
     assert headers[b"content-length"] == b"7"
-    assert headers[b"etag"] == answer.etag == etag_of(answer.text)
+    assert headers[b"etag"] == answer.etag == etag_of(answer.body)
     assert headers[b"content-type"] == b"application/json"
     assert headers[b"x-content-type-options"] == b"nosniff"
 

@@ -176,6 +176,7 @@ async def test_whoever_pipelines_without_reading_is_not_read_for_ever() -> None:
         (HEAD + b"transfer-encoding: gzip\r\n\r\n{}", 400),
         (HEAD + b"transfer-encoding: gzip, chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n", 501),
         (chunked(BODY, behind=b"content-type: text/plain\r\n"), 400),
+        (chunked(BODY, b"connection: keep-alive\r\n").replace(b"HTTP/1.1", b"HTTP/1.0", 1), 200),
         (b"GARBAGE\r\n\r\n", 400),
         (b"GET / HTTP/9.9\r\nhost: x\r\n\r\n", 400),
     ],

@@ -109,7 +109,7 @@ class TestHas:
     async def test_what_the_client_has_is_not_sent_again(self, known: str, has: bool) -> None:
         wire = Wire(if_none_match=known)
         await wire.exchange.answer(ANSWER)
-        assert (wire.status, wire.body) == ((304, b"") if has else (200, ANSWER.text))
+        assert (wire.status, wire.body) == ((304, b"") if has else (200, ANSWER.body))
         assert wire.headers["etag"] == ANSWER.etag.decode()
         assert ("content-length" in wire.headers) is not has
         assert wire.counted() == {str(wire.status): "1.0"}
@@ -120,7 +120,7 @@ class TestHas:
         for known, status in ((f"W/{etag}", 304), ('"x"', 200)):
             page, figure, stream = (Wire("GET", if_none_match=known) for _ in range(3))
             await page.exchange.page(body, b"text/html; charset=utf-8", 200)
-            await figure.exchange.represented(body, b"image/svg+xml")
+            await figure.exchange.answer(Representation(body, (b"content-type", b"image/svg+xml"), (VARY,)))
             await stream.exchange.stream(iter([body]), etag.encode(), 10.0, [JSON, VARY])
             for wire in (page, figure, stream):
                 assert (wire.status, wire.body) == (status, body if status == 200 else b"")
@@ -156,7 +156,7 @@ class TestInOnePiece:
     @pytest.mark.parametrize("method", ["POST", "HEAD"])
     async def test_problems_are_counted_by_code_and_carry_their_headers(self, method: str) -> None:
         wire = Wire(method)
-        problem = Problem(REGISTRY["too-busy"], "later", headers=(("Retry-After", "7"),))
+        problem = Problem(REGISTRY["too-busy"], "later", retry_after=6.2)
         await wire.exchange.problem(problem)
         assert wire.status == problem.type.status == 429
         assert wire.headers == {

@@ -141,6 +141,9 @@ ARRAYS: dict[str, bytes] = {
     "more numbers than there are": with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000, 3)}"),
     "fewer numbers than there are": with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (1,)}", bytes(80)),
     "a negative number of numbers": with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (-1,)}", bytes(8)),
+    "two negative numbers": with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (-2, -3)}", bytes(48)),
+    "many rows of nothing": with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000, 0)}"),
+    "another version": b"\x93NUMPY\x04\x00" + saved(POINTS)[8:10] + b"\0\0" + saved(POINTS)[10:],
     "more numbers than can be counted": with_header(
         f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({2**40}, {2**40})}}"
     ),
@@ -186,6 +189,14 @@ def test_a_member_named_twice_is_refused() -> None:
     with zipfile.ZipFile(text, "a") as more:
         more.writestr("body/positions.npy", saved(POINTS))
     assert refusal(text.getvalue()) == ("invalid-archive", "the body names a member twice")
+
+
+def test_numbers_of_one_byte_make_no_longer_lists_than_those_of_eight() -> None:
+    question = {"body": HANDLE, "angular_velocity": [0.1, 1.0, 0.1], "times": {"array": "t"}}
+    reader = Reader(TrajectoryRequest, LIMITS._replace(bytes=8_000))
+    assert len(reader.read(archive(question, t=np.zeros(1_000, np.int8)), npz=True).times) == 1_000
+    assert refusal(archive(question, t=np.zeros(1_001, np.int8)), reader)[0] == "too-complex"
+    assert refusal(archive(question, t=np.zeros((1_001, 1), np.int8)), reader)[0] == "too-complex"
 
 
 def test_many_members_are_refused_unread() -> None:

@@ -74,7 +74,7 @@ async def test_extremes_are_drawn(question: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("turn", [0.0, 0.7])
 def test_the_outline_touches_where_the_normal_is_across_the_view(turn: float) -> None:
-    """Points of the surface lie within the planning_probe, and those on its border neither in front nor behind."""
+    """Points of the surface lie within the outline, and those on its border neither in front nor behind."""
     c, s = np.cos(turn), np.sin(turn)
     view = View(np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), np.array([0.3, 1.0, 0.6]))
     directions = np.random.default_rng(5).normal(size=(4000, 3))

@@ -11,7 +11,6 @@ import httpx
 import numpy as np
 import pytest
 
-from service.responses.json_rows import NotFinite
 from service.responses.npz import CHUNK, MEDIA_TYPE, METADATA, archive
 from service.routing import PostRoute
 from tests.service.conftest import client_of, inline_service
@@ -113,8 +112,3 @@ def test_members_are_as_they_are_in_memory_and_pieces_are_small() -> None:
         assert members["deep/1/faces"].shape == (0, 3)
     with ZipFile(io.BytesIO(b"".join(pieces))) as file:
         assert file.testzip() is None
-
-
-def test_what_is_not_finite_is_never_archived() -> None:
-    with pytest.raises(NotFinite):
-        archive({"rows": np.array([[0.0, np.nan]])})

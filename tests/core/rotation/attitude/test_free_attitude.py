@@ -82,13 +82,16 @@ spin = st.floats(-10, 10)
 def test_angular_momentum_stands_still_in_space(moments, start, time):
     turning = attitude(moments, start)
     times = np.array([0.0, time])
+    try:
+        bound = turning.error(times) + turning.rotation.error(times)
+    except AccuracyUnreachable:
+        # Constants of the attitude leave the doubles only where a rate is next to the smallest of them.
+        assert min(abs(rate) for rate in start if rate) < 1e-290
+        return
     momentum = turning.rotation.sample(times) * np.array(moments)
     space = [matrix(q) @ m for q, m in zip(turning.sample(times), momentum, strict=True)]
     size = np.array(moments).max() * turning.rotation.largest_norm
-    assert (
-        np.linalg.norm(space[1] - space[0])
-        <= 4 * size * (turning.error(times) + turning.rotation.error(times)) + 1e-300
-    )
+    assert np.linalg.norm(space[1] - space[0]) <= 4 * size * bound + 1e-300
 
 
 def test_angular_velocity_is_what_turns_it():

@@ -165,7 +165,13 @@ def test_refusals_name_the_field():
     assert wild.value.path == ("measure", "method", "step")
     with pytest.raises(InvalidParameter, match="duration"):
         measure_period(top(), Measure(ExplicitEuler(1.0), 5e-324, 3, 0.1))
-    for field, value in (("duration", 0.0), ("samples", 2), ("tolerance", 0.0), ("tolerance", math.nan)):
+    for field, value in (
+        ("duration", 0.0),
+        ("samples", 2),
+        ("samples", 10**9 + 1),
+        ("tolerance", 0.0),
+        ("tolerance", math.nan),
+    ):
         with pytest.raises(InvalidParameter, match=field):
             Measure(ExplicitEuler(STEP), **(SOURCE | {field: value}))
 

@@ -142,7 +142,7 @@ def test_what_holds_of_every_motion(moments, rates, dI, dw, turned, axis, third)
     # A central difference in doubles: rounding over h, and h^2.
     force = np.abs(coefficients[0] - coefficients[1]).max() / (2 * h)
     assert sums[at.FORCE] == pytest.approx(2 * force, abs=1e-6)
-    third = {(True, False): 2, (False, True): 0}.get((low == 0.0, high == 0.0), -1)
+    third = 2 if low == 0.0 < high else 0 if high == 0.0 < low else -1
     others = [abs(a[k] - a[axis]) / abs(i[k] - i[axis]) for k in range(3) if i[k] != i[axis]]
     assert sums[at.GAPS] == pytest.approx(2 * max(others, default=0.0), rel=1e-6)
     each = np.abs(coefficients[0] - coefficients[1]) / (2 * h)

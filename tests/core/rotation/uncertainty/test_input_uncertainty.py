@@ -8,16 +8,19 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import assume, settings
+from hypothesis import assume, example, settings
 from hypothesis import given as drawn
 from hypothesis import strategies as st
 
 from core.bodies.mass_properties import diagonal
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
+from core.bodies.solids import Cylinder
+from core.errors import AccuracyUnreachable
 from core.rotation.attitude.free_attitude import FreeAttitude
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
 from core.rotation.uncertainty.sensitivities import growth_factor
+from core.systems.solve import solve
 from core.systems.system import Floats
 from tests.oracles.cases import T_HANDLE
 from tests.oracles.perturbed import ATTITUDE, Perturbed
@@ -103,6 +106,19 @@ def test_steady_symmetric_and_separating_motions_are_covered(case: Uncertain) ->
 def test_a_steady_spin_along_a_body_axis_has_the_relative_error_of_its_input(case: Uncertain) -> None:
     exact = TorqueFree(case.body(case.numbers).mass_properties(), np.array(case.start)).closed_form()
     assert exact.inherited(np.array([1e9]), 1e-6) == pytest.approx(1e-6, rel=1e-5)
+
+
+@pytest.mark.parametrize("moments", [(1e-150, 2e-150, 1e300), (1e-200, 1e-200, 1e200), (1e-150, 1e300, 1e300)])
+@pytest.mark.parametrize("start", [(1.0, -0.2, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+def test_moments_below_every_double_next_to_another_leave_bounds_that_may_be_infinite(
+    moments: tuple[float, float, float], start: tuple[float, float, float]
+) -> None:
+    rotation = TorqueFree(diagonal(moments), np.array(start)).closed_form()
+    free = FreeAttitude(rotation, np.array([1.0, 0.0, 0.0, 0.0]))
+    for time, uncertainty in product((0.0, 1e-9, 1.0, 1e3), (2.0**-53, 1e-6, 0.5)):
+        # The start is as uncertain as everything else, and at least half as fast as the motion comes to be.
+        assert rotation.inherited(np.array([time]), uncertainty) >= 0.5 * uncertainty
+        assert 0.0 <= free.inherited(np.array([time]), uncertainty) <= math.pi
 
 
 def test_the_angle_of_a_steady_spin_is_lost_when_it_is_a_radian_off() -> None:
@@ -201,3 +217,93 @@ def test_no_difference_of_two_motions_grows_faster_than_groenwall_allows(first, 
     if min(B - A, C - B) <= 1e-14 and rate * time[0] < 1e4:
         # Nearly symmetric: in proportion to the time.
         assert allowed <= 3.0 * (1.0 + max((C - B) / A, (C - A) / B, (B - A) / C) * rate * time[0])
+
+
+SIZES = st.floats(-2.0, 1.0).map(lambda x: 10.0**x)
+
+
+@settings(deadline=None, derandomize=True, max_examples=60)
+@drawn(
+    st.tuples(SIZES, SIZES, SIZES),
+    st.tuples(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0)).filter(lambda w: math.hypot(*w) > 0.1),
+    st.floats(-12.0, -2.0).map(lambda x: 10.0**x),
+    st.floats(0.0, 1e9),
+)
+def test_a_cylinder_spun_across_its_axis_keeps_its_phase(numbers, spin, uncertainty, time) -> None:
+    """Radius, height and mass change its two equal moments together: it turns on as it does, however it is measured."""
+    body = Cylinder(mass=numbers[0], radius=numbers[1], height=numbers[2]).mass_properties()
+    rotation = TorqueFree(body, np.array([*spin, 0.0])).closed_form()
+    # All that changes is the start, by the uncertainty of each component, which is that of its length.
+    assert uncertainty <= rotation.inherited(np.array([time]), uncertainty) <= uncertainty * (1.0 + 10.0 * uncertainty)
+    assert rotation.horizon_of(uncertainty) is None
+
+
+def test_a_coin_known_to_a_thousandth_is_known_to_a_thousandth() -> None:
+    coin = TorqueFree(
+        Cylinder(mass=5e-3, radius=0.011625, height=0.00233).mass_properties(), np.array([10.0, 3.0, 0.0])
+    )
+    found = solve(coin, [0.0, 40.0, 4e6], input_uncertainty=1e-3)
+    assert found.accuracy.inherited == pytest.approx(1e-3, rel=0.01)
+    assert found.warnings == ()
+
+
+def moved_apart(moments, spin, signs, uncertainty, times) -> float:
+    """Return how far a motion is from that of moved moments and start, relative to its largest norm."""
+    scale = 1.0 + uncertainty * np.array(signs)
+    one = TorqueFree(diagonal(tuple(moments)), np.array(spin)).closed_form()
+    other = TorqueFree(diagonal(tuple(scale[:3] * moments)), scale[3:] * spin).closed_form()
+    return float(np.linalg.norm(one.sample(times) - other.sample(times), axis=1).max()) / one.largest_norm
+
+
+MOMENT = st.floats(-6.0, 0.0).map(lambda x: 10.0**x) | st.sampled_from([1.0, 1.0 + 1e-6, 1.0 + 1e-3, 1e-5])
+RATE = st.just(0.0) | st.floats(-4.0, 0.0).map(lambda x: 10.0**x) | st.floats(-4.0, 0.0).map(lambda x: -(10.0**x))
+
+
+@settings(deadline=None, derandomize=True, max_examples=300)
+@drawn(
+    st.tuples(MOMENT, MOMENT, MOMENT),
+    st.tuples(RATE, RATE, RATE).filter(any),
+    st.floats(-9.0, -1.0).map(lambda x: 10.0**x),
+    st.floats(-5.0, 5.0).map(lambda x: 10.0**x),
+    st.lists(st.tuples(*6 * [st.sampled_from([-1, 1])]), min_size=1, max_size=4),
+)
+# A body with one small moment, whose other two may come to differ: its rate may grow twelvefold.
+@example((1e-5, 1.0, 1.0), (1.0, 2.0, -0.7), 1e-3, 93.0, [(1, 1, -1, 1, 1, 1), (1, -1, 1, 1, 1, 1)])
+# A small nutation whose frequency and phase change by as much as a sixth.
+@example(
+    (0.0013011378074693186, 1.0, 1.0016110749384517), (0.0, -5.1e-05, 0.0033284205123343606), 1.1678e-4, 1.3774,
+    [(1, 1, -1, 1, -1, -1)],
+)  # fmt: skip
+# The latest time lies between two phases of a later half period.
+@example(
+    (1.0, 1.0602866316402124e-06, 1.0021368540002524), (0.000608175061318332, -0.009829312716, -0.36898285412),
+    2.325971261867971e-09, 0.0717943, [(s, t, u, v, w, x) for s, t, u, v, w, x in product(*6 * [(-1, 1)])],
+)  # fmt: skip
+def test_what_is_stated_bounds_the_change_and_is_infinite_where_nothing_does(
+    moments, spin, uncertainty, turned, signs
+) -> None:
+    moments, spin = np.array(moments), np.array(spin)
+    latest = turned / float(np.linalg.norm(spin))
+    times = latest * np.array([1.0, -1.0, 0.77, 0.5, -0.3])
+    try:
+        rotation = TorqueFree(diagonal(tuple(moments)), spin).closed_form()
+        stated = rotation.inherited(times, uncertainty)
+        changes = [moved_apart(moments, spin, which, uncertainty, times) for which in signs]
+    except AccuracyUnreachable:
+        return  # Beyond 2^48 periods, or too near the separatrix.
+    # Both motions are right to a few units of 2^-53.
+    assert max(changes) <= stated + 1e-14
+    assert stated < 0.12 or stated == math.inf
+
+
+def test_where_the_phase_is_lost_no_figure_is_stated_and_a_warning_says_so() -> None:
+    needle = TorqueFree(diagonal((1e-5, 1.0, 1.0)), np.array([1.0, 2.0, -0.7]))
+    found = solve(needle, np.linspace(0.0, 40.0, 81), input_uncertainty=1e-3)
+    assert found.accuracy.inherited is None
+    assert [(notice.code, notice.path) for notice in found.warnings] == [("phase-lost", ("times",))]
+    # No figure that the largest norm bounds would be true.
+    times = np.linspace(0.0, 40.0, 4001)
+    assert moved_apart(np.array([1e-5, 1.0, 1.0]), [1.0, 2.0, -0.7], (1, 1, -1, 1, 1, 1), 1e-3, times) > 5.0
+    known = solve(needle, [1e-4], input_uncertainty=1e-3)
+    assert known.accuracy.inherited is not None
+    assert known.warnings == ()
