@@ -95,6 +95,32 @@ def methods() -> list[dict[str, Any]]:
     return fixed + [{"kind": kind, "tolerance": tolerance} for kind in CHOOSING for tolerance in TOLERANCES]
 
 
+def chain(count: int) -> dict[str, Any]:
+    """Return a hanging chain of points, each of which moves all others."""
+    bodies = {f"p{i}": {"mass": 1, "at": [f"{i + 1}*sin(0.3)", f"-{i + 1}*cos(0.3)"]} for i in range(count)}
+    before: list[Any] = [[0, 0], *bodies]
+    rods = [{"kind": "rod", "a": name, "b": end} for name, end in zip(bodies, before, strict=False)]
+    return {"gravity": [0, -9.81], "bodies": bodies, "connections": rods}
+
+
+def apart(count: int) -> dict[str, Any]:
+    """Return points that fall freely."""
+    return {"gravity": [0, -9.81], "bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(count)}}
+
+
+def described_scenes() -> list[dict[str, Any]]:
+    """Return described scenes with more and more bodies, followed for longer and sampled more often."""
+    found: list[dict[str, Any]] = []
+    for count in (1, 2, 4, 8, 16, 32):
+        for scene in (chain(count), apart(count)):
+            found += [scene, *(scene | {"times": span(n, 1.0)} for n in (1, 30, 1000))]
+    found += [
+        chain(count) | {"times": span(30, stop), "accuracy": 0.9} for count in (2, 3, 4) for stop in (10.0, 100.0)
+    ]
+    found += [chain(count) | {"outputs": ["equilibria"]} for count in (1, 2, 3)]
+    return found
+
+
 def variants() -> dict[str, list[dict[str, Any]]]:
     """Return questions of growing size, by operation."""
     free = {"body": T_HANDLE, "angular_velocity": STARTS[0]}
@@ -154,6 +180,7 @@ def variants() -> dict[str, list[dict[str, Any]]]:
         "energy_ellipsoid": surface,
         "initial_states": [many | {"energy": 1.0, "count": n} for n in SIZES],
         "work_precision": compared,
+        "described_scene": described_scenes(),
     }
     for route in questions():
         if own_price(route) is None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from flint import arb, arb_mat
 
-from core.errors import InvalidParameter, Path
+from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.coordinates import Given
 from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.rank import Elimination, Line, independent
@@ -83,7 +83,14 @@ def _least(table: Table, lines: Sequence[Line], residuals: Sequence[Ball]) -> li
             for a in range(count)
         ]
     )
-    weights = gram.solve(arb_mat([[x] for x in residuals])).entries()
+    try:
+        weights = gram.solve(arb_mat([[x] for x in residuals])).entries()
+    except ZeroDivisionError:
+        raise NotApplicable(
+            "lengths or masses are so far apart that 320 bits cannot tell which connections hold",
+            path=("connections",),
+            remedy="leave out what is negligibly small",
+        ) from None
     step = [ZERO] * len(table.q)
     for line, weight in zip(lines, weights, strict=True):
         for j, x in line.items():

@@ -15,7 +15,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, Literal
 
 from core.errors import InvalidParameter, Path
-from core.multibody.numerals import NAME
+from core.multibody.numerals import LONGEST_NAME, NAME, member
 
 Number = int | float | str | Decimal | Fraction | Mapping[str, Any]
 """A decimal, a formula over names in ``let``, or ``{"degrees": number}``."""
@@ -318,13 +318,13 @@ class Scene:
         if len(self.connections) > MOST_CONNECTIONS:
             raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(self.connections)}")
         for name, body in self.bodies.items():
-            check_name(name, ("bodies", str(name)[:80]))
+            check_name(name, member(("bodies",), name))
             if not isinstance(body, SceneBody):
                 raise InvalidParameter(("bodies", name), "be a body")
             if not isinstance(body.places, Mapping):
                 raise InvalidParameter(("bodies", name, "places"), "be an object of names and vectors")
             for place in body.places:
-                check_name(place, ("bodies", name, "places", str(place)[:80]))
+                check_name(place, member(("bodies", name, "places"), place))
         for i, connection in enumerate(self.connections):
             if not isinstance(connection, Connection):
                 raise InvalidParameter(("connections", i), "be a connection")
@@ -347,4 +347,7 @@ class Scene:
 def check_name(name: object, path: Path) -> None:
     """Raise `InvalidParameter` unless something may be called so."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or name == GROUND:
-        raise InvalidParameter(path, 'be called by letters, digits, "-" and "_", starting with a letter, not "ground"')
+        rule = (
+            f'be called by at most {LONGEST_NAME} letters, digits, "-" and "_", starting with a letter, not "{GROUND}"'
+        )
+        raise InvalidParameter(path, rule)

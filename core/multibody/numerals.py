@@ -27,6 +27,7 @@ DEEPEST = 20
 LARGEST_EXPONENT = 400
 MOST_NAMES = 100
 
+LONGEST_NAME = 64
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 """What bodies, places, connections and numbers may be called."""
 
@@ -34,6 +35,11 @@ _TOKEN = re.compile(
     r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+*/()]))\s*", re.ASCII
 )
 _FUNCTIONS = ("sqrt", "sin", "cos")
+
+
+def member(path: Path, name: object) -> Path:
+    """Return the path of a member of an object; of the object, if its name is longer than names are."""
+    return (*path, str(name)) if len(str(name)) <= LONGEST_NAME else path
 
 
 @dataclass(frozen=True)
@@ -70,7 +76,7 @@ class Numerals:
         for name, number in let.items():
             plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
             if not plain or name in (*_FUNCTIONS, "pi"):
-                raise InvalidParameter(("let", str(name)[:80]), "be a name of letters, digits and _, and no function")
+                raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
             known[name] = cls(known, numbers == "doubles").number(number, ("let", name))
         return cls(known, numbers == "doubles")
 

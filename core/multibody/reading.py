@@ -8,6 +8,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.language import KINDS, MOST_BODIES, MOST_CONNECTIONS, NOT_YET, Scene, SceneBody
+from core.multibody.numerals import member
 
 
 def scene_from(description: Any) -> Scene:
@@ -24,7 +25,7 @@ def scene_from(description: Any) -> Scene:
         if len(bodies) > MOST_BODIES:
             raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(bodies)}")
         given["bodies"] = {
-            name: SceneBody(**_object(body, ("bodies", str(name)[:80]), SceneBody)) for name, body in bodies.items()
+            name: SceneBody(**_object(body, member(("bodies",), name), SceneBody)) for name, body in bodies.items()
         }
     connections = given.get("connections", ())
     if isinstance(connections, Sequence) and not isinstance(connections, str):
@@ -54,7 +55,7 @@ def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
     known = {entry.name: entry for entry in fields(cls)}
     for key in value:
         if key not in known:
-            raise InvalidParameter((*path, str(key)[:80]), f"be one of {', '.join(known)}")
+            raise InvalidParameter(member(path, key), f"be left out; the fields here are {', '.join(known)}")
     for name, entry in known.items():
         if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
             raise InvalidParameter((*path, name), "be given")

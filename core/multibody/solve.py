@@ -296,9 +296,18 @@ def _trajectory(
             beyond = times[rows] > event.time if end > 0.0 else times[rows] < event.time
             rows = rows[~beyond]
     moments = times[rows]
-    columns = _columns(whole, determined, moments, outputs, finer=False)
-    if any(isinstance(motion, Numerical) for _, motion in whole.parts) and worst(columns) > accuracy:
-        columns = _columns(whole, determined, moments, outputs, finer=True)
+    # What leaves the range of doubles is refused below.
+    with np.errstate(over="ignore", invalid="ignore"):
+        columns = _columns(whole, determined, moments, outputs, finer=False)
+        if any(isinstance(motion, Numerical) for _, motion in whole.parts) and worst(columns) > accuracy:
+            columns = _columns(whole, determined, moments, outputs, finer=True)
+    lost = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
+    if lost:
+        raise NotApplicable(
+            f"{lost[0]} or its error leaves the range of doubles",
+            path=("times",),
+            remedy="ask for a shorter time, or choose units in which the numbers are moderate",
+        )
     reached = worst(columns)
     if reached > accuracy:
         raise AccuracyUnreachable(

@@ -15,6 +15,7 @@ from typing import Any
 from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Point, Rate
 from core.multibody.measures import Limit, Measures
+from core.multibody.numerals import member
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, coordinate, difference, evaluated
 from core.multibody.rolling import rate_of, sum_of_rates
 from core.multibody.table import Row
@@ -106,9 +107,12 @@ def _knots(measures: Measures, connection: Any, path: Path) -> list[Knot]:
             raise InvalidParameter((*path, "slips"), "be drums that the string passes, not its ends")
         sides = _sides(connection.sides.get(entry), count, (*path, "sides", str(entry)))
         found.append(Knot(point, str(entry), frame.radius, turn, sides, [], where))
-    for extra in [*connection.sides, *connection.slips]:
+    for extra in connection.sides:
         if extra not in drums:
-            raise InvalidParameter((*path, "sides", str(extra)[:80]), "be a drum that the string passes")
+            raise InvalidParameter(member((*path, "sides"), extra), "be a drum that the string passes")
+    for i, extra in enumerate(connection.slips):
+        if not isinstance(extra, str) or extra not in drums:
+            raise InvalidParameter((*path, "slips", i), "be a drum that the string passes")
     return found
 
 

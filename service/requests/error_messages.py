@@ -87,6 +87,8 @@ class Layout:
         Keys of the document that only another route's question has, each with what would mend it.
     units : mapping of str to str
         For each name of a field that holds quantities of one SI unit, that unit.
+    maps : frozenset of str
+        Names of the fields that hold objects whose keys the client chooses.
     """
 
     tags: Mapping[str, Names]
@@ -94,6 +96,7 @@ class Layout:
     lengths: Mapping[str, int]
     elsewhere: Mapping[str, str]
     units: Mapping[str, str]
+    maps: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, schema: Any, elsewhere: Mapping[str, str]) -> Layout:
@@ -105,6 +108,7 @@ class Layout:
             walk.lengths,
             elsewhere,
             {name: next(iter(units)) for name, units in walk.units.items() if len(units) == 1},
+            frozenset(walk.maps),
         )
 
     @property
@@ -146,7 +150,10 @@ class Layout:
         for step in location:
             if step in (OBJECT, ARRAY):
                 continue
-            if isinstance(step, str):
+            if isinstance(step, str) and steps and steps[-1] in self.maps and owners[-1] == steps[-1]:
+                # A name that the client chose says nothing of what it names.
+                pass
+            elif isinstance(step, str):
                 owners.append(step)
                 if step in tags:
                     tags = ()
@@ -256,6 +263,7 @@ class _Walk:
         self.names: dict[str, dict[str, None]] = {}
         self.lengths: dict[str, int] = {}
         self.units: dict[str, set[str]] = {}
+        self.maps: set[str] = set()
         self._definitions: dict[str, Any] = {}
         self._followed: set[tuple[str, str]] = set()
         self._gather(schema)
@@ -279,6 +287,8 @@ class _Walk:
         if not isinstance(node, Mapping):
             return
         kind = node.get("type")
+        if kind == "dict" and name:
+            self.maps.add(name)
         if kind in ("float", "int"):
             self.units.setdefault(owner, set()).add(node.get("metadata", {}).get("unit", "1"))
         if kind == "definition-ref":

@@ -1,15 +1,19 @@
 """From the bytes of a request to a question: form is checked here, meaning by the objects of core that are built.
 
-A reader validates JSON bytes in one step, without an intermediate Python document.
+A reader validates JSON bytes in one step, without an intermediate Python document. Where a number is the decimal that
+is written and not the double nearest to it, the question has a method `with_digits`, which is given the document with
+decimals for numbers.
 """
 
 from __future__ import annotations
 
 import gc
+import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from decimal import Decimal, InvalidOperation
 from functools import cache, cached_property, partial
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, cast
 
 import orjson
 from pydantic import TypeAdapter, ValidationError
@@ -49,6 +53,7 @@ class Reader(Generic[Q]):
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
         self._layout = Layout.of(schema, elsewhere or {})
         self._limits = limits
+        self._keeps_digits = hasattr(question, "with_digits")
 
     @cached_property
     def _validate_with_arrays(self) -> Any:
@@ -83,6 +88,8 @@ class Reader(Generic[Q]):
             else:
                 question = self._validate_with_arrays(document, strict=True, context=arrays)
             require_distinct_keys(document)
+            if self._keeps_digits:
+                question = cast(Any, question).with_digits(json.loads(document, parse_float=_decimal))
             return question
         except ValidationError as error:
             raise self._refusal(error, document) from None
@@ -95,6 +102,14 @@ class Reader(Generic[Q]):
         faults, codes = self._layout.faults(found, cache(partial(_parsed, document)))
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"
         return Refusal(code, headline(faults), faults=faults)
+
+
+def _decimal(text: str) -> Decimal | float:
+    """Return a number with all its digits; a double where its exponent is beyond every decimal."""
+    try:
+        return Decimal(text)
+    except InvalidOperation:
+        return float(text)
 
 
 def _parsed(document: bytes) -> Any:

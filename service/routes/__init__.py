@@ -9,6 +9,7 @@ from service.routes.certified.answers import naming_certified
 from service.routes.certified.rotation import CERTIFIED_ROTATION
 from service.routes.certified.scenes import certified_scenes
 from service.routes.certified.surfaces import CERTIFIED_ELLIPSOID
+from service.routes.described_scenes import DESCRIBED_SCENES
 from service.routes.examples import examples
 from service.routes.plan import planning
 from service.routes.rotation.ensemble import ENSEMBLE
@@ -25,6 +26,7 @@ def questions() -> tuple[PostRoute, ...]:
     """Return every route that takes a question, in the order of the documentation."""
     certified = (*CERTIFIED_ROTATION, CERTIFIED_ELLIPSOID, *certified_scenes())
     paths = [route.path for route in certified]
-    ordinary = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION, *about_scenes())
+    rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
+    ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
     answering = (*(naming_certified(route, paths) for route in ordinary), *certified)
     return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, planning(answering)))

@@ -15,6 +15,7 @@ from core.systems.accuracy import record
 from core.systems.methods import Method
 from core.systems.methods.method import AbstractMethod, Family, Invariance
 from service.problems import registry
+from service.routes.described_scenes import described_examples
 from service.routes.scenes import SceneCatalogue, scenes
 from service.routing import GetRoute, Reply
 from service.schemas import SIGNATURE, Ratio, Signed, View
@@ -110,5 +111,11 @@ def catalogues() -> tuple[GetRoute, ...]:
             MethodCatalogue,
             methods,
         ),
-        _catalogue("/v1/scenes", "list_scenes", "Every constrained scene and what it answers", SceneCatalogue, scenes),
+        _catalogue(
+            "/v1/scenes",
+            "list_scenes",
+            "Every named scene and what it answers, and examples of described ones",
+            SceneCatalogue,
+            lambda: [*scenes(), *described_examples()],
+        ),
     )

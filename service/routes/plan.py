@@ -14,13 +14,13 @@ from core.notices import Notice
 from core.quantities import Unit
 from core.systems.budget import Budget
 from core.systems.methods import Method
-from core.systems.system import Model
 from service.execution.cost_model import UNCOUNTABLE, CalibratedCost, calibration, one
 from service.execution.request_handler import signed
 from service.problems import MOST_FAULTS, REGISTRY, Fault, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
+from service.routes.described_answer import ScenePart
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
@@ -33,6 +33,21 @@ class PlanRequest(Request):
 
     path: str = Field(max_length=200, description="Of the endpoint, for example /v1/rotation/trajectory.")
     request: Any = Field(description="The body that it would be sent.")
+
+
+class PlannedModel(View):
+    """The model that would answer; fields beside the first three are those of the answer, where it has them."""
+
+    name: str = Field(description="For example torque-free rigid body.")
+    why: str = Field(description="The facts of the question that selected it.")
+    degrees_of_freedom: int = Field(description="Of the motion that is computed, not of the body.")
+    regime: str | None = Field(default=None, description="The branch of the solution that applies.")
+    mobility: int | None = Field(default=None, description="Degrees of freedom of a described scene.")
+    coordinates: int | None = Field(default=None, description="Coordinates that remain of a described scene.")
+    rows: int | None = Field(default=None, description="Equations of constraint that remain of it.")
+    described: tuple[int, int] | None = Field(default=None, description="Coordinates and equations before.")
+    apart: list[ScenePart] | None = Field(default=None, description="Its parts.")
+    noticed: list[str] | None = Field(default=None, description="Sentences about it.")
 
 
 class PlannedCost(View):
@@ -70,7 +85,7 @@ class PlanAnswer(Envelope):
 
     path: str = Field(description="As asked.")
     answerable: bool = Field(description="Whether the request would be answered.")
-    model: Model | None = Field(description="null for questions that no model of motion is chosen for.")
+    model: PlannedModel | None = Field(description="null for questions that no model of motion is chosen for.")
     method: Method | None = Field(description="null where no motion is computed.")
     cost: PlannedCost | None = Field(description="null if the request would be refused.")
     accuracy: PlannedError | None = Field(description="null where no error is stated.")
@@ -175,7 +190,8 @@ def _evaluations(route: PostRoute, asked: Any, budget: Budget) -> int | None:
     if not isinstance(route.price, CalibratedCost):
         return 0
     counted = route.price.counts(asked, budget)
-    if "ladders" in counted:
+    # How many steps ladders and described scenes take is only known by running them.
+    if "ladders" in counted or "connections" in counted:
         return None
     count = round(min(UNCOUNTABLE, sum(n for name, n in counted.items() if name.startswith("evaluations of "))))
     if hasattr(getattr(asked, "method", None), "step") and count > budget.evaluations:

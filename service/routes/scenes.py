@@ -51,8 +51,8 @@ class SceneAnswer(Envelope, Generic[N]):
 class SceneEntry(View):
     """One scene of the catalogue."""
 
-    name: str = Field(description="Last step of the path.")
-    path: str = Field(description="Where to send questions about it.")
+    name: str = Field(description="Of a named scene the last step of the path.")
+    path: str = Field(description="Where to send questions about it; described scenes go to /v1/scenes.")
     summary: str
     outputs: list[str] = Field(description="Names of what it answers.")
     example: dict[str, Any] = Field(description="A question.")

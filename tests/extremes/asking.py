@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -76,9 +77,14 @@ def _refuse(name: str) -> None:
 @cache
 def fields_of(path: str) -> frozenset[str]:
     """Return the names of all fields, at any depth, that a question to an endpoint may have."""
-    schema = TypeAdapter(ROUTES[path].question).json_schema()
-    forms = [schema, *schema.get("$defs", {}).values()]
-    return frozenset(name for form in forms for name in form.get("properties", {}))
+    return frozenset(_fields_within(TypeAdapter(ROUTES[path].question).json_schema()))
+
+
+def _fields_within(schema: Any) -> Iterator[str]:
+    if isinstance(schema, dict):
+        yield from schema.get("properties", {})
+    for entry in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        yield from _fields_within(entry)
 
 
 def pointed_at(path: str, question: Any, pointer: str) -> bool:

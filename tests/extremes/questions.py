@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from itertools import product
-from math import nextafter, pi, sqrt
+from math import log10, nextafter, pi, sqrt
 from typing import Any
 
+from core.multibody.solve import OUTPUTS
 from service.routes.certified.answers import ONLY_ORDINARY
+from service.routes.examples import examples
 from tests.contracts.test_bodies import SPECIMENS
 from tests.extremes.asking import Asked
 from tests.extremes.motions import SUBNORMAL, Motion, motions
@@ -307,6 +309,54 @@ def chains() -> Named:
         yield f"length {length:g}, g {gravity:g}", CHAIN | scaled
 
 
+def described() -> Named:
+    for name, example in examples()["described_scene"].items():
+        scene = {key: value for key, value in example.question.items() if key not in ("times", "outputs")}
+        times: Asked = {"times": [0.0, 0.3, -0.1]}
+        for factor in (1e-300, 1e-150, 1e-12, 1e12, 1e150, 1e300):
+            yield f"{name}, g by {factor:g}", scene | times | {"gravity": [x * factor for x in scene["gravity"]]}
+            for kind, powers in {
+                "masses": {"mass": 1, "inertia": 1, "moments": 1},
+                "lengths": {"at": 1, "radius": 1, "places": 1, "inertia": 2, "moments": 2},
+                "one mass": {"mass": 1},
+            }.items():
+                bodies = {one: resized(body, powers, factor) for one, body in scene["bodies"].items()}
+                few = dict(list(bodies.items())[:1]) if kind == "one mass" else bodies
+                yield f"{name}, {kind} by {factor:g}", scene | times | {"bodies": scene["bodies"] | few}
+        for far in (SUBNORMAL, -1e9, 1e150, LARGEST):
+            yield f"{name}, at {far:g}", scene | {"times": [far]}
+        yield f"{name}, nothing tolerated", scene | {"times": [10.0], "accuracy": 1e-300}
+        yield f"{name}, everything", scene | times | {"outputs": list(OUTPUTS)}
+    point = {"mass": 1, "at": [3, -4]}
+    rod = {"kind": "rod", "a": "p", "b": [0, 0]}
+    pendulum: Asked = {"gravity": [0, -9.81], "bodies": {"p": point}, "connections": [rod], "times": [1.0]}
+    yield "by polar coordinates", pendulum | {"bodies": {"p": point | {"at": {"polar": [5, {"degrees": 90}]}}}}
+    yield "upright", pendulum | {"bodies": {"p": point | {"at": [0, 5]}}}
+    for rate in ("2*sqrt(49.05)", "2*sqrt(49.05)*(1 - 1e-12)", "2*sqrt(49.05)*(1 + 1e-12)"):
+        over = {"at": [0, -5], "velocity": [rate, 0]}
+        yield f"beside its separatrix at {rate}", pendulum | {"bodies": {"p": point | over}, "times": [1.0, 100.0]}
+    for text in ("1e400", "1e-400", "1/3", "sqrt(2)", "1/(1 - 1)", "(" * 50, "x", "9" * 200, "9" * 201):
+        yield f"mass {text[:10]}, {len(text)}", pendulum | {"bodies": {"p": point | {"mass": text}}}
+    yield "a thousand connections", pendulum | {"connections": [rod] * 1000}
+    yield "a hundred bodies", {"bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(100)}, "times": [1.0]}
+    yield "more", {"bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(101)}}
+    yield "massless", pendulum | {"bodies": {"p": point | {"mass": 0}}}
+    yield "to itself", pendulum | {"connections": [rod | {"b": "p"}]}
+    yield "twice", pendulum | {"connections": [rod, rod]}
+
+
+def resized(body: Asked, powers: Mapping[str, int], factor: float) -> Asked:
+    """Return a body with some of its numbers multiplied by powers of a factor."""
+
+    def times(value: Any, by: float) -> Any:
+        if isinstance(value, dict):
+            return {name: times(entry, by) for name, entry in value.items()}
+        return [times(entry, by) for entry in value] if isinstance(value, list) else value * by
+
+    scaled = {name: 10.0 ** max(-300.0, min(300.0, power * log10(factor))) for name, power in powers.items()}
+    return body | {name: times(body[name], by) for name, by in scaled.items() if name in body}
+
+
 def plans() -> Named:
     """Yield plans of what is not asked elsewhere: whatever is asked there is planned there too."""
     yield "of nothing", {"path": "/v1/nothing", "request": {}}
@@ -334,5 +384,6 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/certified/scenes/unwinding-shafts": certified(shafts),
     "/v1/certified/scenes/rod-in-hole": certified(rods),
     "/v1/certified/scenes/chain-on-wedge": certified(chains),
+    "/v1/scenes": described,
     "/v1/plan": plans,
 }

@@ -1,0 +1,149 @@
+"""The question about a scene that the client describes: bodies, places, connections.
+
+Core reads the description, so that its rules stand once. The form of the question here checks what surrounds it, and
+shows in the documentation what core's dataclasses say of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields
+from decimal import Decimal
+from fractions import Fraction
+from types import NoneType
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+from pydantic import Field, create_model
+
+from core.bodies import Body
+from core.multibody import language
+from core.multibody.reading import scene_from
+from core.multibody.solve import DEFAULT_OUTPUTS, Output
+from core.quantities import Tolerance
+from service.schemas import Request, Times
+
+
+def _schema(hint: Any) -> dict[str, Any]:
+    """Return a type of the language as a JSON schema."""
+    origin, parts = get_origin(hint), get_args(hint)
+    if origin is Literal:
+        return {"type": "string", "enum": list(parts)}
+    if origin is Mapping:
+        return {"type": "object"} | ({} if parts[1] is Any else {"additionalProperties": _schema(parts[1])})
+    if origin is Sequence:
+        return {"type": "array", "items": _schema(parts[0])}
+    if parts:
+        members: list[dict[str, Any]] = []
+        for part in parts:
+            if part not in (NoneType, Decimal, Fraction, int) and _schema(part) not in members:
+                members.append(_schema(part))
+        return members[0] if len(members) == 1 else {"anyOf": members}
+    return {"type": {str: "string", bool: "boolean", float: "number"}[hint]}
+
+
+@dataclass(frozen=True)
+class ReadByCore:
+    """Mark of a value that core checks; the document shows it as a type of the language, or as a form."""
+
+    shown: Any
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
+        return {"type": "any"}
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        if isinstance(self.shown, type) and issubclass(self.shown, Request):
+            form: dict[str, Any] = handler(self.shown.__pydantic_core_schema__)
+            return form
+        return _schema(self.shown)
+
+
+def _by_core(shown: Any) -> Any:
+    return Annotated.__class_getitem__((Any, ReadByCore(shown)))  # type: ignore[attr-defined]
+
+
+def _body_form() -> type[Request]:
+    hints = get_type_hints(language.SceneBody)
+    own: dict[str, Any] = {
+        entry.name: (_by_core(hints[entry.name]), ... if entry.default is MISSING and entry.name == "at" else None)
+        for entry in fields(language.SceneBody)
+    }
+    own["body"] = (Body | None, None)
+    form: type[Request] = create_model("SceneBody", __base__=Request, __doc__=language.SceneBody.__doc__, **own)
+    return form
+
+
+def _connection_form() -> type[Request]:
+    """Return the form with the fields of all kinds; core checks those of each."""
+    kinds: dict[str, list[str]] = {}
+    hints: dict[str, Any] = {}
+    for kind, cls in language.KINDS.items():
+        for name, hint in get_type_hints(cls).items():
+            if name != "kind":
+                kinds.setdefault(name, []).append(kind)
+                hints[name] = hints[name] | hint if name in hints else hint
+    own: dict[str, Any] = {
+        name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
+        for name, hint in hints.items()
+    }
+    told = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
+    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=told))
+    docs = language.Connection.__doc__
+    form: type[Request] = create_model("SceneConnection", __base__=Request, __doc__=docs, **own)
+    return form
+
+
+SceneBody: Any = _body_form()
+SceneConnection: Any = _connection_form()
+Gravity: Any = _by_core(get_type_hints(language.Scene)["gravity"])
+NamedNumbers: Any = _by_core(get_type_hints(language.Scene)["let"])
+ConnectionReadByCore: Any = _by_core(SceneConnection)
+SCENE_FIELDS = tuple(entry.name for entry in fields(language.Scene))
+
+
+class DescribedSceneRequest(Request):
+    """Bodies, what connects them, and what is asked about them."""
+
+    gravity: Gravity = Field(
+        default=None, description="Acceleration of free fall (m/s^2), of two or three components; none if left out."
+    )
+    bodies: dict[str, SceneBody] = Field(
+        description=f"By name, at most {language.MOST_BODIES}. Names are letters, digits, - and _."
+    )
+    connections: list[ConnectionReadByCore] = Field(default=[], description=f"At most {language.MOST_CONNECTIONS}.")
+    let: NamedNumbers = Field(
+        default={}, description="Named numbers for formulas, each of which may use those before it."
+    )
+    numbers: Literal["decimals", "doubles"] = Field(
+        default="decimals", description="Whether 0.1 is the decimal or the double nearest to it."
+    )
+    times: Times | None = Field(
+        default=None, description="Measured from the given state, of either sign, in any order; none: no motion."
+    )
+    accuracy: Tolerance = Field(
+        default=1e-9,
+        description="Largest tolerated error of any column, relative to the largest value in columns of its unit.",
+    )
+    outputs: list[Output] | None = Field(
+        default=None, min_length=1, description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}."
+    )
+
+    def with_digits(self, document: Any) -> DescribedSceneRequest:
+        """Return the question with the numbers of its scene as they are written."""
+        if self.numbers == "doubles":
+            return self
+        bodies = {
+            name: form.model_copy(
+                update={key: value for key, value in document["bodies"][name].items() if key != "body"}
+            )
+            for name, form in self.bodies.items()
+        }
+        read = {name: document[name] for name in ("gravity", "connections", "let") if name in document}
+        return self.model_copy(update={**read, "bodies": bodies})
+
+    def scene(self) -> language.Scene:
+        """Return the scene, or raise `InvalidParameter`."""
+        description = {name: getattr(self, name) for name in SCENE_FIELDS if name in self.model_fields_set}
+        description["bodies"] = {
+            name: {field: getattr(form, field) for field in form.model_fields_set} for name, form in self.bodies.items()
+        }
+        return scene_from(description)

@@ -1,0 +1,137 @@
+"""The answer to a question about a described scene, as it is documented."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from core.multibody.answer import How
+from core.quantities import Unit
+from service.schemas import Envelope, Joules, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
+
+Metres = Annotated[list[float], Unit("m"), Field(min_length=2, max_length=3)]
+OwnUnit = Unit("as in the field unit")
+
+
+class SmallMotion(View):
+    """One mode: q = exp(growth_rate t) cos(frequency t)."""
+
+    frequency: RadiansPerSecond[float]
+    growth_rate: PerSecond[float]
+
+
+class ScenePart(View):
+    """A part of a scene that has no force or connection in common with the others, and its smallest model."""
+
+    name: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: list[str] = Field(description="Those that remain.")
+    period: Seconds[float] | None = Field(description="Until it repeats, up to a turn about the vertical.")
+    precession: Radians[float] | None = Field(description="That turn in a period.")
+    modes: list[SmallMotion] = Field(description="Of a linear part.")
+
+
+class DescribedModel(View):
+    """The smallest model of a scene, and what was noticed on the way."""
+
+    name: str
+    why: str
+    degrees_of_freedom: int = Field(description="Of the motion from the given state.")
+    mobility: int = Field(description="Degrees of freedom of the scene: what could move, though it may not.")
+    coordinates: int = Field(description="Coordinates that remain.")
+    rows: int = Field(description="Equations of constraint that remain.")
+    described: tuple[int, int] = Field(description="Coordinates and equations of constraint before.")
+    apart: list[ScenePart]
+    noticed: list[str] = Field(description="Sentences.")
+
+
+class BodyAccelerations(View):
+    """Accelerations of a body at the start; null beyond the range of doubles."""
+
+    linear: list[Annotated[float, Unit("m s^-2")] | None] = Field(description="Of the centre of mass.")
+    angular: Annotated[float | list[float | None] | None, Unit("rad s^-2")] = Field(
+        description="A number in the plane, in body axes in space; null for particles and tops."
+    )
+
+
+class ConnectionForce(View):
+    """A force of a connection at the start."""
+
+    value: Annotated[float | None, OwnUnit] = Field(description="null if it is not determined.")
+    unit: str
+    determined: bool = Field(description="Whether the scene determines it.")
+    shared_with: list[str] = Field(description="Connections that share what is not determined.")
+
+
+class StartEnergy(View):
+    """Energies at the start; the potential of gravity is zero at the origin."""
+
+    kinetic: Joules[float] | None
+    potential: Joules[float] | None
+    total: Joules[float] | None
+    conserved: bool = Field(description="Whether nothing works on the scene.")
+
+
+class SceneColumn(View):
+    """One quantity at every time."""
+
+    values: Annotated[list[float] | list[list[float]], OwnUnit] = Field(description="One row per time.")
+    unit: str
+    error: Annotated[float, OwnUnit] = Field(description="Largest error of any row, as the length of a vector.")
+    how: How
+
+
+class DescribedTrajectory(View):
+    """Columns by name, such as wheel.angle or s.1.tension, at the times that the motion reaches."""
+
+    time: list[Seconds[float]]
+    rows: list[int] = Field(description="Which of the times of the question these are, from 0.")
+    columns: dict[str, SceneColumn]
+
+
+class EndEvent(View):
+    """Something that ends a motion."""
+
+    kind: str = Field(description="slack: a string would have to push. singular: a length becomes zero.")
+    name: str = Field(description="Of the connection; empty where several make a place singular.")
+    time: Seconds[float]
+    error: Seconds[float]
+
+
+class SceneEquilibrium(View):
+    """A place where the scene can rest."""
+
+    positions: dict[str, Metres] = Field(description="Of centres of mass.")
+    angles: dict[str, Radians[float]] = Field(description="In the plane, where the direction of a body matters.")
+    stable: bool | None = Field(description="null where the small motions do not decide.")
+    modes: list[SmallMotion]
+    residual: Ratio[float] = Field(description="Largest force left over, relative to the forces of the scene.")
+
+
+class DescribedAccuracy(View):
+    """How right the samples are."""
+
+    requested: Ratio[float]
+    error: Ratio[float] = Field(description="Largest of any column, relative to the largest value in its unit.")
+    how: How = Field(
+        description="closed form: bounded. measured against pairs: the difference from a run with numbers of 106 bits."
+    )
+
+
+class DescribedSceneAnswer(Envelope):
+    """What was asked for of a scene."""
+
+    model: DescribedModel
+    accelerations: dict[str, BodyAccelerations] | None = Field(default=None, description="By body.")
+    forces: dict[str, ConnectionForce] | None = Field(default=None, description="By connection.")
+    energy: StartEnergy | None = None
+    period: Seconds[float] | None = Field(description="Of the motion, where a single part moves and repeats.")
+    ended: str | None = Field(
+        description="horizon, or the kind of the event that ended the motion; null without times."
+    )
+    events: list[EndEvent]
+    trajectory: DescribedTrajectory | None = None
+    equilibria: list[SceneEquilibrium] | None = None
+    accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

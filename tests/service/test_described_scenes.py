@@ -1,0 +1,281 @@
+"""Described scenes over HTTP: numbers with all their digits, and hostile descriptions with clear refusals."""
+
+from __future__ import annotations
+
+import io
+import json
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from core.multibody.language import MOST_BODIES, MOST_CONNECTIONS
+from core.systems.budget import Budget
+from service.requests.described_scene import DescribedSceneRequest
+from service.requests.request_reader import Limits, Reader
+from service.routes import questions
+from service.routing import PostRoute
+from tests.service.conftest import Server, client_of, inline_service
+
+PATH = "/v1/scenes"
+EXAMPLES = Path(__file__).parents[2] / "examples" / "scenes"
+SERVICE = inline_service()
+ROUTE = next(route for route in questions() if route.path == PATH)
+POINT: dict[str, Any] = {"mass": 1, "at": [3, -4]}
+ROD: dict[str, Any] = {"kind": "rod", "a": "p", "b": [0, 0]}
+PENDULUM: dict[str, Any] = {"gravity": [0, -9.81], "bodies": {"p": POINT}, "connections": [ROD]}
+
+pytestmark = pytest.mark.anyio
+
+
+async def sent(content: bytes, path: str = PATH) -> httpx.Response:
+    async with client_of(SERVICE) as client:
+        return await client.post(path, content=content, headers={"content-type": "application/json"})
+
+
+async def asked(question: Any, path: str = PATH) -> httpx.Response:
+    return await sent(json.dumps(question).encode(), path)
+
+
+def of_point(**changes: Any) -> dict[str, Any]:
+    return PENDULUM | {"bodies": {"p": POINT | changes}}
+
+
+def of_rod(**changes: Any) -> dict[str, Any]:
+    return PENDULUM | {"connections": [ROD | changes]}
+
+
+def named(name: str) -> dict[str, Any]:
+    return PENDULUM | {"bodies": {name: POINT}, "connections": []}
+
+
+class TestNumbers:
+    TEXT = (
+        b'{"gravity": [0, -9.81], "bodies": {"p": {"mass": 1, "at": [0.30000000000000000000001, 0]}}, '
+        b'"connections": [{"kind": "rod", "a": "p", "b": [0, 0], "length": "0.3 + 1e-23"}], "numbers": "%s"}'
+    )
+
+    async def test_every_digit_counts(self) -> None:
+        """The rod is as long as the place is far only if the last of 23 digits is read."""
+        exact, rounded = [(await sent(self.TEXT % kind)).json() for kind in (b"decimals", b"doubles")]
+        assert exact["model"]["noticed"] == []
+        assert "moved by rounding's width" in rounded["model"]["noticed"][0]
+
+    def test_numbers_are_read_as_they_are_written_but_for_times(self) -> None:
+        text = json.dumps(PENDULUM | {"times": [0.1], "let": {"x": 0.5}}).replace("-9.81", "-9.810000000000000000001")
+        read = Reader(DescribedSceneRequest, Limits()).read(text.encode())
+        assert read.gravity == [0, Decimal("-9.810000000000000000001")]
+        assert read.let == {"x": Decimal("0.5")}
+        assert read.times == [0.1]
+        assert type(read.times[0]) is float
+
+    @pytest.mark.parametrize("number", ["1e999", "-1e999", "1e99999999999999999999", "1e-99999999999999999999"])
+    async def test_exponents_beyond_all_are_refused(self, number: str) -> None:
+        response = await sent(json.dumps(of_point()).replace('"mass": 1', f'"mass": {number}').encode())
+        assert response.status_code == 422 or (number.startswith("1e-") and response.status_code == 200)
+        if response.status_code == 422:
+            assert response.json()["errors"][0]["pointer"].startswith("/bodies/p")
+
+    async def test_angles_and_polar_coordinates(self) -> None:
+        """An eighth of a turn below the horizontal: the two components of the acceleration are the same number."""
+        answer = (await asked(of_point(at={"polar": ["sqrt(2)", {"degrees": -45}]}))).json()
+        x, y = answer["accelerations"]["p"]["linear"]
+        assert x == y == pytest.approx(-9.81 / 2, rel=1e-15)
+
+
+HOSTILE: dict[str, tuple[Any, str]] = {
+    "no bodies": (PENDULUM | {"bodies": {}}, "/bodies"),
+    "a list of bodies": (PENDULUM | {"bodies": [POINT]}, "/bodies"),
+    "too many bodies": ({"bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(101)}}, "/bodies"),
+    "too many connections": (PENDULUM | {"connections": [ROD] * 401}, "/connections"),
+    "ten thousand empty connections": (PENDULUM | {"connections": [{}] * 10_000}, "/connections"),
+    "two connections of one name": (PENDULUM | {"connections": [ROD | {"name": "r"}] * 2}, "/connections/1/name"),
+    "a connection named as a body": (of_rod(name="p"), "/connections/0/name"),
+    "a name that is a path": (named("../../etc/passwd"), "/bodies/..~1..~1etc~1passwd"),
+    "a name with a tilde": (named("a~b"), "/bodies/a~0b"),
+    "an empty name": (named(""), "/bodies/"),
+    "a long name": (named("a" * 5000), "/bodies"),
+    "the ground as a body": (named("ground"), "/bodies/ground"),
+    "a place named as a path": (of_point(places={"../x": [0, 0]}), "/bodies/p/places/..~1x"),
+    "a number named as a function": (PENDULUM | {"let": {"sqrt": 1}}, "/let/sqrt"),
+    "names in a cycle": (PENDULUM | {"let": {"x": "y", "y": "x"}}, "/let/x"),
+    "code": (PENDULUM | {"let": {"x": "__import__('os').system('true')"}}, "/let/x"),
+    "a deep formula": (of_point(mass="(" * 90 + "1" + ")" * 90), "/bodies/p/mass"),
+    "a long formula": (of_point(mass="1+" * 5000 + "1"), "/bodies/p/mass"),
+    "a division by zero": (of_point(mass="1/(1 - 1)"), "/bodies/p/mass"),
+    "NaN": (of_point(mass=float("nan")), "/bodies/p/mass"),
+    "infinity": (of_point(at=[float("inf"), 0]), "/bodies/p/at/0"),
+    "a whole number of 3000 digits": (of_point(mass=10**3000), "/bodies/p/mass"),
+    "true": (of_point(mass=True), "/bodies/p/mass"),
+    "a negative mass": (of_point(mass=-1), "/bodies/p/mass"),
+    "no mass": (of_point(mass=0), "/bodies/p"),
+    "three components in the plane": (of_point(at=[1, 2, 3]), "/bodies/p/at"),
+    "an unknown field of a body": (of_point(mas=1), "/bodies/p/mas"),
+    "an unknown field of a connection": (of_rod(stiffness=1), "/connections/0/stiffness"),
+    "a long unknown field": (of_rod(**{"k" * 3000: 1}), "/connections/0"),
+    "a field left out": (PENDULUM | {"connections": [{"kind": "rod", "a": "p"}]}, "/connections/0/b"),
+    "no kind": (PENDULUM | {"connections": [{"a": "p", "b": [0, 0]}]}, "/connections/0/kind"),
+    "an unknown kind": (of_rod(kind="rope"), "/connections/0/kind"),
+    "a kind that is a list": (of_rod(kind=["rod"]), "/connections/0/kind"),
+    "a connection that is a list": (PENDULUM | {"connections": [json.loads("[" * 25 + "]" * 25)]}, "/connections/0"),
+    "an unknown body": (of_rod(a="q"), "/connections/0/a"),
+    "an unknown place": (of_rod(a="p.end"), "/connections/0/a"),
+    "a connection to itself": (of_rod(b="p"), "/connections/0"),
+    "nested degrees": (of_point(mass={"degrees": {"degrees": 1}}), "/bodies/p/mass/degrees"),
+    "slips that are no names": (
+        PENDULUM | {"connections": [{"kind": "string", "through": [[0, 0], "p"], "slips": [["p"]]}]},
+        "/connections/0/slips/0",
+    ),
+    "a velocity against the rod": (of_point(velocity=[3, -4]), "/bodies/p/velocity/0"),
+    "a body of the catalogue that is none": (
+        {"gravity": [0, 0, -1], "bodies": {"p": {"at": [0, 0, 0], "body": {"kind": "ball", "mass": 1, "radius": -1}}}},
+        "/bodies/p/body/radius",
+    ),
+    "contact, not covered yet": (of_rod(kind="contact"), "/connections/0/kind"),
+    "a blow, not covered yet": (of_rod(kind="impulse"), "/connections/0/kind"),
+    "friction, not covered yet": (of_rod(friction=0.2), "/connections/0/friction"),
+    "until, not covered yet": (of_rod(until=2), "/connections/0/until"),
+    "a method, not covered yet": (PENDULUM | {"method": {"kind": "rk4"}}, "/method"),
+    "a time that is no number": (PENDULUM | {"times": [0, None]}, "/times/1"),
+    "too many samples": (PENDULUM | {"times": {"start": 0, "stop": 1, "count": 10**9}}, "/times/count"),
+    "an unknown output": (PENDULUM | {"outputs": ["everything"]}, "/outputs/0"),
+    "an accuracy of two": (PENDULUM | {"accuracy": 2}, "/accuracy"),
+}
+
+
+@pytest.mark.parametrize("case", HOSTILE, ids=HOSTILE)
+async def test_what_cannot_be_answered_is_refused_with_its_place(case: str) -> None:
+    question, pointer = HOSTILE[case]
+    response = await asked(question)
+    problem = response.json()
+    assert response.status_code == 422, problem
+    assert response.headers["content-type"] == "application/problem+json"
+    assert len(response.content) <= 2048
+    assert [fault["pointer"] for fault in problem["errors"]] == [pointer]
+    assert len(problem["detail"]) > 20
+
+
+async def test_refusals_name_the_limit() -> None:
+    for case, limit in (("too many bodies", MOST_BODIES), ("too many connections", MOST_CONNECTIONS)):
+        assert f"at most {limit}" in (await asked(HOSTILE[case][0])).json()["detail"]
+    many = await asked(PENDULUM | {"connections": [ROD] * 10_000})
+    assert (many.status_code, many.json()["code"]) == (400, "too-complex")
+    assert "max_keys" in many.json()["detail"]
+
+
+async def test_a_misspelt_field_of_a_body_is_recognised_whatever_the_body_is_called() -> None:
+    for name in ("p", "times", "ball", "body"):
+        response = await asked({"bodies": {name: {"mass": 1, "at": [0, 0], "velocty": [0, 0]}}})
+        (fault,) = response.json()["errors"]
+        assert (fault["pointer"], fault["remedy"]) == (f"/bodies/{name}/velocty", "did you mean velocity?")
+
+
+async def test_undetermined_forces_are_null_and_say_with_whom_they_are_shared() -> None:
+    """A beam pinned at both ends: half of its weight on each vertically, horizontally whatever they agree on."""
+    beam = {"mass": 3, "inertia": 1, "at": [0, 0], "places": {"left": [-1, 0], "right": [1, 0]}}
+    pins = [{"kind": "pin", "a": f"beam.{side}", "b": [x, 0]} for side, x in (("left", -1), ("right", 1))]
+    answer = (await asked({"gravity": [0, -9.81], "bodies": {"beam": beam}, "connections": pins})).json()
+    forces = answer["forces"]
+    assert [forces[f"pin-{i}.y"]["value"] for i in (1, 2)] == pytest.approx([14.715, 14.715], rel=1e-15)
+    assert forces["pin-1.x"]["value"] is None
+    assert not forces["pin-1.x"]["determined"]
+    assert "pin-2" in forces["pin-1.x"]["shared_with"]
+    assert answer["model"]["name"] == "rest"
+    assert answer["ended"] is None
+    assert "trajectory" not in answer
+
+
+async def test_a_string_that_becomes_slack_ends_the_motion() -> None:
+    """Thrown up from the side of a circle: v^2 = v0^2 - 2 g l sin a, slack where v^2 = g l sin a."""
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"p": {"mass": 1, "at": [1, 0], "velocity": [0, "sqrt(15)"]}},
+        "connections": [{"kind": "string", "through": [[0, 0], "p"]}],
+        "times": [0, 0.1, 5, 0.2, 6],
+        "outputs": ["trajectory"],
+    }
+    answer = (await asked(scene)).json()
+    assert answer["ended"] == "slack"
+    (event,) = answer["events"]
+    assert event["name"] == "string-1"
+    assert answer["trajectory"]["rows"] == [0, 1, 3]
+    assert answer["trajectory"]["time"] == [0.0, 0.1, 0.2]
+    end = (await asked(scene | {"times": [event["time"] * (1 - 1e-12)]})).json()
+    (place,) = end["trajectory"]["columns"]["p.position"]["values"]
+    assert place == pytest.approx([-np.sqrt(3) / 2, 0.5] if place[0] < 0 else [np.sqrt(3) / 2, 0.5], abs=1e-9)
+
+
+async def test_figures_beyond_doubles_are_null_with_a_warning() -> None:
+    answer = (await asked({"gravity": [0, -1e300], "bodies": {"p": {"mass": 1e300, "at": [0, 1]}}})).json()
+    assert answer["energy"]["potential"] is None
+    assert {notice["code"] for notice in answer["warnings"]} == {"out-of-range"}
+    assert answer["accelerations"]["p"]["linear"] == [0.0, -1e300]
+
+
+async def test_columns_travel_as_arrays() -> None:
+    question = PENDULUM | {"times": {"start": 0, "stop": 1, "count": 7}}
+    async with client_of(SERVICE) as client:
+        response = await client.post(PATH, json=question, headers={"accept": "application/x-npz"})
+    with np.load(io.BytesIO(response.content)) as found:
+        assert found["trajectory/columns/p.position/values"].shape == (7, 2)
+
+
+class TestCatalogue:
+    async def test_described_examples_stand_beside_the_named_scenes(self) -> None:
+        async with client_of(SERVICE) as client:
+            listed = (await client.get(PATH)).json()["scenes"]
+        described = {entry["name"]: entry["example"] for entry in listed if entry["path"] == PATH}
+        assert {"massive-pulley", "yo-yo", "double-pendulum", "bead-on-hoop", "lagrange-top"} == set(described)
+        assert {entry["path"] for entry in listed} - {PATH} == {
+            route.path for route in questions() if route.path.startswith("/v1/scenes/")
+        }
+        for name, example in described.items():
+            assert example == json.loads((EXAMPLES / f"{name}.json").read_text())
+
+
+class TestPrice:
+    def price(self, question: Any) -> float:
+        return ROUTE.price(Reader(ROUTE.question, Limits()).read(json.dumps(question).encode()), Budget())
+
+    def test_more_bodies_connections_times_and_searches_cost_more(self) -> None:
+        double = PENDULUM | {
+            "bodies": {"p": POINT, "q": {"mass": 1, "at": [6, -8]}},
+            "connections": [ROD, {"kind": "rod", "a": "p", "b": "q"}],
+        }
+        few, later, often = ({"times": {"start": 0, "stop": t, "count": n}} for t, n in ((1, 2), (9, 2), (1, 9000)))
+        known = [PENDULUM, PENDULUM | few, double | few, double | later]
+        prices = [self.price(question) for question in known]
+        assert prices == sorted(set(prices))
+        assert self.price(PENDULUM | often) > self.price(PENDULUM | few)
+        assert self.price(PENDULUM | {"outputs": ["equilibria"]}) > 5 * self.price(PENDULUM)
+
+    def test_no_time_is_priced_beyond_the_steps_that_core_takes(self) -> None:
+        apart = {"bodies": {"p": POINT, "q": POINT}, "connections": [ROD]}
+        assert self.price(apart | {"times": [1e9]}) == self.price(apart | {"times": [1e300]})
+
+    def test_it_always_runs_in_a_compute_process(self) -> None:
+        assert ROUTE.small is PostRoute.small
+
+
+class TestPlan:
+    async def test_the_model_is_foreseen_without_its_motion(self) -> None:
+        plan = (await asked({"path": PATH, "request": PENDULUM | {"times": [1e300]}}, "/v1/plan")).json()
+        assert plan["answerable"]
+        assert plan["model"]["name"] == "one period"
+        assert plan["accuracy"] is None
+        assert plan["cost"]["milliseconds"] > 0.0
+        assert plan["cost"]["evaluations"] is None
+
+    async def test_refusals_are_told_where_they_stand(self) -> None:
+        plan = (await asked({"path": PATH, "request": of_rod(a="q")}, "/v1/plan")).json()
+        assert [fault["pointer"] for fault in plan["errors"]] == ["/request/connections/0/a"]
+
+
+def test_a_server_answers_in_its_compute_processes(server: Server) -> None:
+    answer = httpx.post(f"{server.url}{PATH}", json=PENDULUM | {"times": [0, 1]}).json()
+    assert answer["model"]["name"] == "one period"
+    refused = httpx.post(f"{server.url}{PATH}", json=of_rod(b="p"))
+    assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/connections/0")
