@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from service.routes.assessments import assessing
 from service.routes.bodies import BODIES
 from service.routes.certified.answers import naming_certified
 from service.routes.certified.rotation import CERTIFIED_ROTATION
@@ -29,4 +30,5 @@ def questions() -> tuple[PostRoute, ...]:
     rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
     ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
     answering = (*(naming_certified(route, paths) for route in ordinary), *certified)
-    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, planning(answering)))
+    about_others = planning(answering), assessing(answering)
+    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, *about_others))

@@ -10,6 +10,8 @@ from typing import Any, cast
 import orjson
 from pydantic import Field
 
+from core.assessment.catalogue import MISTAKES
+from core.assessment.mistakes import Kind
 from core.quantities import members_of
 from core.systems.accuracy import record
 from core.systems.methods import Method
@@ -64,6 +66,32 @@ class MethodCatalogue(Signed):
     methods: list[MethodEntry]
 
 
+class MistakeEntry(View):
+    """One mistake that is recognised in submitted answers."""
+
+    tag: str = Field(description="Stable name for machines.")
+    kind: Kind = Field(
+        description="value: the wrong value follows from the right one alone, so that the mistake is not named unless "
+        "the reference is revealed. answer: it is, or follows from, another figure of the answer. question: from a "
+        "changed question."
+    )
+    summary: str = Field(description="What was done.")
+    feedback: str = Field(description="For who made the mistake; it gives no number.")
+    credit: Ratio[float] = Field(description="Share of the score, unless the assessment's credits change it.")
+
+
+class MistakeCatalogue(Signed):
+    """The catalogue of recognised mistakes."""
+
+    mistakes: list[MistakeEntry]
+
+
+def mistakes() -> list[dict[str, Any]]:
+    """Return the catalogue of recognised mistakes as it is published."""
+    names = ("tag", "kind", "summary", "feedback", "credit")
+    return [{name: getattr(entry, name) for name in names} for entry in MISTAKES]
+
+
 def methods() -> list[dict[str, Any]]:
     """Return the catalogue of methods as it is published."""
     measured: dict[str, list[dict[str, Any]]] = {}
@@ -110,6 +138,13 @@ def catalogues() -> tuple[GetRoute, ...]:
             "Every method that can be chosen, and when to use it",
             MethodCatalogue,
             methods,
+        ),
+        _catalogue(
+            "/v1/mistakes",
+            "list_mistakes",
+            "Every mistake that is recognised in submitted answers",
+            MistakeCatalogue,
+            mistakes,
         ),
         _catalogue(
             "/v1/scenes",

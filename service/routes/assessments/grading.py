@@ -1,0 +1,225 @@
+"""From submissions to results: each claim is read, converted, compared, and its mistakes are recognised."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from core.assessment.compare import Judgement, Reference, compare
+from core.assessment.comparisons import Comparison
+from core.assessment.mistakes import Figure, Mistake, WrongValues
+from core.assessment.units import WrongUnit, factor
+from core.errors import InvalidParameter, MechanicsError, Path
+from core.systems.system import Floats
+from core.work import spend
+from service.problems import Fault, Refusal, pointer_of, problem_of
+from service.routes.assessments.assessed_question import AssessedQuestion, steps_of
+from service.routes.assessments.submissions import LONGEST_POINTER, MOST_CLAIMS, Claim, Unreadable, read_claim
+
+CLAIM = 4
+"""Work (`core.work`) of judging a claim."""
+
+UNITLESS = ("1", "rad")
+"""Units that may be left out."""
+
+FEEDBACK: Mapping[str, str] = {
+    "correct": "Correct.",
+    "incorrect": "Not correct.",
+    "missing-unit": "The unit is missing.",
+    "wrong-unit": "The unit does not measure this quantity.",
+    "not-gradable": "This cannot be judged: the tolerance is finer than the reference is known.",
+    "unreadable": "This cannot be read.",
+}
+
+Result = dict[str, Any]
+
+
+class Grader:
+    """Grades submissions to one question.
+
+    Parameters
+    ----------
+    asked : AssessedQuestion
+    comparison : Comparison or None
+        Of every figure that has none of its own.
+    comparisons : mapping of str to Comparison
+        By pointer.
+    reveal : bool
+        Whether results may say anything from which the reference could be found.
+    catalogue : tuple of Mistake
+    credits : mapping of str to float
+        By tag, in place of the catalogue's.
+    """
+
+    def __init__(
+        self,
+        asked: AssessedQuestion,
+        comparison: Comparison | None,
+        comparisons: Mapping[str, Comparison],
+        reveal: bool,
+        catalogue: tuple[Mistake, ...],
+        credits: Mapping[str, float],
+    ) -> None:
+        self._asked, self._comparison, self._comparisons = asked, comparison, comparisons
+        self._reveal, self._credits = reveal, credits
+        self._catalogue = catalogue if reveal else tuple(entry for entry in catalogue if entry.kind == "question")
+        self._references: dict[str, tuple[Path, Reference]] = {}
+        self._samples: dict[tuple[str, bytes], Reference] = {}
+        self._wrong: dict[int, WrongValues] = {}
+
+    def references(self) -> list[Result]:
+        """Return the references that were needed, in the order in which they were."""
+        return [
+            {
+                "pointer": pointer,
+                "value": reference.value,
+                "unit": reference.unit,
+                "form": reference.form,
+                "error": reference.error,
+                "how": reference.how,
+                "inherited": reference.inherited,
+                "sensitive": reference.sensitive,
+            }
+            for pointer, (_, reference) in self._references.items()
+        ]
+
+    def result(self, index: int, submission: Any) -> Result:
+        """Return what becomes of a submission; nothing that it holds is refused with an error."""
+        within: Path = ("submissions", index)
+        if not isinstance(submission, dict) or not 0 < len(submission) <= MOST_CLAIMS:
+            detail = f"must be an object of 1 to {MOST_CLAIMS} claims by JSON pointer"
+            return _result([], [Fault(pointer_of(within), detail, 'such as {"/period": {"value": 6.28, "unit": "s"}}')])
+        tests, faults = [], []
+        for pointer, entry in submission.items():
+            spend(CLAIM)
+            try:
+                tests.append(self._test(pointer, entry))
+            except Unreadable as fault:
+                shown = (*within, pointer) if len(pointer) <= LONGEST_POINTER else within
+                faults.append(fault.fault(shown))
+        return _result(tests, faults)
+
+    def _test(self, pointer: str, entry: Any) -> Result:
+        claim = read_claim(entry)
+        path, reference = self._reference(pointer, claim)
+        try:
+            value = _converted(claim, reference)
+        except WrongUnit as fault:
+            return self._shown(pointer, Judgement("wrong-unit"), reference, (), f"The unit must {fault.rule}.")
+        if value is None and claim.value is not None:
+            return self._shown(pointer, Judgement("missing-unit"), reference, ())
+        comparison = self._comparisons.get(pointer, self._comparison)
+        try:
+            judgement = compare(reference, value, comparison)
+        except InvalidParameter as fault:
+            raise Unreadable(f"must {fault.rule}", "value", *fault.path) from None
+        mistakes: tuple[Mistake, ...] = ()
+        if judgement.verdict == "incorrect" and value is not None and reference.form != "none":
+            mistakes = self._wrong_values(path, reference).matching(value, comparison)
+        return self._shown(pointer, judgement, reference, mistakes)
+
+    def _reference(self, pointer: str, claim: Claim) -> tuple[Path, Reference]:
+        if claim.times is not None:
+            path = _path(pointer)
+            key = pointer, claim.times.tobytes()
+            if key not in self._samples:
+                self._samples[key] = self._column(path, claim.times)
+            return path, self._samples[key]
+        if pointer not in self._references:
+            path = _path(pointer)
+            reference = self._asked.reference(path)
+            if reference is None:
+                raise Unreadable("must lead to a figure of the answer: a number, an array, a string, true or false")
+            self._references[pointer] = path, reference
+        return self._references[pointer]
+
+    def _column(self, path: Path, times: Floats) -> Reference:
+        try:
+            column = self._asked.samples(path, times)
+        except (MechanicsError, Refusal) as refused:
+            problem = refused.problem if isinstance(refused, Refusal) else problem_of(refused)
+            # When a motion begins or ends may be what is to be found.
+            why = f": {problem.detail}" if self._reveal else ""
+            raise Unreadable(f"must be times that can be answered{why}", "times") from None
+        if column is None:
+            raise Unreadable("must be left out, or be times of the motion: there are no such samples", "times")
+        return column
+
+    def _wrong_values(self, path: Path, reference: Reference) -> WrongValues:
+        key = id(reference)
+        if key not in self._wrong:
+            subject = self._asked.path.removeprefix("/v1/")
+            figure = Figure(subject, self._asked.request, path, reference, self._asked.evaluate)
+            self._wrong[key] = WrongValues(figure, self._catalogue)
+        return self._wrong[key]
+
+    def _shown(
+        self, pointer: str, judgement: Judgement, reference: Reference, mistakes: Sequence[Mistake], why: str = ""
+    ) -> Result:
+        matches: list[dict[str, Any]] = [
+            {"tag": one.tag, "credit": self._credits.get(one.tag, one.credit), "feedback": one.feedback}
+            for one in mistakes
+        ]
+        correct = judgement.correct
+        score = None if correct is None else 1.0 if correct else max((one["credit"] for one in matches), default=0.0)
+        feedback = why or " ".join(one.feedback for one in mistakes) or FEEDBACK[judgement.verdict]
+        if reference.sensitive is not None and judgement.verdict != "correct":
+            feedback += f" Compare {reference.sensitive}: the figure itself is so near a constant that it shows little."
+        result: Result = {
+            "pointer": pointer,
+            "verdict": judgement.verdict,
+            "correct": correct,
+            "score": score,
+            "matches": matches,
+            "feedback": feedback,
+        }
+        if self._reveal:
+            result["error"] = {
+                "absolute": judgement.absolute,
+                "relative": judgement.relative,
+                "in_tolerances": judgement.in_tolerances,
+                "tolerance": judgement.tolerance,
+                "sensitive": judgement.sensitive_error,
+                "unit": reference.unit,
+            }
+        return result
+
+
+def _path(pointer: str) -> Path:
+    try:
+        return steps_of(pointer)
+    except InvalidParameter as fault:
+        raise Unreadable(f"must {fault.rule}", remedy=fault.remedy) from None
+
+
+def _converted(claim: Claim, reference: Reference) -> Any:
+    """Return a claim's value in the unit of the reference, None where the unit is missing."""
+    value = claim.value
+    if reference.form in ("choice", "none") or not isinstance(value, (float, np.ndarray)):
+        return value
+    if claim.unit is None:
+        return value if reference.unit in UNITLESS else None
+    times = factor(claim.unit, reference.unit)
+    if times == 1.0:
+        return value
+    with np.errstate(over="ignore"):
+        found = value * times
+    if not np.isfinite(found).all():
+        raise Unreadable("must be within the range of doubles in SI units", "value")
+    return found
+
+
+def _result(tests: list[Result], faults: list[Fault]) -> Result:
+    gradable = not faults and all(test["correct"] is not None for test in tests)
+    matches = list(dict.fromkeys(match["tag"] for test in tests for match in test["matches"]))
+    return {
+        "score": sum(test["score"] for test in tests) / len(tests) if gradable else None,
+        "correct": all(test["correct"] for test in tests) if gradable else None,
+        "gradable": gradable,
+        "format_errors": [fault.document() for fault in faults],
+        "tests": tests,
+        "matches": matches,
+        "feedback": " ".join(dict.fromkeys(test["feedback"] for test in tests)) or FEEDBACK["unreadable"],
+    }
