@@ -34,10 +34,6 @@ _SUPERSCRIPTS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "³": "3"})
 _ANGLES = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade", "cycle")
 
 
-class WrongUnit(InvalidParameter):
-    """The unit belongs to another kind of quantity, or is not known."""
-
-
 def factor(given: str, unit: str) -> float:
     """Return what one `given` is in `unit`.
 
@@ -50,17 +46,17 @@ def factor(given: str, unit: str) -> float:
 
     Raises
     ------
-    WrongUnit
+    InvalidParameter
         If the unit is not known, or measures another kind of quantity.
     """
     if given == unit:
         return 1.0
     if len(given) > LONGEST_UNIT:
-        raise WrongUnit("unit", f"have at most {LONGEST_UNIT} characters")
+        raise InvalidParameter("unit", f"have at most {LONGEST_UNIT} characters")
     found = _factor(given, unit)
     if isinstance(found, float):
         return found
-    raise WrongUnit("unit", found[0], remedy=found[1])
+    raise InvalidParameter("unit", found[0], remedy=found[1])
 
 
 @lru_cache(4096)

@@ -10,7 +10,7 @@ import numpy as np
 from core.assessment.compare import Judgement, Reference, compare
 from core.assessment.comparisons import Comparison
 from core.assessment.mistakes import Figure, Mistake, WrongValues
-from core.assessment.units import WrongUnit, factor
+from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.systems.system import Floats
 from core.work import spend
@@ -106,7 +106,7 @@ class Grader:
         path, reference = self._reference(pointer, claim)
         try:
             value = _converted(claim, reference)
-        except WrongUnit as fault:
+        except InvalidParameter as fault:
             return self._shown(pointer, Judgement("wrong-unit"), reference, (), f"The unit must {fault.rule}.")
         if value is None and claim.value is not None:
             return self._shown(pointer, Judgement("missing-unit"), reference, ())
