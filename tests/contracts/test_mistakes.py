@@ -119,6 +119,7 @@ FIGURES: list[tuple[str, str, Callable[[Random], Question]]] = [
     ),
     ("/v1/scenes/rod-in-hole", "/angular_velocity_at_horizontal", rod),
     ("/v1/rotation/trajectory", "/angular_velocity", motion),
+    ("/v1/rotation/trajectory", "/angular_velocity", lambda chance: motion(chance) | {"body": symmetric(chance)}),
     ("/v1/rotation/trajectory", "/attitude", lambda chance: motion(chance) | {"attitude": [1.0, 0.2, 0.3, 0.4]}),
     (
         "/v1/rotation/trajectory",

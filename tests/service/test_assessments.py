@@ -385,3 +385,46 @@ async def test_the_catalogue_lists_every_mistake() -> None:
         listed = (await client.get("/v1/mistakes")).json()["mistakes"]
     assert {"rod-inertia-about-end", "factor-2", "rate-over-axial-moment"} <= {entry["tag"] for entry in listed}
     assert all(0.0 <= entry["credit"] < 1.0 for entry in listed)
+
+
+def euler_rows(step: float, count: int) -> list[list[float]]:
+    a, b, c = MOTION["request"]["body"]["moments"]
+    rows = [list(map(float, MOTION["request"]["angular_velocity"]))]
+    for _ in range(count):
+        x, y, z = rows[-1]
+        slope = ((b - c) / a * y * z, (c - a) / b * z * x, (a - b) / c * x * y)
+        rows.append([w + step * rate for w, rate in zip(rows[-1], slope, strict=True)])
+    return rows
+
+
+async def test_wrong_samples_are_judged_like_a_method() -> None:
+    step = 1 / 120
+    times = [4 * i * step for i in range(300)]
+    claim = {"times": times, "value": euler_rows(step, 1196)[::4], "unit": "rad/s"}
+    more = {"comparison": {"kind": "relabs", "rtol": 1e-3}}
+    (result,) = (await graded(MOTION, {"/angular_velocity": claim}, **more))["results"]
+    samples = result["tests"][0]["samples"]
+    assert samples["consistent_with"]["method"] == "explicit-euler"
+    assert samples["consistent_with"]["step"] == pytest.approx(step)
+    assert 0.0 < samples["within_until"] < times[-1]
+    assert samples["energy_drift"] > 0.0
+    assert "explicit-euler with a step of 0.00833333 s" in result["feedback"]
+    (hidden,) = (await graded(MOTION, {"/angular_velocity": claim}, reveal=False, **more))["results"]
+    assert "samples" not in hidden["tests"][0]
+
+
+async def test_a_hundred_trajectories_are_judged_by_one_reference() -> None:
+    times = [0.01 * i for i in range(100)]
+    column = handled(
+        MOTION | {"request": {**MOTION["request"], "times": times}}, {"/angular_velocity": {"value": None}}
+    )
+    rows = column["reference"][0]["value"]
+
+    def work(count: int) -> float:
+        claim = {"times": times, "value": rows, "unit": "rad/s"}
+        with work_limit(1e9) as meter:
+            results = handled(MOTION, *[{"/angular_velocity": claim}] * count)["results"]
+        assert all(result["correct"] for result in results)
+        return meter.spent
+
+    assert work(101) - work(1) == pytest.approx(100 * 4)

@@ -143,7 +143,64 @@ def _step_left_out(figure: Figure) -> Iterator[Any]:
     yield from _marched(figure, lambda moments, w, h: w + _gyration(moments, w))
 
 
+def _of_samples(figure: Figure) -> Floats | None:
+    """Return the times of samples of the angular velocity, None for any other figure."""
+    if figure.subject != TRAJECTORY or figure.path != ("angular_velocity",) or figure.reference.form != "samples":
+        return None
+    times: Any = figure.request["times"]
+    return np.array(times, dtype=np.float64) if isinstance(times, list) else None
+
+
+def _in_space(figure: Figure) -> Iterator[Any]:
+    """Yield the angular velocity in space axes that are the body axes at t = 0."""
+    if _of_samples(figure) is None:
+        return
+    q = figure.evaluate({**figure.request, "attitude": [1.0, 0.0, 0.0, 0.0]})(("attitude",))
+    if q is not None:
+        v, w = figure.right, q[:, 1:]
+        turned = 2.0 * np.cross(w, v)
+        yield v + q[:, :1] * turned + np.cross(w, turned)
+
+
+def _shifted(figure: Figure) -> Iterator[Any]:
+    times = _of_samples(figure)
+    if times is not None and len(times) > 1:
+        for moved in (np.append(times[1:], 2.0 * times[-1] - times[-2]), np.append(times[0], times[:-1])):
+            yield figure.asked({**figure.request, "times": moved.tolist()})
+
+
+def _slow_precession(figure: Figure) -> Iterator[Any]:
+    """Yield the samples of a symmetric body at the rate (I3 - I)/I3 w3, and those one sample late."""
+    times, body = _of_samples(figure), figure.request.get("body", {})
+    moments = body.get("moments") if isinstance(body, dict) else None
+    if times is None or not isinstance(moments, list) or len(set(moments)) != 2:
+        return
+    k = next(i for i in range(3) if moments.count(moments[i]) == 1)
+    i, j = (k + 1) % 3, (k + 2) % 3
+    w = np.array(figure.request["angular_velocity"], dtype=np.float64)
+    rate = (moments[k] - moments[i]) / moments[k] * w[k]
+    for instants in (times, np.append(times[0], times[:-1])):
+        rows = np.tile(w, (len(times), 1))
+        turned = (w[i] + 1j * w[j]) * np.exp(1j * rate * instants)
+        rows[:, i], rows[:, j] = turned.real, turned.imag
+        yield rows
+
+
 OF_ROTATION = (
+    Mistake(
+        "space-axes", "question", "The angular velocity in space axes for that in body axes.",
+        "The components are those in space; Euler's equations are about components along the body's own axes.",
+        _in_space, credit=0.5,
+    ),
+    Mistake(
+        "samples-off-by-one", "question", "Every sample at the time of its neighbour.",
+        "The samples are right, but each stands at the time of its neighbour.", _shifted, credit=0.5,
+    ),
+    Mistake(
+        "samples-rate-over-axial-moment", "question", "Samples of a symmetric body that precess at (I3 - I)/I3 w3.",
+        "The motion precesses at a wrong rate: the difference of the moments is divided by the transverse moment.",
+        _slow_precession, credit=0.25,
+    ),
     Mistake(
         "period-for-flip-interval", "answer", "The period for the interval between flips, or the reverse.",
         "A flip is half of the motion: after a whole period the body is back.", _either("flip_interval", "period"),

@@ -23,7 +23,7 @@ from service.routes.assessments.assessed_question import AssessedQuestion, steps
 from service.routes.assessments.grading import Grader
 from service.routes.assessments.submissions import LONGEST_POINTER, SubmissionList
 from service.routing import Answer, PostRoute
-from service.schemas import Envelope, Ratio, Request, View
+from service.schemas import Envelope, RadiansPerSecond, Ratio, Request, Seconds, View
 from service.schemas import Fault as FaultView
 
 WITHIN: Path = ("question", "request")
@@ -95,6 +95,29 @@ class ClaimError(View):
     unit: str = Field(description="Of the absolute error and of the tolerance.")
 
 
+class ConsistentMethod(View):
+    """A method by which the samples come out, confirmed by running it."""
+
+    method: str = Field(description="Kind, as in GET /v1/methods; exact for samples as right as their digits.")
+    step: Seconds[float] | None = Field(description="Length of the steps; null for exact.")
+    unexplained: RadiansPerSecond[float] = Field(description="Largest norm of the difference that is left.")
+
+
+class SamplesError(View):
+    """How wrong samples of the angular velocity are."""
+
+    largest: RadiansPerSecond[float] = Field(description="Largest norm of the error of any sample.")
+    final: RadiansPerSecond[float] = Field(description="At the time farthest from the start.")
+    within_until: Seconds[float] | None = Field(
+        description="First time, outwards from the start, at which the error is beyond the tolerance."
+    )
+    energy_drift: Ratio[float] | None = Field(description="Largest relative change of the energy; null at rest.")
+    angular_momentum_drift: Ratio[float] | None = Field(description="The same of the angular momentum's magnitude.")
+    consistent_with: ConsistentMethod | None = Field(
+        description="null if no method explains the error, or a recognised mistake does."
+    )
+
+
 class ClaimResult(View):
     """What becomes of one claim."""
 
@@ -105,6 +128,9 @@ class ClaimResult(View):
     matches: list[RecognisedMistake] = Field(description="Mistakes by which the value comes out.")
     feedback: str = Field(description="For who submitted it.")
     error: ClaimError | None = Field(default=None, description="Left out unless the reference is revealed.")
+    samples: SamplesError | None = Field(
+        default=None, description="Of samples of the angular velocity that are not right; left out likewise."
+    )
 
 
 class SubmissionResult(View):

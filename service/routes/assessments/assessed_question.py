@@ -13,15 +13,17 @@ import numpy as np
 from core.assessment.compare import Form, Reference
 from core.assessment.propagation import Propagation, relative_uncertainties
 from core.errors import InvalidParameter, MechanicsError, Path
+from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.system import Floats
 from core.work import spend
 from service.problems import Refusal
 from service.responses.json_rows import written
 from service.routes.assessments.declared_units import numbers_within, outputs_of, schema_of, unit_at
+from service.routes.bodies import properties_of
 from service.routing import Answer, PostRoute
 
-ASKING = 20
+ASKING = 60
 """Work (`core.work`) of asking a question again, beside what the question counts itself."""
 
 SENSITIVE: Mapping[str, tuple[str, float]] = {"ellipticity": ("a/c - 1", 1.0)}
@@ -102,15 +104,21 @@ class AssessedQuestion:
             If the question is refused with these times.
         """
         request = self.request | {"times": times.tolist()}
-        for name in (path[0], path[-1]):
-            if name in self._outputs:
-                request["outputs"] = [name]
+        if path[0] in self._outputs:
+            request["outputs"] = [path[0]]
         spend(ASKING)
         answer = self._route.handle(self._read(json.dumps(request).encode()), self._budget)
         value = value_at(answer, path)
         if not isinstance(value, np.ndarray) or len(value) != len(times):
             return None
         return self._stated(path, value, "samples", answer)
+
+    def rotation(self) -> TorqueFree | None:
+        """Return the free rotation that the question is about, None for questions about anything else."""
+        if self.path not in TIMELESS:
+            return None
+        question = self._read(json.dumps(self.request).encode())
+        return TorqueFree(properties_of(question.body), np.array(question.angular_velocity))
 
     def _ask(self, request: Any, output: str | int) -> Answer | None:
         changes: dict[str, Any] = {}

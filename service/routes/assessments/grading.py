@@ -10,6 +10,7 @@ import numpy as np
 from core.assessment.compare import Judgement, Reference, compare
 from core.assessment.comparisons import Comparison
 from core.assessment.mistakes import Figure, Mistake, WrongValues
+from core.assessment.samples import consistent_method, errors_of_samples
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.systems.system import Floats
@@ -17,6 +18,7 @@ from core.work import spend
 from service.problems import Fault, Refusal, pointer_of, problem_of
 from service.routes.assessments.assessed_question import AssessedQuestion, steps_of
 from service.routes.assessments.submissions import LONGEST_POINTER, MOST_CLAIMS, Claim, Unreadable, read_claim
+from service.schemas import fields_of
 
 CLAIM = 4
 """Work (`core.work`) of judging a claim."""
@@ -117,8 +119,11 @@ class Grader:
             raise Unreadable(f"must {fault.rule}", "value", *fault.path) from None
         mistakes: tuple[Mistake, ...] = ()
         if judgement.verdict == "incorrect" and value is not None and reference.form != "none":
-            mistakes = self._wrong_values(path, reference).matching(value, comparison)
-        return self._shown(pointer, judgement, reference, mistakes)
+            mistakes = self._wrong_values(path, reference, claim.times).matching(value, comparison)
+        samples = None
+        if judgement.verdict == "incorrect" and claim.times is not None and path == ("angular_velocity",):
+            samples = self._samples_judged(claim.times, value, reference, judgement, identify=not mistakes)
+        return self._shown(pointer, judgement, reference, mistakes, samples=samples)
 
     def _reference(self, pointer: str, claim: Claim) -> tuple[Path, Reference]:
         if claim.times is not None:
@@ -147,16 +152,34 @@ class Grader:
             raise Unreadable("must be left out, or be times of the motion: there are no such samples", "times")
         return column
 
-    def _wrong_values(self, path: Path, reference: Reference) -> WrongValues:
+    def _samples_judged(
+        self, times: Floats, rows: Floats, reference: Reference, judgement: Judgement, *, identify: bool
+    ) -> Result | None:
+        system = self._asked.rotation() if self._reveal else None
+        if system is None:
+            return None
+        errors = errors_of_samples(system, times, rows, reference.value, judgement.tolerance or 0.0)
+        found = consistent_method(system, times, rows, reference.value) if identify else None
+        return fields_of(errors) | {"consistent_with": found}
+
+    def _wrong_values(self, path: Path, reference: Reference, times: Floats | None) -> WrongValues:
         key = id(reference)
         if key not in self._wrong:
             subject = self._asked.path.removeprefix("/v1/")
-            figure = Figure(subject, self._asked.request, path, reference, self._asked.evaluate)
+            # The figure of samples is a column at the times of the claim.
+            request = self._asked.request | ({} if times is None else {"times": times.tolist()})
+            figure = Figure(subject, request, path, reference, self._asked.evaluate)
             self._wrong[key] = WrongValues(figure, self._catalogue)
         return self._wrong[key]
 
     def _shown(
-        self, pointer: str, judgement: Judgement, reference: Reference, mistakes: Sequence[Mistake], why: str = ""
+        self,
+        pointer: str,
+        judgement: Judgement,
+        reference: Reference,
+        mistakes: Sequence[Mistake],
+        why: str = "",
+        samples: Result | None = None,
     ) -> Result:
         matches: list[dict[str, Any]] = [
             {"tag": one.tag, "credit": self._credits.get(one.tag, one.credit), "feedback": one.feedback}
@@ -164,6 +187,11 @@ class Grader:
         ]
         correct = judgement.correct
         score = None if correct is None else 1.0 if correct else max((one["credit"] for one in matches), default=0.0)
+        found = None if samples is None else samples["consistent_with"]
+        if found is not None and found.step is None:
+            why = "The samples are right to the digits that they have, which are fewer than the tolerance needs."
+        elif found is not None:
+            why = f"The samples are those of {found.method} with a step of {found.step:.6g} s."
         feedback = why or " ".join(one.feedback for one in mistakes) or FEEDBACK[judgement.verdict]
         if reference.sensitive is not None and judgement.verdict != "correct":
             feedback += f" Compare {reference.sensitive}: the figure itself is so near a constant that it shows little."
@@ -184,6 +212,8 @@ class Grader:
                 "sensitive": judgement.sensitive_error,
                 "unit": reference.unit,
             }
+        if samples is not None:
+            result["samples"] = samples
         return result
 
 
