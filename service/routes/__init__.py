@@ -29,6 +29,7 @@ def questions() -> tuple[PostRoute, ...]:
     paths = [route.path for route in certified]
     rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
     ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
-    answering = (*(naming_certified(route, paths) for route in ordinary), *certified)
-    about_others = planning(answering), assessing(answering)
+    in_doubles = tuple(naming_certified(route, paths) for route in ordinary)
+    answering = (*in_doubles, *certified)
+    about_others = planning(answering), assessing(in_doubles)
     return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, *about_others))

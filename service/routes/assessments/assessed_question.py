@@ -19,7 +19,7 @@ from core.systems.system import Floats
 from core.work import spend
 from service.problems import Refusal
 from service.responses.json_rows import written
-from service.routes.assessments.declared_units import numbers_within, outputs_of, schema_of, unit_at
+from service.routes.assessments.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.routes.bodies import properties_of
 from service.routing import Answer, PostRoute
 
@@ -63,7 +63,7 @@ class AssessedQuestion:
         uncertainty: float | Mapping[Path, float] | None,
     ) -> None:
         self._route, self._read, self._budget = route, read, budget
-        if isinstance(uncertainty, float) and "input_uncertainty" in self._question_schema.get("properties", {}):
+        if isinstance(uncertainty, float) and has_field(route.question, "input_uncertainty"):
             request = {"input_uncertainty": uncertainty, **request}
         self.request, self._uncertainty = request, uncertainty
         self._answers: dict[str, Answer | None] = {}
@@ -136,12 +136,8 @@ class AssessedQuestion:
         return self._answers[document]
 
     @cached_property
-    def _question_schema(self) -> Mapping[str, Any]:
-        return schema_of(self._route.question)
-
-    @cached_property
     def _outputs(self) -> frozenset[str]:
-        return outputs_of(self._question_schema)
+        return outputs_of(self._route.question)
 
     @cached_property
     def _propagation(self) -> Propagation:
@@ -151,12 +147,12 @@ class AssessedQuestion:
     def _scales(self) -> Mapping[str, float]:
         """Largest magnitude of the numbers in each unit, of the answer and, where they are all 0, of the request."""
         found: dict[str, float] = {}
-        for schema, document in (
-            (schema_of(self._route.answer), json.loads(written(self.answer))),
-            (self._question_schema, self.request),
+        for model, document in (
+            (self._route.answer, json.loads(written(self.answer))),
+            (self._route.question, self.request),
         ):
             here: dict[str, float] = {}
-            for unit, magnitude in numbers_within(schema, document):
+            for unit, magnitude in numbers_within(model, document):
                 here[unit] = max(here.get(unit, 0.0), magnitude)
             found = here | {unit: magnitude for unit, magnitude in found.items() if magnitude > 0.0}
         return found
@@ -170,7 +166,7 @@ class AssessedQuestion:
 
     def _unit(self, path: Path) -> str:
         beside = value_at(self.answer, (*path[:-1], "unit")) if len(path) > 1 else None
-        return beside if isinstance(beside, str) else unit_at(schema_of(self._route.answer), path) or "1"
+        return beside if isinstance(beside, str) else unit_at(self._route.answer, path) or "1"
 
     def _stated(self, path: Path, value: Any, form: Form, answer: Answer) -> Reference:
         if form == "choice":
