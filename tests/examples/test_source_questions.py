@@ -369,6 +369,7 @@ def test_every_number_that_is_found_is_shown(found):
 
 def test_every_example_is_linked_and_every_link_leads_somewhere():
     text = PAGE.read_text(encoding="utf-8")
-    assert set(linked(text)) == set(names())
+    # Submissions are linked from the page for course staff.
+    assert set(linked(text)) == {name for name in names() if not name.startswith("assessments/")}
     for target in re.findall(r"\]\(([^)#]+)\)", text):
         assert (PAGE.parent / target).exists(), target

@@ -41,6 +41,21 @@ def _about_another_point(figure: Figure) -> Iterator[Any]:
     elif figure.subject.startswith("rotation/"):
         yield from with_body(figure, lambda body: None if "about" in body else {**body, "about": "origin"})
         yield from with_body(figure, lambda body: without(body, "about") if body.get("about") == "origin" else None)
+        yield from with_body(figure, _moments_about_origin)
+
+
+def _moments_about_origin(body: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """Return a body with the principal moments of point masses about the origin, each along the body axis nearest."""
+    if body.get("kind") != "point-masses" or not isinstance(body.get("positions"), list) or "about" in body:
+        return None
+    positions = np.array(body["positions"], dtype=np.float64)
+    masses = np.broadcast_to(np.array(body.get("masses", 1.0), dtype=np.float64), len(positions))
+    second = (masses[:, None] * positions).T @ positions
+    moments, axes = np.linalg.eigh(np.trace(second) * np.eye(3) - second)
+    order = np.abs(axes).argmax(axis=1)
+    if len(set(order.tolist())) < 3:
+        return None
+    return {"kind": "principal-moments", "moments": moments[order].tolist()}
 
 
 def without(table: Mapping[str, Any], name: str) -> dict[str, Any]:

@@ -31,7 +31,7 @@ def outputs_of(model: Any) -> frozenset[str]:
     """Return what a question may name as its outputs, nothing if it has no such field."""
     nodes = [inner for node in _bare(model, None) for inner in _stepped(node, "outputs")]
     named = [inner for node in nodes for inner in _stepped(node, 0)]
-    return frozenset(name for hint, _ in named if get_origin(hint) is Literal for name in get_args(hint))
+    return frozenset(name for hint, _ in named if _origin(hint) is Literal for name in get_args(hint))
 
 
 def has_field(model: Any, name: str) -> bool:
@@ -55,9 +55,13 @@ def _numbers(nodes: list[Node], document: Any) -> Iterator[tuple[str, float]]:
             yield from _numbers([inner for node in nodes for inner in _stepped(node, step)], entry)
 
 
+def _origin(hint: Any) -> Any:
+    return get_origin(hint)
+
+
 def _bare(hint: Any, unit: str | None) -> Iterator[Node]:
     """Yield the members of an annotation without its marks."""
-    origin: Any = get_origin(hint)
+    origin = _origin(hint)
     if origin is Annotated:
         inner, *marks = get_args(hint)
         yield from _bare(inner, _marked(marks) or unit)
@@ -74,7 +78,7 @@ def _marked(marks: Any) -> str | None:
 
 def _stepped(node: Node, step: str | int) -> Iterator[Node]:
     hint, unit = node
-    origin: Any = get_origin(hint)
+    origin = _origin(hint)
     args = get_args(hint)
     if isinstance(step, int):
         if origin is list or (origin is tuple and args[-1:] == (...,)):
@@ -105,7 +109,7 @@ def _fields(owner: Any) -> Mapping[str, Any]:
 def _units(node: Node) -> Iterator[str]:
     """Yield the unit of a number, or of the first number of an array."""
     hint, unit = node
-    origin: Any = get_origin(hint)
+    origin = _origin(hint)
     args = get_args(hint)
     if origin in (list, tuple) and args:
         for inner in _bare(args[0], unit):
