@@ -34,16 +34,16 @@ Evaluate = Callable[[Any], Callable[[Path], Any]]
 """From a request to what finds the value at a path of its answer, None where there is none."""
 
 
-def numbers_of(request: Any, path: Path = ()) -> Iterator[tuple[Path, float]]:
-    """Yield the numbers of a request that are data, with their paths; zeros have no relative uncertainty."""
+def numbers_of(request: Any, path: Path = (), *, zeros: bool = False) -> Iterator[tuple[Path, float]]:
+    """Yield the numbers of a request that are data, with their paths; zeros, which have no relative size, if wanted."""
     if isinstance(request, Mapping):
         for name, entry in request.items():
             if name not in SETTINGS:
-                yield from numbers_of(entry, (*path, name))
+                yield from numbers_of(entry, (*path, name), zeros=zeros)
     elif isinstance(request, list):
         for i, entry in enumerate(request):
-            yield from numbers_of(entry, (*path, i))
-    elif type(request) in (int, float) and request:
+            yield from numbers_of(entry, (*path, i), zeros=zeros)
+    elif type(request) in (int, float) and (zeros or request):
         yield path, float(request)
 
 

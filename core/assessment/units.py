@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import sys
 from collections import Counter
+from collections.abc import Mapping
 from functools import cache, lru_cache
 from math import isfinite, pi
 from typing import Any
@@ -68,6 +69,11 @@ def _factor(given: str, unit: str) -> float | tuple[str, str]:
     if "pint" not in sys.modules:
         spend(IMPORT)
     return _by_pint(given, unit)
+
+
+def base_powers(unit: str) -> Mapping[str, int] | None:
+    """Return the powers of kg, m, s and d of a unit of the International System, None for any other."""
+    return _powers("1" if unit == "" else unit)
 
 
 def _powers(text: str) -> Counter[str] | None:

@@ -428,3 +428,73 @@ async def test_a_hundred_trajectories_are_judged_by_one_reference() -> None:
         return meter.spent
 
     assert work(101) - work(1) == pytest.approx(100 * 4)
+
+
+SHAFTS = {
+    "path": "/v1/scenes/unwinding-shafts",
+    "request": {"masses": [2, 1], "radii": [0.1, 0.2], "slopes": [0.5, 0.9], "gravity": 9.81},
+}
+NAMED = {"M_1": "/masses/0", "M_2": "/masses/1", "alpha": "/slopes/0", "beta": "/slopes/1", "g": "/gravity"}
+TENSION = "g*(sin(alpha)+sin(beta))*M_1*M_2/(3*(M_1+M_2))"
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected", "tags"),
+    [
+        (TENSION, "correct", []),
+        ("g*(sin(alpha)+sin(beta))/(3/M_1+3/M_2)", "correct", []),
+        (TENSION.replace("3*", ""), "incorrect", ["shafts-do-not-turn"]),
+        ("-" + TENSION, "incorrect", ["sign"]),
+        (TENSION.replace("M_1*M_2", "M_1"), "incorrect", []),
+        ("2.7528003371450764", "incorrect", []),
+        ("sqrt(-g)", "incorrect", []),
+    ],
+)
+async def test_formulas_are_right_if_they_agree_everywhere(formula: str, expected: str, tags: list[str]) -> None:
+    (result,) = (await graded(SHAFTS, {"/tension": {"formula": formula}}, names=NAMED))["results"]
+    assert result["format_errors"] == []
+    assert result["tests"][0]["verdict"] == expected
+    assert result["matches"] == tags
+
+
+async def test_the_formulas_of_the_homework() -> None:
+    names = {"a": "/hole_radius", "l": "/length", "g": "/gravity", "M": "/mass"}
+    right = "sqrt(2*g*sqrt(a^2-l^2/4)*(1-l/(2*a))/(a^2-l^2/6))"
+    # Energy at the bottom as M g a (1 - sqrt(a^2 - l^2/4)): a length is subtracted from a number.
+    source = "sqrt((g*a*l/sqrt(a^2-l^2/4) - 2*g*a*(1-sqrt(a^2-l^2/4)))/(l^2/3+a^2-l^2/4))"
+    claims = [{HORIZONTAL: {"formula": formula}} for formula in (right, source)]
+    first, second = (await graded(ROD, *claims, names=names))["results"]
+    assert first["correct"]
+    assert not second["correct"]
+    assert second["feedback"].startswith("Check the dimensions")
+
+
+async def test_formulas_name_the_fields_of_the_question_unless_names_are_given() -> None:
+    formula = "gravity*(sin(slopes_1)+sin(slopes_2))*masses_1*masses_2/(3*(masses_1+masses_2))"
+    assert (await graded(SHAFTS, {"/tension": {"formula": formula}}))["results"][0]["correct"]
+
+
+@pytest.mark.parametrize(
+    "formula", ["", "M_3", "(" * 200, "__import__('os').system('x')", "9" * 301, "M_1 M_2", 3, "sin(sin)", "1e9999"]
+)
+async def test_what_is_no_formula_is_a_format_error(formula: Any) -> None:
+    bad, good = (
+        await graded(SHAFTS, {"/tension": {"formula": formula}}, {"/tension": {"formula": TENSION}}, names=NAMED)
+    )["results"]
+    assert [fault["pointer"] for fault in bad["format_errors"]] == ["/submissions/0/~1tension/formula"]
+    assert good["correct"]
+
+
+@pytest.mark.parametrize(
+    ("names", "pointer"),
+    [
+        ({"g": "/nothing"}, "/names/g"),
+        ({"2g": "/gravity"}, "/names"),
+        ({"sin": "/gravity"}, "/names/sin"),
+        ({"g": ""}, "/names/g"),
+    ],
+)
+async def test_names_lead_to_numbers(names: dict[str, str], pointer: str) -> None:
+    response = await asked(SHAFTS, {"/tension": {"formula": "1"}}, names=names)
+    assert response.status_code == 422
+    assert response.json()["errors"][0]["pointer"] in (pointer, "/names/sin")

@@ -12,6 +12,7 @@ from pydantic import Field
 from core.assessment.catalogue import MISTAKES
 from core.assessment.compare import Form, Verdict
 from core.assessment.comparisons import Comparison
+from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.quantities import Quantity, Uncertainty, Unit
@@ -66,6 +67,11 @@ class AssessmentRequest(Request):
         default=None,
         description='The same of single numbers, by pointer into the request, such as {"/gravity": 0.001}; the others '
         "are then exact.",
+    )
+    names: dict[str, str] | None = Field(
+        default=None,
+        description='Of the numbers of the request, in formulas, by pointer into it: {"M_1": "/masses/0"}; default: '
+        "their fields, several with their number: gravity, masses_1.",
     )
     credits: dict[str, Credit] | None = Field(
         default=None, description="Share of the score for a recognised mistake, by tag, in place of the catalogue's."
@@ -210,7 +216,7 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         credits = question.credits or {}
         _check_tags(credits)
         comparisons = question.comparisons or {}
-        grader = Grader(asked, question.comparison, comparisons, question.reveal, MISTAKES, credits)
+        grader = Grader(asked, question.comparison, comparisons, question.reveal, MISTAKES, credits, _names(question))
         results = [grader.result(i, submission) for i, submission in enumerate(question.submissions)]
         shown = {"reference": grader.references()} if question.reveal else {}
         return {"results": results, **shown, "warnings": warnings if question.reveal else ()}
@@ -266,6 +272,20 @@ def _uncertainty(question: AssessmentRequest) -> float | dict[Path, float] | Non
         except InvalidParameter as fault:
             raise InvalidParameter(within, fault.rule, remedy=fault.remedy) from None
         found[path] = share
+    return found
+
+
+def _names(question: AssessmentRequest) -> dict[str, Path] | None:
+    if question.names is None:
+        return None
+    numbers, found = dict(numbers_of(question.question.request, zeros=True)), {}
+    for name, pointer in question.names.items():
+        place = ("names", name) if NAME.fullmatch(name) else ("names",)
+        if not NAME.fullmatch(name) or name in FUNCTIONS or name in CONSTANTS:
+            raise InvalidParameter(place, "have names of letters, digits and _ that are no functions")
+        if not pointer.startswith("/") or steps_of(pointer) not in numbers:
+            raise InvalidParameter(place, "lead to a number of the request", remedy='such as "/gravity"')
+        found[name] = steps_of(pointer)
     return found
 
 

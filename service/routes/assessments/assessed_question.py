@@ -6,12 +6,13 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import is_dataclass
 from functools import cached_property
-from typing import Any
+from random import Random
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from core.assessment.compare import Form, Reference
-from core.assessment.propagation import Propagation, relative_uncertainties
+from core.assessment.propagation import Propagation, changed, numbers_of, relative_uncertainties
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
@@ -37,6 +38,17 @@ COLUMNS = ("angular_velocity", "attitude")
 CONDITIONING, ROUNDING = 8.0, 2e-15
 """Numerical error of figures whose answer states none: so many times the effect of half a unit in the last place of
 every input, and this share of the figure (docs/accuracy.md)."""
+
+
+VARIATIONS = 20
+"""Changed questions at which a formula has to agree, beside the question itself."""
+
+
+class Variation(NamedTuple):
+    """Parameters by name, and the figure that belongs to them."""
+
+    parameters: Mapping[str, float]
+    figure: float
 
 
 class AssessedQuestion:
@@ -112,6 +124,39 @@ class AssessedQuestion:
         if not isinstance(value, np.ndarray) or len(value) != len(times):
             return None
         return self._stated(path, value, "samples", answer)
+
+    def parameters(self, names: Mapping[str, Path] | None) -> dict[str, tuple[Path, float, str]]:
+        """Return path, value and unit of the numbers of the request that formulas may name.
+
+        Parameters
+        ----------
+        names : mapping of str to path, or None
+            By default a number is named by its field, one of several with its number: gravity, masses_1.
+        """
+        numbers = dict(numbers_of(self.request, zeros=True))
+        chosen = names if names is not None else {_name(path): path for path in numbers}
+        return {
+            name: (path, numbers[path], unit_at(self._route.question, path) or "1") for name, path in chosen.items()
+        }
+
+    def variations(self, path: Path, parameters: Mapping[str, tuple[Path, float, str]]) -> list[Variation]:
+        """Return the question's parameters and the figure at a path, and those of seeded variations of it."""
+        chance, found = Random(0), list[Variation]()
+        for k in range(1 + 3 * VARIATIONS):
+            # Numbers that have to be equal are, in the last third.
+            shares: dict[tuple[Path, float], float] = {}
+            values = {}
+            for name, (place, value, _) in parameters.items():
+                group = (place[:-1], value) if k > 2 * VARIATIONS else (place, value)
+                share = shares.setdefault(group, chance.uniform(0.75, 1.25))
+                values[name] = value if k == 0 else value * share
+            request = changed(self.request, {parameters[name][0]: value for name, value in values.items()})
+            figure = self.evaluate(request)(path)
+            if type(figure) is float:
+                found.append(Variation(values, figure))
+            if len(found) > VARIATIONS:
+                break
+        return found
 
     def rotation(self) -> TorqueFree | None:
         """Return the free rotation that the question is about, None for questions about anything else."""
@@ -284,6 +329,12 @@ def _form(path: Path, value: Any, unit: str) -> Form | None:
     if name in COLUMNS and value.ndim == 2:
         return "samples"
     return "vector" if value.ndim == 1 else "matrix"
+
+
+def _name(path: Path) -> str:
+    """Return the default name of a parameter: its field, and its place among several, counted from 1."""
+    fields = [step for step in path if isinstance(step, str)]
+    return "_".join([fields[-1], *(str(step + 1) for step in path if isinstance(step, int))])
 
 
 def _groups(moments: Any) -> tuple[tuple[int, ...], ...]:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from core.assessment.compare import Judgement, Reference, compare
 from core.assessment.comparisons import Comparison
+from core.assessment.formulas import Formula
+from core.assessment.judged_formulas import FORMULA, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.samples import consistent_method, errors_of_samples
 from core.assessment.units import factor
@@ -16,7 +19,7 @@ from core.errors import InvalidParameter, MechanicsError, Path
 from core.systems.system import Floats
 from core.work import spend
 from service.problems import Fault, Refusal, pointer_of, problem_of
-from service.routes.assessments.assessed_question import AssessedQuestion, steps_of
+from service.routes.assessments.assessed_question import AssessedQuestion, Variation, steps_of
 from service.routes.assessments.submissions import LONGEST_POINTER, MOST_CLAIMS, Claim, Unreadable, read_claim
 from service.schemas import fields_of
 
@@ -53,6 +56,8 @@ class Grader:
     catalogue : tuple of Mistake
     credits : mapping of str to float
         By tag, in place of the catalogue's.
+    names : mapping of str to path, or None
+        Of the numbers of the request, in formulas.
     """
 
     def __init__(
@@ -63,13 +68,15 @@ class Grader:
         reveal: bool,
         catalogue: tuple[Mistake, ...],
         credits: Mapping[str, float],
+        names: Mapping[str, Path] | None,
     ) -> None:
         self._asked, self._comparison, self._comparisons = asked, comparison, comparisons
-        self._reveal, self._credits = reveal, credits
+        self._reveal, self._credits, self._names = reveal, credits, names
         self._catalogue = catalogue if reveal else tuple(entry for entry in catalogue if entry.kind == "question")
         self._references: dict[str, tuple[Path, Reference]] = {}
         self._samples: dict[tuple[str, bytes], Reference] = {}
         self._wrong: dict[int, WrongValues] = {}
+        self._variations: dict[Path, list[Variation]] = {}
 
     def references(self) -> list[Result]:
         """Return the references that were needed, in the order in which they were."""
@@ -106,6 +113,8 @@ class Grader:
     def _test(self, pointer: str, entry: Any) -> Result:
         claim = read_claim(entry)
         path, reference = self._reference(pointer, claim)
+        if claim.formula is not None:
+            return self._formula(pointer, path, reference, claim)
         try:
             value = _converted(claim, reference)
         except InvalidParameter as fault:
@@ -124,6 +133,29 @@ class Grader:
         if judgement.verdict == "incorrect" and claim.times is not None and path == ("angular_velocity",):
             samples = self._samples_judged(claim.times, value, reference, judgement, identify=not mistakes)
         return self._shown(pointer, judgement, reference, mistakes, samples=samples)
+
+    def _formula(self, pointer: str, path: Path, reference: Reference, claim: Claim) -> Result:
+        if reference.form not in ("number", "angle"):
+            raise Unreadable("must be left out: the figure is no number", "formula")
+        try:
+            formula = Formula.read(claim.formula or "", self._parameters)
+        except InvalidParameter as fault:
+            raise Unreadable(f"must {fault.rule}", "formula", remedy=fault.remedy) from None
+        if path not in self._variations:
+            self._variations[path] = self._asked.variations(path, self._parameters)
+        judged = judge_formula(formula, self._variations[path], self._units, reference)
+        mistakes: tuple[Mistake, ...] = ()
+        if judged.value is not None and judged.judgement.verdict == "incorrect":
+            mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
+        return self._shown(pointer, judged.judgement, reference, mistakes, "" if mistakes else judged.why)
+
+    @cached_property
+    def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:
+        return self._asked.parameters(self._names)
+
+    @cached_property
+    def _units(self) -> Mapping[str, str]:
+        return {name: unit for name, (_, _, unit) in self._parameters.items()}
 
     def _reference(self, pointer: str, claim: Claim) -> tuple[Path, Reference]:
         if claim.times is not None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field, TypeAdapter
 
+from core.assessment.formulas import LONGEST_FORMULA
 from core.errors import Path
 from core.systems.system import Floats
 from service.problems import Fault, pointer_of
@@ -33,6 +34,10 @@ class ClaimDocument(View):
     unit: str | None = Field(
         default=None, max_length=LONGEST_TEXT, description="Such as deg, rpm, Hz, cm or hours; needed but for pure "
         "numbers and angles in radians."
+    )  # fmt: skip
+    formula: str | None = Field(
+        default=None, max_length=LONGEST_FORMULA, description="In place of a value: in the names of the question's "
+        "parameters, with + - * / ^ ( ), pi and functions such as sqrt, sin, atan."
     )  # fmt: skip
     times: list[float] | None = Field(
         default=None, description="Of the samples in value, at any times (s); of a column of samples."
@@ -71,11 +76,14 @@ class Claim:
         As it was submitted.
     times : ndarray, shape (n,), or None
         Of samples (s).
+    formula : str or None
+        In place of a value.
     """
 
     value: Any
     unit: str | None
     times: Floats | None
+    formula: str | None = None
 
 
 class Unreadable(Exception):
@@ -90,7 +98,7 @@ class Unreadable(Exception):
         return Fault(pointer_of((*within, *self.path)), self.detail, self.remedy)
 
 
-KEYS = ("value", "unit", "times")
+KEYS = ("value", "unit", "times", "formula")
 
 
 def read_claim(entry: Any) -> Claim:
@@ -108,12 +116,18 @@ def read_claim(entry: Any) -> Claim:
             near = nearest(key, KEYS) if len(key) <= LONGEST_TEXT else None
             remedy = f"did you mean {near}?" if near else f"known here: {', '.join(KEYS)}"
             raise Unreadable("is not known here", *((key,) if len(key) <= 40 else ()), remedy=remedy)
-    if "value" not in entry:
-        raise Unreadable("is required", "value")
     unit = entry.get("unit")
     if unit is not None and (type(unit) is not str or len(unit) > LONGEST_TEXT):
         raise Unreadable(f"must be a string of at most {LONGEST_TEXT} characters", "unit")
-    times = entry.get("times")
+    times, formula = entry.get("times"), entry.get("formula")
+    if formula is not None:
+        if type(formula) is not str or len(formula) > LONGEST_FORMULA:
+            raise Unreadable(f"must be a string of at most {LONGEST_FORMULA} characters", "formula")
+        if "value" in entry or times is not None:
+            raise Unreadable("must be left out beside a value or times", "formula")
+        return Claim(None, unit, None, formula)
+    if "value" not in entry:
+        raise Unreadable("is required", "value")
     if times is not None:
         times = _value(times, "times")
         if not isinstance(times, np.ndarray) or times.ndim != 1:
