@@ -1,0 +1,87 @@
+"""Columns of an answer about a described scene, compared with those of another formulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from mpmath import asin, cos, ellipfun, mp, mpf, sin, sqrt
+
+from tests.oracles.minimal_coordinates import with_rates
+
+Answer = dict[str, Any]
+Columns = dict[str, Any]
+
+ROUNDING = 2.0**-52
+RATES = {"position": "velocity", "angle": "angular_velocity", "axis": None}
+
+
+def columns(answer: Answer) -> Columns:
+    return {name: np.array(column["values"]) for name, column in answer["trajectory"]["columns"].items()}
+
+
+def times(answer: Answer) -> list[float]:
+    return list(answer["trajectory"]["time"])
+
+
+def stated(answer: Answer, name: str) -> float:
+    """Return the error that an answer states of a column, with the rounding of its reference to doubles."""
+    column = answer["trajectory"]["columns"][name]
+    return float(column["error"] + ROUNDING * np.abs(column["values"]).max())
+
+
+def agree(answer: Answer, expected: Mapping[str, Any], own: float = 0.0) -> None:
+    """Assert that columns are as expected, to the errors that are stated and the reference's own."""
+    found = columns(answer)
+    for name, values in expected.items():
+        away = found[name] - np.array(values, dtype=float)
+        error = np.abs(away) if away.ndim == 1 else np.linalg.norm(away, axis=1)
+        assert error.max() <= stated(answer, name) + own, f"{name}: {error.max()}, {stated(answer, name)}"
+
+
+def observed(states: Iterable[tuple[Sequence[Any], Sequence[Any]]], places: Callable[..., Mapping[str, Any]]) -> Columns:
+    """Return columns from coordinates and their rates: places gives a number or components for each."""
+    found: dict[str, list[Any]] = {}
+    for q, v in states:
+        for name in places(*q):
+
+            def components(*moved: Any, name: str = name) -> Sequence[Any]:
+                value = places(*moved)[name]
+                return value if isinstance(value, tuple) else (value,)
+
+            value, rate = with_rates(components, q, v)
+            body, _, what = name.rpartition(".")
+            for key, numbers in ((name, value), (f"{body}.{RATES[what]}", rate)):
+                found.setdefault(key, []).append(numbers if len(numbers) > 1 else numbers[0])
+    return {name: np.array(values) for name, values in found.items() if not name.endswith("None")}
+
+
+def in_time(answer: Answer, places: Callable[[Any], Mapping[str, Any]]) -> Columns:
+    """Return columns that are functions of time."""
+    return observed([([mpf(t)], [mpf(1)]) for t in times(answer)], places)
+
+
+def swing(amplitude: Any, square: Any, time: Any) -> tuple[Any, Any]:
+    """Return angle and rate of theta'' = -square sin(theta), released at rest.
+
+    sin(theta/2) = k cd(omega t, k), k = sin(amplitude/2): L. D. Landau, E. M. Lifshitz, Mechanics, section 11.
+    """
+    with mp.workdps(40):
+        k, rate = sin(mpf(amplitude) / 2), sqrt(mpf(square))
+        m, u = k * k, rate * mpf(time)
+        half = k * ellipfun("cd", u, m=m)
+        slope = -(1 - m) * ellipfun("sn", u, m=m) / ellipfun("dn", u, m=m) ** 2
+        return 2 * asin(half), 2 * k * rate * slope / sqrt(1 - half * half)
+
+
+def swinging(answer: Answer, amplitude: Any, square: Any, places: Callable[[Any], Mapping[str, Any]]) -> Columns:
+    """Return columns that are functions of the angle of a pendulum released at rest."""
+    states = [swing(amplitude, square, t) for t in times(answer)]
+    return observed([([angle], [rate]) for angle, rate in states], places)
+
+
+def turned(vector: Sequence[Any], angle: Any) -> list[Any]:
+    """Return a vector of space, turned about the vertical."""
+    x, y, z = vector
+    return [cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y, z]
