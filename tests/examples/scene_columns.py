@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from mpmath import asin, cos, ellipfun, mp, mpf, sin, sqrt
+from mpmath import asin, ellipfun, mp, mpf, sin, sqrt
 
 from tests.oracles.minimal_coordinates import with_rates
 
@@ -80,8 +80,3 @@ def swinging(answer: Answer, amplitude: Any, square: Any, places: Callable[[Any]
     states = [swing(amplitude, square, t) for t in times(answer)]
     return observed([([angle], [rate]) for angle, rate in states], places)
 
-
-def turned(vector: Sequence[Any], angle: Any) -> list[Any]:
-    """Return a vector of space, turned about the vertical."""
-    x, y, z = vector
-    return [cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y, z]

@@ -143,11 +143,12 @@ def motion(
         now, found = arb(0), []
         series, reach = _step(inertias, potential, q, v, driven)
         for time in times:
-            while now + reach < exact(time):
+            moment = arb(time)
+            while now + reach < moment:
                 q, v = _at(series, reach)
                 now = (now + reach).mid()
                 series, reach = _step(inertias, potential, q, v, driven)
-            found.append(_at(series, exact(time) - now))
+            found.append(_at(series, moment - now))
         return found
     finally:
         ctx.prec, ctx.cap = before
