@@ -14,7 +14,7 @@ Answer = dict[str, Any]
 Columns = dict[str, Any]
 
 ROUNDING = 2.0**-52
-RATES = {"position": "velocity", "angle": "angular_velocity", "axis": None}
+RATES = {"position": "velocity", "angle": "angular_velocity"}
 
 
 def columns(answer: Answer) -> Columns:
@@ -44,17 +44,12 @@ def observed(states: Iterable[tuple[Sequence[Any], Sequence[Any]]], places: Call
     """Return columns from coordinates and their rates: places gives a number or components for each."""
     found: dict[str, list[Any]] = {}
     for q, v in states:
-        for name in places(*q):
-
-            def components(*moved: Any, name: str = name) -> Sequence[Any]:
-                value = places(*moved)[name]
-                return value if isinstance(value, tuple) else (value,)
-
-            value, rate = with_rates(components, q, v)
+        for name, (value, rate) in with_rates(places, q, v).items():
             body, _, what = name.rpartition(".")
-            for key, numbers in ((name, value), (f"{body}.{RATES[what]}", rate)):
-                found.setdefault(key, []).append(numbers if len(numbers) > 1 else numbers[0])
-    return {name: np.array(values) for name, values in found.items() if not name.endswith("None")}
+            found.setdefault(name, []).append(value if len(value) > 1 else value[0])
+            if what in RATES:
+                found.setdefault(f"{body}.{RATES[what]}", []).append(rate if len(rate) > 1 else rate[0])
+    return {name: np.array(values) for name, values in found.items()}
 
 
 def in_time(answer: Answer, places: Callable[[Any], Mapping[str, Any]]) -> Columns:
@@ -66,9 +61,11 @@ def swing(amplitude: Any, square: Any, time: Any) -> tuple[Any, Any]:
     """Return angle and rate of theta'' = -square sin(theta), released at rest.
 
     sin(theta/2) = k cd(omega t, k), k = sin(amplitude/2): L. D. Landau, E. M. Lifshitz, Mechanics, section 11.
+    Amplitude and square are decimals, or functions that find them at the precision here.
     """
     with mp.workdps(40):
-        k, rate = sin(mpf(amplitude) / 2), sqrt(mpf(square))
+        a, squared = (x() if callable(x) else mpf(x) for x in (amplitude, square))
+        k, rate = sin(a / 2), sqrt(squared)
         m, u = k * k, rate * mpf(time)
         half = k * ellipfun("cd", u, m=m)
         slope = -(1 - m) * ellipfun("sn", u, m=m) / ellipfun("dn", u, m=m) ** 2

@@ -16,7 +16,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -220,13 +220,19 @@ def _summed(series: Any, time: Any, derivative: int) -> Any:
     return total
 
 
-def with_rates(function: Callable[..., Sequence[Any]], q: Sequence[Any], v: Sequence[Any]) -> tuple[list[float], ...]:
-    """Return components of a function of the coordinates, and their rates, as doubles."""
+def with_rates(
+    places: Callable[..., Mapping[str, Any]], q: Sequence[Any], v: Sequence[Any]
+) -> dict[str, tuple[list[float], list[float]]]:
+    """Return named functions of the coordinates (numbers, or tuples of them) and their rates, as doubles."""
     before = ctx.prec, ctx.cap
     ctx.prec, ctx.cap = BITS, 2
     try:
-        moved = (arb_series([exact(x), exact(y)]) for x, y in zip(q, v, strict=True))
-        found = [x if isinstance(x, arb_series) else arb_series([exact(x)]) for x in function(*moved)]
-        return [float(x[0]) for x in found], [float(x[1]) for x in found]
+        moved = places(*(arb_series([exact(x), exact(y)]) for x, y in zip(q, v, strict=True)))
+        found = {}
+        for name, value in moved.items():
+            parts = value if isinstance(value, tuple) else (value,)
+            series = [x if isinstance(x, arb_series) else arb_series([exact(x)]) for x in parts]
+            found[name] = [float(x[0]) for x in series], [float(x[1]) for x in series]
+        return found
     finally:
         ctx.prec, ctx.cap = before
