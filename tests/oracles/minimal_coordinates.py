@@ -73,11 +73,15 @@ class Jet:
         return -self + other
 
     def __truediv__(self, other: Any) -> Jet:
-        if not isinstance(other, Jet):
-            return self * (1 / exact(other))
-        inverse = 1 / other.value
+        return self * (other.inverse() if isinstance(other, Jet) else 1 / exact(other))
+
+    def __rtruediv__(self, other: Any) -> Jet:
+        return self.inverse() * other
+
+    def inverse(self) -> Jet:
+        inverse = 1 / self.value
         square = inverse * inverse
-        return self * other.chained(inverse, -square, 2 * square * inverse)
+        return self.chained(inverse, -square, 2 * square * inverse)
 
 
 def pairs(count: int) -> list[tuple[int, int]]:
