@@ -39,8 +39,6 @@ def scene_catalogue() -> Mapping[str, CatalogueScene]:
     folder = resources.files("examples").joinpath("scenes")
     entries = tomllib.loads(folder.joinpath("catalogue.toml").read_text(encoding="utf-8"))
     return {
-        name: CatalogueScene(
-            **entry, question=json.loads(folder.joinpath(f"{name}.json").read_text(encoding="utf-8"))
-        )
+        name: CatalogueScene(**entry, question=json.loads(folder.joinpath(f"{name}.json").read_text(encoding="utf-8")))
         for name, entry in entries.items()
     }

@@ -40,7 +40,9 @@ def agree(answer: Answer, expected: Mapping[str, Any], own: float = 0.0) -> None
         assert error.max() <= stated(answer, name) + own, f"{name}: {error.max()}, {stated(answer, name)}"
 
 
-def observed(states: Iterable[tuple[Sequence[Any], Sequence[Any]]], places: Callable[..., Mapping[str, Any]]) -> Columns:
+def observed(
+    states: Iterable[tuple[Sequence[Any], Sequence[Any]]], places: Callable[..., Mapping[str, Any]]
+) -> Columns:
     """Return columns from coordinates and their rates: places gives a number or components for each."""
     found: dict[str, list[Any]] = {}
     for q, v in states:
@@ -76,4 +78,3 @@ def swinging(answer: Answer, amplitude: Any, square: Any, places: Callable[[Any]
     """Return columns that are functions of the angle of a pendulum released at rest."""
     states = [swing(amplitude, square, t) for t in times(answer)]
     return observed([([angle], [rate]) for angle, rate in states], places)
-

@@ -1,4 +1,4 @@
-"""The described scenes of examples/scenes over HTTP, against closed forms and an integration by other equations."""
+"""The described scenes that the documentation shows, against closed forms and an integration by other equations."""
 
 from __future__ import annotations
 
@@ -7,18 +7,9 @@ import pytest
 from mpmath import cos, mp, mpf, pi, quad, sqrt
 from scipy.integrate import solve_ivp
 
+from tests.examples.scene_columns import columns, stated
+
 G = 9.81
-
-
-def columns(answer):
-    found = answer["trajectory"]["columns"]
-    return {name: np.array(column["values"]) for name, column in found.items()}
-
-
-def stated(answer, name):
-    """Return the error that an answer states of a column, with the rounding of its reference."""
-    column = answer["trajectory"]["columns"][name]
-    return column["error"] + 2.0**-52 * np.abs(column["values"]).max()
 
 
 def test_the_massive_pulley_is_uniformly_accelerated(answer_of):

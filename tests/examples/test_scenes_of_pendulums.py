@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from flint import arb
-from mpmath import ellipk, mp, mpf, pi
 from mpmath import cos as mp_cos
+from mpmath import ellipk, mp, mpf, pi
 from mpmath import sin as mp_sin
 from mpmath import sqrt as mp_sqrt
 

@@ -8,6 +8,8 @@ Integration of the Equations of Motion of a Rigid Body about a Fixed Point (1953
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from flint import arb
@@ -77,7 +79,7 @@ def cross(a, b):
 
 def followed(rates, start, moments, steps):
     states = [start]
-    for before, after in zip(moments, moments[1:], strict=False):
+    for before, after in pairwise(moments):
         states.append(integrated(rates, states[-1], mpf(after) - mpf(before), steps))
     return states
 

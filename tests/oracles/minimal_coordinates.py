@@ -46,7 +46,9 @@ class Jet:
     def __mul__(self, other: Any) -> Jet:
         if not isinstance(other, Jet):
             factor = exact(other)
-            return Jet(self.value * factor, tuple(a * factor for a in self.first), tuple(a * factor for a in self.second))
+            return Jet(
+                self.value * factor, tuple(a * factor for a in self.first), tuple(a * factor for a in self.second)
+            )
         a, b, f, g = self.value, other.value, self.first, other.first
         second = (
             x * b + f[i] * g[j] + f[j] * g[i] + a * y
@@ -56,9 +58,7 @@ class Jet:
 
     def chained(self, value: Any, slope: Any, curvature: Any) -> Jet:
         f = self.first
-        second = (
-            slope * x + curvature * f[i] * f[j] for (i, j), x in zip(pairs(len(f)), self.second, strict=True)
-        )
+        second = (slope * x + curvature * f[i] * f[j] for (i, j), x in zip(pairs(len(f)), self.second, strict=True))
         return Jet(value, tuple(slope * x for x in f), tuple(second))
 
     __radd__, __rmul__ = __add__, __mul__

@@ -107,7 +107,10 @@ def test_a_weight_on_a_spring_falls_about_its_equilibrium() -> None:
 
 
 def test_a_spring_beside_a_free_fall_has_its_mode() -> None:
-    """3 u'' = k e - g of the string, e'' = 4 g/3 - 7 k e/3 of the spring: the tension 2 (g + u'') vanishes at k e = -2 g."""
+    """3 u'' = k e - g of the string, e'' = 4 g/3 - 7 k e/3 of the spring.
+
+    The tension 2 (g + u'') vanishes at k e = -2 g.
+    """
     scene = {
         "gravity": [0, -9.81],
         "bodies": {
