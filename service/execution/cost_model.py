@@ -70,7 +70,7 @@ class CalibratedCost:
     @cached_property
     def _seconds(self) -> Counts:
         seconds = calibration().seconds
-        # A body is looked at in the same way whatever is asked about it, and where it is small that does not stand out.
+        # A body is looked at in the same way for every question, and where it is small that does not stand out.
         return {"points": seconds["mass_properties"]["points"], **seconds[self.operation]}
 
     def __call__(self, question: Any, budget: Budget) -> float:
