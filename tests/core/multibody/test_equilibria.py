@@ -79,7 +79,7 @@ def test_rolling_on_a_curve_is_refused() -> None:
 
 
 def test_places_beside_a_spring_of_no_length_are_no_equilibria() -> None:
-    """V = -g (cos a + cos b) + k/2 (d - 1)^2 of two pendulums side by side has four: Newton's steps are short elsewhere."""
+    """V = -g (cos a + cos b) + k/2 (d - 1)^2 has four; beside d = 0 Newton's steps are short, too."""
     scene = {
         "gravity": [0, -9.81],
         "bodies": {"left": {"mass": 1, "at": [0.6, -0.8]}, "right": {"mass": 1, "at": [1, -1]}},
