@@ -14,9 +14,11 @@ import pytest
 
 from core.multibody.language import MOST_BODIES, MOST_CONNECTIONS
 from core.systems.budget import Budget
+from core.work import work_limit
 from service.requests.described_scene import DescribedSceneRequest
 from service.requests.request_reader import Limits, Reader
 from service.routes import questions
+from service.routes.described_scenes import SEARCHED
 from service.routing import PostRoute
 from tests.service.conftest import Server, client_of, inline_service
 
@@ -221,6 +223,28 @@ async def test_columns_travel_as_arrays() -> None:
         response = await client.post(PATH, json=question, headers={"accept": "application/x-npz"})
     with np.load(io.BytesIO(response.content)) as found:
         assert found["trajectory/columns/p.position/values"].shape == (7, 2)
+
+
+class TestPlan:
+    async def test_long_searches_for_equilibria_are_not_made(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i + 1, 0]} for i in range(8)}
+        ends = [[0, 0], *bodies]
+        chain = PENDULUM | {
+            "bodies": bodies,
+            "connections": [ROD | {"a": name, "b": end} for name, end in zip(bodies, ends, strict=False)],
+        }
+        route = next(route for route in questions() if route.path == "/v1/plan")
+        question = {"path": PATH, "request": chain | {"outputs": ["equilibria"]}}
+        with work_limit(2 * SEARCHED) as meter:
+            plan = route.handle(Reader(route.question, Limits()).read(json.dumps(question).encode()), Budget())
+        assert plan["answerable"]
+        assert plan["model"]["degrees_of_freedom"] == 8
+        assert meter.spent < SEARCHED
+
+    async def test_searches_that_are_too_long_are_foreseen_to_be_refused(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i, 0]} for i in range(100)}
+        plan = (await asked({"path": PATH, "request": {"bodies": bodies, "outputs": ["equilibria"]}}, "/v1/plan")).json()
+        assert [(fault["code"], fault["pointer"]) for fault in plan["errors"]] == [("budget-exceeded", "/request/outputs")]
 
 
 class TestCatalogue:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.errors import NotApplicable
+from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import BEAD_ON_HOOP, points, read
 
@@ -75,4 +75,10 @@ def test_rolling_on_a_curve_is_refused() -> None:
         "connections": [{"kind": "rolling", "place": "disc", "on": {"at": [0, 0], "radius": -1}}],
     }
     with pytest.raises(NotApplicable):
+        solve_scene(read(scene), outputs=("equilibria",))
+
+
+def test_searches_that_would_take_minutes_and_gigabytes_are_refused() -> None:
+    scene = {"gravity": [0, -9.81], "bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(100)}}
+    with pytest.raises(BudgetExceeded, match="4096 starts, 200 unknowns"):
         solve_scene(read(scene), outputs=("equilibria",))
