@@ -290,13 +290,14 @@ def _trajectory(
     determined = [value.value is not None for value in forces]
     watched = [limit for limit in whole.measures.limits if limit.force is None or determined[limit.force]]
     for end in {max(float(np.max(times)), 0.0), min(float(np.min(times)), 0.0)} - {0.0}:
-        event = first_event(whole, watched, end)
+        # What leaves the range of doubles is refused below.
+        with np.errstate(over="ignore", invalid="ignore"):
+            event = first_event(whole, watched, end)
         if event is not None:
             events.append(event)
             beyond = times[rows] > event.time if end > 0.0 else times[rows] < event.time
             rows = rows[~beyond]
     moments = times[rows]
-    # What leaves the range of doubles is refused below.
     with np.errstate(over="ignore", invalid="ignore"):
         columns = _columns(whole, determined, moments, outputs, finer=False)
         if any(isinstance(motion, Numerical) for _, motion in whole.parts) and worst(columns) > accuracy:
