@@ -225,28 +225,6 @@ async def test_columns_travel_as_arrays() -> None:
         assert found["trajectory/columns/p.position/values"].shape == (7, 2)
 
 
-class TestPlan:
-    async def test_long_searches_for_equilibria_are_not_made(self) -> None:
-        bodies = {f"p{i}": POINT | {"at": [i + 1, 0]} for i in range(8)}
-        ends = [[0, 0], *bodies]
-        chain = PENDULUM | {
-            "bodies": bodies,
-            "connections": [ROD | {"a": name, "b": end} for name, end in zip(bodies, ends, strict=False)],
-        }
-        route = next(route for route in questions() if route.path == "/v1/plan")
-        question = {"path": PATH, "request": chain | {"outputs": ["equilibria"]}}
-        with work_limit(2 * SEARCHED) as meter:
-            plan = route.handle(Reader(route.question, Limits()).read(json.dumps(question).encode()), Budget())
-        assert plan["answerable"]
-        assert plan["model"]["degrees_of_freedom"] == 8
-        assert meter.spent < SEARCHED
-
-    async def test_searches_that_are_too_long_are_foreseen_to_be_refused(self) -> None:
-        bodies = {f"p{i}": POINT | {"at": [i, 0]} for i in range(100)}
-        plan = (await asked({"path": PATH, "request": {"bodies": bodies, "outputs": ["equilibria"]}}, "/v1/plan")).json()
-        assert [(fault["code"], fault["pointer"]) for fault in plan["errors"]] == [("budget-exceeded", "/request/outputs")]
-
-
 class TestCatalogue:
     async def test_described_examples_stand_beside_the_named_scenes(self) -> None:
         async with client_of(SERVICE) as client:
@@ -285,6 +263,27 @@ class TestPrice:
 
 
 class TestPlan:
+    async def test_long_searches_for_equilibria_are_not_made(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i + 1, 0]} for i in range(8)}
+        ends = [[0, 0], *bodies]
+        chain = PENDULUM | {
+            "bodies": bodies,
+            "connections": [ROD | {"a": name, "b": end} for name, end in zip(bodies, ends, strict=False)],
+        }
+        route = next(route for route in questions() if route.path == "/v1/plan")
+        question = {"path": PATH, "request": chain | {"outputs": ["equilibria"]}}
+        with work_limit(2 * SEARCHED) as meter:
+            plan = route.handle(Reader(route.question, Limits()).read(json.dumps(question).encode()), Budget())
+        assert plan["answerable"]
+        assert plan["model"]["degrees_of_freedom"] == 8
+        assert meter.spent < SEARCHED
+
+    async def test_searches_that_are_too_long_are_foreseen_to_be_refused(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i, 0]} for i in range(100)}
+        request = {"bodies": bodies, "outputs": ["equilibria"]}
+        (fault,) = (await asked({"path": PATH, "request": request}, "/v1/plan")).json()["errors"]
+        assert (fault["code"], fault["pointer"]) == ("budget-exceeded", "/request/outputs")
+
     async def test_the_model_is_foreseen_without_its_motion(self) -> None:
         plan = (await asked({"path": PATH, "request": PENDULUM | {"times": [1e300]}}, "/v1/plan")).json()
         assert plan["answerable"]
