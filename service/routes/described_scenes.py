@@ -103,18 +103,25 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
-    found = {"question": 1.0, "bodies": bodies, "connections": connections, "pairs of connections": connections**2}
+    found = {
+        "question": 1.0,
+        "bodies": bodies,
+        "connections": connections,
+        "pairs of connections": connections**2,
+        "connections times pairs of bodies": connections * bodies**2,
+    }
     if "equilibria" in (question.outputs or ()):
         found |= {"searches": bodies, "searches of pairs": bodies**2}
     if question.times is not None:
         samples = sample_count(question.times, budget)
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
-        followed = min(bodies - 1.0, connections) * min(LONGEST, extent(question.times))
+        coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
         found |= {
             "motions": bodies + connections,
             "samples of bodies": samples * bodies,
             "samples of connections": samples * connections,
-            "seconds of coupled bodies": max(0.0, followed),
+            "seconds of coupled bodies": seconds * coupled,
+            "seconds of pairs of coupled bodies": seconds * coupled**2,
         }
     return found
 
