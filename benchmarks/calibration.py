@@ -117,6 +117,9 @@ def described_scenes() -> list[dict[str, Any]]:
     found += [
         chain(count) | {"times": span(30, stop), "accuracy": 0.9} for count in (2, 3, 4) for stop in (10.0, 100.0)
     ]
+    for count in (64, 100):
+        found += [chain(count), chain(count) | {"times": span(30, 1.0), "accuracy": 0.9}]
+    found += [chain(count) | {"times": span(30, 10.0), "accuracy": 0.9} for count in (8, 16)]
     found += [chain(count) | {"outputs": ["equilibria"]} for count in (1, 2, 3)]
     return found
 

@@ -1,7 +1,7 @@
 """Measure whole answers about described scenes; write benchmarks/results/described_scenes.json.
 
-make peers-scenes                                   (the whole, with the peers that are installed)
-python -m benchmarks.described_scenes --reference   (the double pendulum's angles after 10 s at 30 digits; minutes)
+make peers-scenes                       (with every peer that can be installed)
+python -m benchmarks.described_scenes   (with those that are)
 
 Every example and every scene of the catalogue is answered as the service answers it, from the document to the error
 statement, without HTTP and JSON. "set-up" is the same question without times.
@@ -9,7 +9,6 @@ statement, without HTTP and JSON. "set-up" is the same question without times.
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import statistics
@@ -17,14 +16,11 @@ import time
 from importlib import metadata
 from typing import Any
 
-from benchmarks.described_scenes.double_pendulum import ENTRANTS, Entrant, reference
+from benchmarks.described_scenes.double_pendulum import ENTRANTS, EXACT, Entrant
 from benchmarks.machine import RESULTS, described, medians
 from core.systems.budget import Budget
 from service.requests.described_scene import DescribedSceneRequest
 from service.routes.described_scenes import described_examples, solved
-
-EXACT = (-0.0, -0.0)
-"""Angles after 10 s, by `reference`."""
 
 TOO_LONG = 20.0
 """After a run that takes longer (s), dearer settings are left out."""
@@ -71,12 +67,7 @@ def dial(entrant: Entrant) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Do as the command line says."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.described_scenes")
-    parser.add_argument("--reference", action="store_true", help="print the reference of the double pendulum")
-    if parser.parse_args().reference:
-        print(*reference())
-        return
+    """Measure, write and print."""
     before = os.getloadavg()[0]
     there = [entrant for entrant in ENTRANTS if installed(entrant.package)]
     scenes = catalogue(9)

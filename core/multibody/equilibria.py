@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import null_space
 
-from core.errors import NotApplicable
+from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.answer import Equilibrium
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
@@ -19,11 +19,16 @@ from core.multibody.packed import Floats, Packed, Units, packed, state, two_to, 
 from core.multibody.passes import Reduced, reduced
 from core.multibody.table import Table
 from core.multibody.whole import values
+from core.work import spend
 
 MOST_FOUND = 100
 _STARTS = 128
 """Starts for every degree of freedom."""
 _ROUNDS = 60
+_MOST_OPERATIONS = 80_000_000
+"""Of one round: starts times the cube of the unknowns. More would take longer than a minute, and gigabytes."""
+_OPERATIONS_PER_UNIT = 40.0
+"""So many, in every round, take a unit of work (`core.work`)."""
 _SAME = 1e-7
 _CONVERGED = 1e-10
 _SETTLED = 1e-6
@@ -39,6 +44,8 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
     NotApplicable
         For scenes that are driven, or held by rates that no measure gives: rolling on curves, and torsion springs or
         drums beside a direction.
+    BudgetExceeded
+        If the search would take too long.
     """
     small = reduced(found.measures.table, pinning=False)
     table = small.table
@@ -110,6 +117,12 @@ class _Dense:
 def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Floats]]:
     n, m = len(start), len(dense.offset)
     count = min(4096, _STARTS * max(1, freedom))
+    operations = count * (n + m) ** 3
+    if operations > _MOST_OPERATIONS:
+        what = f"operations in each round of the search for equilibria ({count} starts, {n + m} unknowns)"
+        remedy = "ask without equilibria, or about fewer bodies"
+        raise BudgetExceeded(what, operations, _MOST_OPERATIONS, path=("outputs",), remedy=remedy)
+    spend(operations / _OPERATIONS_PER_UNIT)
     # Always the same starts: equal questions have equal answers.
     random = np.random.Generator(np.random.Philox(7))
     q = start + random.normal(size=(count, n)) * random.uniform(0.05, 2.0, size=(count, 1))

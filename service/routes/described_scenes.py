@@ -13,6 +13,7 @@ from core.multibody.columns import worst
 from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
 from core.notices import Notice
 from core.systems.budget import Budget
+from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.routes.described_answer import DescribedSceneAnswer
@@ -32,11 +33,14 @@ Forces that the scene does not determine are null.
 
 Not covered yet: contact, friction, impacts, strings that become taut again, connections with `from` and `until`. They
 are refused, and a string that becomes slack ends the motion. There is no choice of method, no rounding and no
-propagated uncertainty. It is not proven that all equilibria are found. A plan reads numbers as doubles, and does not
-foresee for how long a motion can be followed."""
+propagated uncertainty. It is not proven that all equilibria are found. A plan reads numbers as doubles, and foresees
+neither for how long a motion can be followed nor the equilibria of more than about three bodies."""
 
 NEAR = 0.01
 """How far (s) a motion is followed when it is planned."""
+
+SEARCHED = 10_000.0
+"""Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
@@ -45,7 +49,8 @@ LONGEST = 4000.0
 def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     """Answer a question about a described scene."""
     times = () if question.times is None else sample_times(question.times, budget)
-    found = solve_scene(question.scene(), times, question.outputs or DEFAULT_OUTPUTS, question.accuracy)
+    outputs = DEFAULT_OUTPUTS if question.outputs is None else question.outputs
+    found = solve_scene(question.scene(), times, outputs, question.accuracy)
     answer: Answer = {"model": _model(found.model), "warnings": []}
     for name, start in (
         ("accelerations", {body: fields_of(one) for body, one in (found.accelerations or {}).items()}),
@@ -98,18 +103,25 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
-    found = {"question": 1.0, "bodies": bodies, "connections": connections, "pairs of connections": connections**2}
+    found = {
+        "question": 1.0,
+        "bodies": bodies,
+        "connections": connections,
+        "pairs of connections": connections**2,
+        "connections times pairs of bodies": connections * bodies**2,
+    }
     if "equilibria" in (question.outputs or ()):
         found |= {"searches": bodies, "searches of pairs": bodies**2}
     if question.times is not None:
         samples = sample_count(question.times, budget)
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
-        followed = min(bodies - 1.0, connections) * min(LONGEST, extent(question.times))
+        coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
         found |= {
             "motions": bodies + connections,
             "samples of bodies": samples * bodies,
             "samples of connections": samples * connections,
-            "seconds of coupled bodies": max(0.0, followed),
+            "seconds of coupled bodies": seconds * coupled,
+            "seconds of pairs of coupled bodies": seconds * coupled**2,
         }
     return found
 
@@ -117,13 +129,23 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
 def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
     """Answer a question at few times near the start, where the rows are as long; its error is known from the whole."""
     if question.times is None:
-        return PlanningProbe(solved(question, budget))
+        return PlanningProbe(_without_long_searches(question, budget))
     instants = sample_times(question.times, budget)
     few = instants[few_of(instants.size)]
     near = few * min(1.0, NEAR / max(NEAR, float(np.abs(few).max())))
-    fields = solved(question.model_copy(update={"times": near.tolist()}), budget)
+    fields = _without_long_searches(question.model_copy(update={"times": near.tolist()}), budget)
     del fields["accuracy"]
     return PlanningProbe(fields, {"trajectory": instants.size / few.size})
+
+
+def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> Answer:
+    """Answer a question, without its equilibria if looking for them takes long."""
+    try:
+        with work_limit(SEARCHED):
+            return solved(question, budget)
+    except WorkLimitReached:
+        others = question.outputs and [name for name in question.outputs if name != "equilibria"]
+        return solved(question.model_copy(update={"outputs": others}), budget)
 
 
 DESCRIBED_SCENES = (

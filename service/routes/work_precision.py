@@ -134,7 +134,8 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
 
 def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> dict[str, float]:
     """Return what is counted of a ladder on a motion that is longer than the one on which ladders are measured."""
-    speed = speed_of(question.angular_velocity)
+    adaptive = (Lsoda(min(SCIPY_TOLERANCES)), DormandPrince853(min(TOLERANCES)))
+    speed = speed_to_follow(adaptive, question.body, speed_of(question.angular_velocity))
     radians = speed * extent(question.times) - LADDER_RADIANS
     if not radians > 0.0:
         return {}

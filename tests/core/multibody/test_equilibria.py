@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.errors import NotApplicable
+from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import BEAD_ON_HOOP, points, read
 
@@ -99,3 +99,9 @@ def test_places_beside_a_spring_of_no_length_are_no_equilibria() -> None:
         # Across each rod: the spring against the weight.
         assert (pull * d[0]) * -left[1] + (pull * d[1] - 9.81) * left[0] == pytest.approx(0, abs=1e-11)
         assert -(pull * d[0]) * -right[1] - (pull * d[1] + 9.81) * (right[0] - 1) == pytest.approx(0, abs=1e-11)
+
+
+def test_searches_that_would_take_minutes_and_gigabytes_are_refused() -> None:
+    scene = {"gravity": [0, -9.81], "bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(100)}}
+    with pytest.raises(BudgetExceeded, match="4096 starts, 200 unknowns"):
+        solve_scene(read(scene), outputs=("equilibria",))
