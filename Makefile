@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check environment openapi judge plans record peers newest clean
+.PHONY: serve test check environment openapi judge plans record peers peers-scenes newest clean
 
 serve: $(ENV)/runs
 	@$(BIN)/python -m service
@@ -54,6 +54,9 @@ PEERS := .venv-peers
 
 peers: $(PEERS)/made
 	$(PEERS)/bin/python -m benchmarks.peers
+
+peers-scenes: $(PEERS)/made
+	$(PEERS)/bin/python -m benchmarks.described_scenes
 
 $(PEERS)/made: requirements-dev.lock benchmarks/peers.txt
 	$(PYTHON) -m venv $(PEERS)

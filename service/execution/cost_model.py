@@ -71,7 +71,7 @@ class CalibratedCost:
     @cached_property
     def _seconds(self) -> Counts:
         seconds = calibration().seconds
-        # A body is looked at in the same way whatever is asked about it, and where it is small that does not stand out.
+        # A body is looked at in the same way for every question, and where it is small that does not stand out.
         points = seconds["mass_properties"]["points"]
         judging = seconds["rotation_trajectory"]["evaluations of dormand-prince-853"]
         return {"points": points, "judging evaluations": judging, **seconds[self.operation]}

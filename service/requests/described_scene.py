@@ -84,8 +84,8 @@ def _connection_form() -> type[Request]:
         name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
         for name, hint in hints.items()
     }
-    told = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
-    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=told))
+    meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
+    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=meaning))
     docs = language.Connection.__doc__
     form: type[Request] = create_model("SceneConnection", __base__=Request, __doc__=docs, **own)
     return form
@@ -100,7 +100,7 @@ SCENE_FIELDS = tuple(entry.name for entry in fields(language.Scene))
 
 
 class DescribedSceneRequest(Request):
-    """Bodies, what connects them, and what is asked about them."""
+    """Bodies, what connects them, and the question about them."""
 
     gravity: Gravity = Field(
         default=None, description="Acceleration of free fall (m/s^2), of two or three components; none if left out."

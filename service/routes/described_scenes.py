@@ -17,8 +17,8 @@ from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.routes.described_answer import DescribedSceneAnswer
-from service.routes.examples import examples
 from service.routes.planning_probes import few_of
+from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import fields_of, sample_count, sample_times
 
@@ -165,8 +165,8 @@ DESCRIBED_SCENES = (
 
 
 def described_examples() -> list[dict[str, Any]]:
-    """Return the examples of described scenes as entries of the catalogue of scenes."""
+    """Return the described scenes as entries of the catalogue of scenes."""
     return [
         {"name": name, "path": PATH, "summary": one.summary, "outputs": list(OUTPUTS), "example": dict(one.question)}
-        for name, one in examples()[OPERATION].items()
+        for name, one in scene_catalogue().items()
     ]
