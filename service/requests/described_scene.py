@@ -19,8 +19,9 @@ from core.bodies import Body
 from core.multibody import language
 from core.multibody.reading import scene_from
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
-from core.quantities import Tolerance
-from service.schemas import Request, Times
+from core.quantities import Tolerance, Uncertainty
+from core.systems.methods import Method
+from service.schemas import ROUND, Request, Rounding, Times
 
 
 def _schema(hint: Any) -> dict[str, Any]:
@@ -123,6 +124,19 @@ class DescribedSceneRequest(Request):
         default=1e-9,
         description="Largest tolerated error of any column, relative to the largest value in columns of its unit.",
     )
+    method: Method | None = Field(
+        default=None,
+        description="Computes the motion in place of the smallest model, and is answered whatever its error. The whole "
+        "scene is run as one system, and put back onto its connections after every step; by lsoda and radau, its "
+        "samples alone. An evaluation counts as 4 + n^3/200 of the evaluations that are allowed, n being the number of "
+        "coordinates and equations of constraint that remain.",
+    )
+    input_uncertainty: Uncertainty | None = Field(
+        default=None,
+        description="Relative uncertainty of every number of the description, 1.1e-16 for numbers known as doubles. "
+        "If it is given, accuracy.inherited says what it does to places and rates. Formulas are exact.",
+    )
+    round: Rounding | None = ROUND
     outputs: list[Output] | None = Field(
         default=None, min_length=1, description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}."
     )

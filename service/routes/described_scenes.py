@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from core.multibody.answer import SceneModel
-from core.multibody.columns import worst
 from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
 from core.notices import Notice
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, extent
 from service.requests.described_scene import DescribedSceneRequest
+from service.responses.svg import SVG
 from service.routes.described_answer import DescribedSceneAnswer
+from service.routes.described_figure import drawn
 from service.routes.examples import examples
 from service.routes.planning_probes import few_of
 from service.routing import Answer, PlanningProbe, PostRoute
@@ -31,9 +32,9 @@ vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are l
 Forces that the scene does not determine are null.
 
 Not covered yet: contact, friction, impacts, strings that become taut again, connections with `from` and `until`. They
-are refused, and a string that becomes slack ends the motion. There is no choice of method, no rounding and no
-propagated uncertainty. It is not proven that all equilibria are found. A plan reads numbers as doubles, and does not
-foresee for how long a motion can be followed."""
+are refused, and a string that becomes slack ends the motion. It is not proven that all equilibria are found. A plan
+reads numbers as doubles, and does not foresee for how long a motion can be followed. The paths of a motion in the
+plane, and its columns over time, are answered as a figure to `Accept: image/svg+xml`."""
 
 NEAR = 0.01
 """How far (s) a motion is followed when it is planned."""
@@ -45,8 +46,18 @@ LONGEST = 4000.0
 def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     """Answer a question about a described scene."""
     times = () if question.times is None else sample_times(question.times, budget)
-    found = solve_scene(question.scene(), times, question.outputs or DEFAULT_OUTPUTS, question.accuracy)
-    answer: Answer = {"model": _model(found.model), "warnings": []}
+    found = solve_scene(
+        question.scene(),
+        times,
+        question.outputs or DEFAULT_OUTPUTS,
+        question.accuracy,
+        method=question.method,
+        input_uncertainty=question.input_uncertainty,
+        digits=question.round,
+        budget=budget,
+    )
+    motion = found.trajectory
+    answer: Answer = {"model": _model(found.model), "warnings": [] if motion is None else list(motion.warnings)}
     for name, start in (
         ("accelerations", {body: fields_of(one) for body, one in (found.accelerations or {}).items()}),
         ("forces", {force: fields_of(one) for force, one in (found.forces or {}).items()}),
@@ -54,22 +65,14 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     ):
         if getattr(found, name) is not None:
             answer[name] = _in_range(start, name, answer["warnings"])
+    answer["method"], answer["work"] = (None, None) if motion is None else (motion.method, motion.work)
     answer["period"] = found.period
-    answer["ended"] = None if found.trajectory is None else "horizon" if found.ended is None else found.ended.kind
+    answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
     answer["events"] = found.events
-    if found.trajectory is not None:
-        columns = found.trajectory.columns
-        answer["trajectory"] = {
-            "time": found.trajectory.time,
-            "rows": found.trajectory.rows,
-            "columns": {name: fields_of(column) for name, column in columns.items()},
-        }
-        hows = {column.how for column in columns.values()}
-        answer["accuracy"] = {
-            "requested": question.accuracy,
-            "error": worst(columns),
-            "how": "measured against pairs" if "measured against pairs" in hows else "closed form",
-        }
+    if motion is not None:
+        columns = {name: fields_of(column) for name, column in motion.columns.items()}
+        answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}
+        answer["accuracy"] = motion.accuracy
     if found.equilibria is not None:
         answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
     return answer
@@ -138,6 +141,7 @@ DESCRIBED_SCENES = (
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
         description=DESCRIPTION,
+        representations={SVG: drawn},
     ),
 )
 

@@ -17,6 +17,7 @@ from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 @kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,
@@ -26,6 +27,7 @@ def _march(
     tally: Integers,
 ) -> int:
     slope, grid = np.empty_like(state), np.empty_like(state)
+    constrained = tally[3] == 1
     for i in range(len(count)):
         for run in range(2):
             replace(grid, state)
@@ -34,6 +36,8 @@ def _march(
                 field(begin[i, run] + j * h, state, parameters, slope)
                 for k in range(state.size):
                     state[k] += h * slope[k]
+                if constrained:
+                    project(state, parameters)
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i

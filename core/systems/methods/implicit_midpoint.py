@@ -28,6 +28,7 @@ ITERATIONS = 100
 @kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,
@@ -39,6 +40,7 @@ def _march(
     slope, new, middle = np.empty_like(state), np.empty_like(state), np.empty_like(state)
     tail = np.zeros_like(state)
     grid, grid_tail, grid_slope = np.empty_like(state), np.empty_like(state), np.empty_like(state)
+    constrained = tally[3] == 1
     # The slope of the last step is the first guess; for the first step it is the one at the start.
     field(begin[0, 0], state, parameters, slope)
     tally[0] -= 1
@@ -75,6 +77,8 @@ def _march(
                 for k in range(state.size):
                     # The rounding of the sum is carried on, which keeps the invariants from drifting.
                     state[k], tail[k] = two_sum(state[k], h * slope[k] + tail[k])
+                if constrained:
+                    project(state, parameters)
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i

@@ -23,6 +23,7 @@ from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 @kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,
@@ -33,6 +34,7 @@ def _march(
 ) -> int:
     k1, k2, k3, k4 = np.empty_like(state), np.empty_like(state), np.empty_like(state), np.empty_like(state)
     stage, grid = np.empty_like(state), np.empty_like(state)
+    constrained = tally[3] == 1
     for i in range(len(count)):
         for run in range(2):
             replace(grid, state)
@@ -51,6 +53,8 @@ def _march(
                 field(t + h, stage, parameters, k4)
                 for k in range(state.size):
                     state[k] += h * ((k1[k] + k4[k]) + 2 * (k2[k] + k3[k])) / 6
+                if constrained:
+                    project(state, parameters)
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
