@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from core.multibody.dynamics import weightless
+from core.multibody.dynamics import undetermined, weightless
 from core.multibody.polynomials import (
     ONE,
     ZERO,
@@ -240,10 +240,9 @@ def _pin(state: Reduced) -> bool:
         pinned -= leave
     if not pinned:
         return False
-    # A weightless pulley between strings stays where they pull it; what nothing touches at all is nowhere.
-    touched = {j for row in table.rows for j in row.line(table.q)} | {i for key in table.mass for i in key}
-    if pinned - touched:
-        raise weightless(table, pinned - touched, ())
+    lost = set(undetermined(table, pinned, [row.line(table.q) for row in table.rows])) - _moved_with_mass(table)
+    if lost:
+        raise weightless(table, lost, ())
     state.pinned.extend(table.names[i] for i in sorted(pinned))
     state.steps.append(f"nothing ever moves {', '.join(table.names[i] for i in sorted(pinned))}")
     expressions: list[Poly | None] = [None] * len(table.names)
@@ -251,6 +250,16 @@ def _pin(state: Reduced) -> bool:
         expressions[i] = constant(table.q[i])
     _substitute(state, expressions)
     return True
+
+
+def _moved_with_mass(table: Table) -> set[int]:
+    """Return coordinates that have mass, or are connected to some: a weightless pulley stays where strings pull it."""
+    found = {i for key in table.mass for i in key}
+    waiting = [set(row.rates) for row in table.rows]
+    while touching := [row for row in waiting if row & found]:
+        found.update(*touching)
+        waiting = [row for row in waiting if not row & found]
+    return found
 
 
 def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:

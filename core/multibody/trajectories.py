@@ -65,12 +65,13 @@ def trajectory_of(
     AccuracyUnreachable, NotApplicable, BudgetExceeded, InvalidParameter
         As `core.multibody.solve.solve_scene`.
     """
-    rows, events = _until(found.whole, determined, asked.times)
-    sampling = _Sampling(found.whole, determined, asked.times[rows], asked.outputs)
-    method, times = asked.method, sampling.times
+    method = asked.method
     work = None
     # What leaves the range of doubles is refused.
     with np.errstate(over="ignore", invalid="ignore"):
+        rows, events = _until(found.whole, determined, asked.times)
+        sampling = _Sampling(found.whole, determined, asked.times[rows], asked.outputs)
+        times = sampling.times
         if method is None:
             columns = sampling.answered(asked.accuracy)
         elif isinstance(method, ClosedFormEvaluation):

@@ -7,13 +7,13 @@ shows in the documentation what core's dataclasses say of it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, fields
 from decimal import Decimal
 from fractions import Fraction
 from types import NoneType
-from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from pydantic import Field, create_model
+from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
 from core.multibody import language
@@ -24,42 +24,41 @@ from core.systems.methods import Method
 from service.schemas import ROUND, Request, Rounding, Times
 
 
-def _schema(hint: Any) -> dict[str, Any]:
-    """Return a type of the language as a JSON schema."""
+class AngleInDegrees(Request):
+    """An angle in degrees."""
+
+    degrees: float | str = Field(description="A decimal, or a formula in quotes.")
+
+
+class PolarVector(Request):
+    """A vector of the plane by its length and its direction."""
+
+    polar: list[float | str | AngleInDegrees] = Field(
+        min_length=2, max_length=2, description="Length, and angle from the first axis (rad)."
+    )
+
+
+def _form(hint: Any) -> Any:
+    """Return a type of the language as the form of a question shows it: without the numbers that only Python has."""
     origin, parts = get_origin(hint), get_args(hint)
-    if origin is Literal:
-        return {"type": "string", "enum": list(parts)}
-    if origin is Mapping:
-        return {"type": "object"} | ({} if parts[1] is Any else {"additionalProperties": _schema(parts[1])})
     if origin is Sequence:
-        return {"type": "array", "items": _schema(parts[0])}
-    if parts:
-        members: list[dict[str, Any]] = []
-        for part in parts:
-            if part not in (NoneType, Decimal, Fraction, int) and _schema(part) not in members:
-                members.append(_schema(part))
-        return members[0] if len(members) == 1 else {"anyOf": members}
-    return {"type": {str: "string", bool: "boolean", float: "number"}[hint]}
+        return list.__class_getitem__(_form(parts[0]))
+    if origin is Mapping:
+        return dict.__class_getitem__((str, Any if parts[1] is Any else _form(parts[1])))
+    if not parts or origin is Literal:
+        return hint
+    shown = [part for part in parts if part not in (NoneType, Decimal, Fraction, int, Mapping[str, Any])]
+    if not shown:
+        return dict[str, Any]
+    if Mapping[str, Any] in parts:
+        # What may be a number or a vector is turned about an axis: polar vectors are places.
+        shown.append(AngleInDegrees if float in parts else PolarVector)
+    return Union.__getitem__(tuple(_form(part) for part in shown))
 
 
-@dataclass(frozen=True)
-class ReadByCore:
-    """Mark of a value that core checks; the document shows it as a type of the language, or as a form."""
-
-    shown: Any
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> dict[str, Any]:
-        return {"type": "any"}
-
-    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        if isinstance(self.shown, type) and issubclass(self.shown, Request):
-            form: dict[str, Any] = handler(self.shown.__pydantic_core_schema__)
-            return form
-        return _schema(self.shown)
-
-
-def _by_core(shown: Any) -> Any:
-    return Annotated.__class_getitem__((Any, ReadByCore(shown)))  # type: ignore[attr-defined]
+def _by_core(hint: Any) -> Any:
+    """Return the type of a value that core checks; the document shows it."""
+    return Annotated.__class_getitem__((_form(hint), SkipValidation()))  # type: ignore[attr-defined, type-arg]
 
 
 def _body_form() -> type[Request]:

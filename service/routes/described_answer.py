@@ -78,7 +78,7 @@ class StartEnergy(View):
 class SceneColumn(View):
     """One quantity at every time."""
 
-    values: Annotated[list[float] | list[list[float]], OwnUnit] = Field(description="One row per time.")
+    values: Annotated[list[float | list[float]], OwnUnit] = Field(description="One row per time.")
     unit: str
     error: Annotated[float, OwnUnit] = Field(description="Largest error of any row, as the length of a vector.")
     how: How

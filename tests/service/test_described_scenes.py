@@ -130,7 +130,7 @@ HOSTILE: dict[str, tuple[Any, str]] = {
         PENDULUM | {"connections": [{"kind": "string", "through": [[0, 0], "p"], "slips": [["p"]]}]},
         "/connections/0/slips/0",
     ),
-    "a velocity against the rod": (of_point(velocity=[3, -4]), "/bodies/p/velocity/0"),
+    "a velocity against the rod": (of_point(velocity=[3, -4]), "/bodies/p/velocity/1"),
     "a body of the catalogue that is none": (
         {"gravity": [0, 0, -1], "bodies": {"p": {"at": [0, 0, 0], "body": {"kind": "ball", "mass": 1, "radius": -1}}}},
         "/bodies/p/body/radius",
@@ -173,7 +173,7 @@ async def test_refusals_name_the_limit() -> None:
         assert f"at most {limit}" in (await asked(HOSTILE[case][0])).json()["detail"]
     many = await asked(PENDULUM | {"connections": [ROD] * 10_000})
     assert (many.status_code, many.json()["code"]) == (400, "too-complex")
-    assert "max_keys" in many.json()["detail"]
+    assert "4000 keys" in many.json()["detail"]
 
 
 async def test_a_misspelt_field_of_a_body_is_recognised_whatever_the_body_is_called() -> None:
@@ -204,7 +204,7 @@ async def test_a_string_that_becomes_slack_ends_the_motion() -> None:
         "gravity": [0, -10],
         "bodies": {"p": {"mass": 1, "at": [1, 0], "velocity": [0, "sqrt(15)"]}},
         "connections": [{"kind": "string", "through": [[0, 0], "p"]}],
-        "times": [0, 0.1, 5, 0.2, 6],
+        "times": [0, 0.1, 5, 0.15, 6],
         "outputs": ["trajectory"],
     }
     answer = (await asked(scene)).json()
@@ -212,7 +212,7 @@ async def test_a_string_that_becomes_slack_ends_the_motion() -> None:
     (event,) = answer["events"]
     assert event["name"] == "string-1"
     assert answer["trajectory"]["rows"] == [0, 1, 3]
-    assert answer["trajectory"]["time"] == [0.0, 0.1, 0.2]
+    assert answer["trajectory"]["time"] == [0.0, 0.1, 0.15]
     end = (await asked(scene | {"times": [event["time"] * (1 - 1e-12)]})).json()
     (place,) = end["trajectory"]["columns"]["p.position"]["values"]
     assert place == pytest.approx([-np.sqrt(3) / 2, 0.5] if place[0] < 0 else [np.sqrt(3) / 2, 0.5], abs=1e-9)

@@ -161,5 +161,4 @@ def test_slow_headers_are_let_go(proxy: int, server: Server) -> None:
             except OSError:
                 closed = True
     assert closed
-    assert time.monotonic() - since < 5
     assert post(proxy, hostile.text())[0] == 200

@@ -33,7 +33,7 @@ HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
 DRAWN = questions_of({name_of(scene): scene.outputs for scene in members()})
 EACH = int(os.environ.get("RANDOM_QUESTIONS", "40"))
 """How many random questions are asked at each endpoint."""
-UNITS = 20_000
+UNITS = 200_000
 """Work (`core.work`) that no plan of such a question exceeds."""
 INTEGRATORS = [method for method in get_args(get_args(Method)[0]) if method.kind != "closed-form"]
 FREE: dict[str, Any] = {
