@@ -218,6 +218,11 @@ def flat(arrays: Packed, rate: float) -> Floats:
     return np.concatenate([np.array(header), *dense, *triples]).astype(np.float64)
 
 
+def weight_of(size: int) -> int:
+    """Return as how many evaluations one counts that factors a matrix of so many rows."""
+    return 4 + size**3 // 200
+
+
 @dataclass(frozen=True, eq=False)
 class SceneSystem:
     """A whole described scene, as methods see it.
@@ -256,7 +261,7 @@ class SceneSystem:
     @property
     def structure(self) -> Structure:
         """The projection onto the measures and rates, and what an evaluation costs: it factors a matrix."""
-        return Structure(projection=_onto_constraints, weight=4 + self.size**3 // 200)
+        return Structure(projection=_onto_constraints, weight=weight_of(self.size))
 
     @property
     def model(self) -> Model:

@@ -142,8 +142,8 @@ class DescribedSceneAnswer(Envelope):
     accelerations: dict[str, BodyAccelerations] | None = Field(default=None, description="By body.")
     forces: dict[str, ConnectionForce] | None = Field(default=None, description="By connection.")
     energy: StartEnergy | None = None
-    method: str | None = Field(description="Kind of the method that was named; null: the model above.")
-    work: Work | None = Field(description="What that method cost; null without one.")
+    method: str | None = Field(default=None, description="Kind of the method that was named, if one was.")
+    work: Work | None = Field(default=None, description="What that method cost.")
     period: Seconds[float] | None = Field(description="Of the motion, where a single part moves and repeats.")
     ended: str | None = Field(
         description="horizon, or the kind of the event that ended the motion; null without times."

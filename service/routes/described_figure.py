@@ -40,7 +40,7 @@ def drawn(answer: Answer) -> bytes:
         if not (paths and name.endswith(".position")):
             by_unit.setdefault(column["unit"], []).extend(_over_time(name, time, column["values"][order]))
     found.extend(Panel("time (s)", unit, lines) for unit, lines in by_unit.items())
-    return panels(f"Motion by {answer['method'] or answer['model']['name']}", found).encode()
+    return panels(f"Motion by {answer.get('method') or answer['model']['name']}", found).encode()
 
 
 def _over_time(name: str, time: Any, values: Any) -> Iterator[Line]:

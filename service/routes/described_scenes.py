@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
+from core.errors import BudgetExceeded
 from core.multibody.answer import SceneModel
+from core.multibody.generic_equation import weight_of
+from core.multibody.inherited import MOST_INPUTS
 from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
 from core.notices import Notice
 from core.systems.budget import Budget
-from service.execution.cost_model import CalibratedCost, extent
+from core.systems.methods.from_scipy import FromSciPy
+from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
 from service.routes.described_answer import DescribedSceneAnswer
 from service.routes.described_figure import drawn
 from service.routes.examples import examples
-from service.routes.planning_probes import few_of
+from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routing import Answer, PlanningProbe, PostRoute
-from service.schemas import fields_of, sample_count, sample_times
+from service.schemas import Request, fields_of, sample_count, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
 
@@ -38,6 +43,9 @@ plane, and its columns over time, are answered as a figure to `Accept: image/svg
 
 NEAR = 0.01
 """How far (s) a motion is followed when it is planned."""
+
+QUICK = 10.0
+"""How fast (rad/s) a scene is taken to move, where a method chooses its steps."""
 
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
@@ -65,7 +73,8 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     ):
         if getattr(found, name) is not None:
             answer[name] = _in_range(start, name, answer["warnings"])
-    answer["method"], answer["work"] = (None, None) if motion is None else (motion.method, motion.work)
+    if motion is not None and motion.method is not None:
+        answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
     answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
     answer["events"] = found.events
@@ -102,8 +111,6 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
     found = {"question": 1.0, "bodies": bodies, "connections": connections, "pairs of connections": connections**2}
-    if "equilibria" in (question.outputs or ()):
-        found |= {"searches": bodies, "searches of pairs": bodies**2}
     if question.times is not None:
         samples = sample_count(question.times, budget)
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
@@ -114,7 +121,40 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
             "samples of connections": samples * connections,
             "seconds of coupled bodies": max(0.0, followed),
         }
+        if question.input_uncertainty is not None:
+            # Everything is done again for every number.
+            again = 1.0 + min(MOST_INPUTS, numbers_in(question))
+            found = {name: count * again for name, count in found.items()}
+        found |= _of_method(question, bodies, connections)
+    if "equilibria" in (question.outputs or ()):
+        found |= {"searches": bodies, "searches of pairs": bodies**2}
     return found
+
+
+def _of_method(question: DescribedSceneRequest, bodies: float, connections: float) -> dict[str, float]:
+    """Return what is counted of the method that is named."""
+    method = question.method
+    if method is None or in_closed_form(method):
+        return {}
+    count = evaluations(method, question.times, QUICK)
+    largest = min(1e4, 3.0 * bodies + connections)
+    found = {f"evaluations of {method.kind}": count, "evaluations by their weight": count * weight_of(round(largest))}
+    return found | {"evaluations by SciPy": count} if isinstance(method, FromSciPy) else found
+
+
+def numbers_in(question: DescribedSceneRequest) -> int:
+    """Return how many numbers a description has, those of formulas apart."""
+
+    def among(value: Any) -> int:
+        if isinstance(value, Request):
+            return sum(among(getattr(value, name)) for name in value.model_fields_set)
+        if isinstance(value, Mapping):
+            return sum(map(among, value.values()))
+        if isinstance(value, (list, tuple)):
+            return sum(map(among, value))
+        return isinstance(value, (int, float, Decimal)) and not isinstance(value, bool) and value != 0
+
+    return among([question.gravity, question.bodies, question.connections, question.let])
 
 
 def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
@@ -123,10 +163,24 @@ def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
         return PlanningProbe(solved(question, budget))
     instants = sample_times(question.times, budget)
     few = instants[few_of(instants.size)]
-    near = few * min(1.0, NEAR / max(NEAR, float(np.abs(few).max())))
-    fields = solved(question.model_copy(update={"times": near.tolist()}), budget)
+    reach = min(NEAR, FEW_STEPS * getattr(question.method, "step", NEAR))
+    near = few * min(1.0, reach / max(reach, float(np.abs(few).max())))
+    changes = {"times": near.tolist(), "input_uncertainty": None}
+    fields = solved(question.model_copy(update=changes), budget)
+    if hasattr(question.method, "step"):
+        _require_affordable(question, fields["model"], budget)
+    fields["warnings"] = [notice for notice in fields["warnings"] if notice.code not in OF_FEW_STEPS]
     del fields["accuracy"]
     return PlanningProbe(fields, {"trajectory": instants.size / few.size})
+
+
+def _require_affordable(question: DescribedSceneRequest, model: Mapping[str, Any], budget: Budget) -> None:
+    """Raise `BudgetExceeded` for a step with which more evaluations are needed than are allowed."""
+    count = evaluations(question.method, question.times, QUICK)
+    allowed = budget.evaluations // weight_of(model["coordinates"] + model["rows"])
+    if count > allowed:
+        remedy = "use a larger step, or ask for earlier times"
+        raise BudgetExceeded("evaluations", int(count), allowed, path=("method", "step"), remedy=remedy)
 
 
 DESCRIBED_SCENES = (

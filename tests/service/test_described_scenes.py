@@ -252,13 +252,12 @@ class TestMethods:
 
     async def test_without_a_method_nothing_is_said_of_one(self) -> None:
         answer = (await asked(PENDULUM | {"times": [1]})).json()
-        assert answer["method"] is None
-        assert answer["work"] is None
+        assert not {"method", "work"} & set(answer)
         assert answer["accuracy"]["inherited"] is None
 
     async def test_no_motion_no_method(self) -> None:
         answer = (await asked(PENDULUM | {"method": {"kind": "radau", "tolerance": 1e-6}})).json()
-        assert answer["method"] is None
+        assert not {"method", "work", "trajectory"} & set(answer)
 
 
 class TestSamples:
@@ -332,6 +331,13 @@ class TestPrice:
         apart = {"bodies": {"p": POINT, "q": POINT}, "connections": [ROD]}
         assert self.price(apart | {"times": [1e9]}) == self.price(apart | {"times": [1e300]})
 
+    def test_methods_and_uncertain_numbers_cost_more(self) -> None:
+        moved = PENDULUM | {"times": [1.0]}
+        by = [moved | {"method": {"kind": "explicit-euler", "step": step}} for step in (1e-2, 1e-4)]
+        assert self.price(moved) < self.price(by[0]) < self.price(by[1])
+        # Gravity, the mass and two coordinates: four motions beside the one.
+        assert self.price(moved | {"input_uncertainty": 1e-9}) == pytest.approx(5 * self.price(moved), rel=0.01)
+
     def test_it_always_runs_in_a_compute_process(self) -> None:
         assert ROUTE.small is PostRoute.small
 
@@ -343,6 +349,23 @@ class TestPlan:
         assert plan["model"]["name"] == "one period"
         assert plan["accuracy"] is None
         assert plan["cost"]["milliseconds"] > 0.0
+        assert plan["cost"]["evaluations"] is None
+
+    async def test_the_evaluations_of_a_step_are_foreseen_and_others_are_not(self) -> None:
+        """Four a step by the classical Runge-Kutta method; the pendulum's three unknowns make each count as four."""
+        question = PENDULUM | {"times": [2.0], "method": {"kind": "runge-kutta-4", "step": 0.01}}
+        plan = (await asked({"path": PATH, "request": question}, "/v1/plan")).json()
+        assert plan["cost"]["evaluations"] == (await asked(question)).json()["work"]["evaluations"] == 800
+        assert plan["method"] == {"kind": "runge-kutta-4", "step": 0.01}
+        assert plan["warnings"] == []
+        question["method"]["step"] = 1e-6
+        for path, request in ((PATH, question), ("/v1/plan", {"path": PATH, "request": question})):
+            problem = (await asked(request, path)).json()
+            assert problem["errors"][0]["pointer"].endswith("/method/step")
+            assert "8000000 evaluations are needed and 5000000 are allowed" in json.dumps(problem)
+        chosen = question | {"method": {"kind": "dormand-prince-853", "tolerance": 1e-6}}
+        plan = (await asked({"path": PATH, "request": chosen}, "/v1/plan")).json()
+        assert plan["answerable"]
         assert plan["cost"]["evaluations"] is None
 
     async def test_refusals_are_told_where_they_stand(self) -> None:
