@@ -28,8 +28,12 @@ from functools import cached_property
 import numpy as np
 from numba import types
 
+from core.balls import precision
 from core.compiled import kernel
+from core.errors import NotApplicable
+from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats, Integers, Packed, Units, packed, state, two_to, units_of
+from core.multibody.polynomials import BITS
 from core.multibody.rank import independent
 from core.multibody.whole import Whole
 from core.systems.system import PROJECTION, VECTOR_FIELD, ClosedForm, Model, Range, Structure
@@ -288,3 +292,49 @@ class SceneSystem:
         up = np.array([two_to(e) for e in units.lengths])
         n = len(up)
         return states[:, :n] * up, states[:, n:] * (up * two_to(-units.time))
+
+    def reference(self, times: Floats) -> tuple[str, Floats, float]:
+        """Return how the motion itself is known, its states at times of shape (t,), and their largest error as a norm.
+
+        Raises
+        ------
+        NotApplicable
+            If the motion ends before the last time.
+        """
+        units = self._packed[1]
+        shape = (len(times), len(units.lengths))
+        places, rates, wrong, wrong_rates = (np.zeros(shape) for _ in range(4))
+        closed = True
+        with precision(BITS):
+            for indices, motion in self.whole.parts:
+                where = list(indices)
+                if isinstance(motion, Numerical) and any(motion.reach(float(f(times))) for f in (np.min, np.max)):
+                    raise NotApplicable(
+                        "the motion ends at a singular place before the last of the times",
+                        path=("times",),
+                        remedy="ask for earlier times",
+                    )
+                found = motion.states(times, finer=True)
+                places[:, where], rates[:, where] = found.q[..., 0], found.v[..., 0]
+                wrong[:, where], wrong_rates[:, where] = found.q_error, found.v_error
+                closed = closed and motion.how == "closed form"
+        down = np.array([two_to(-e) for e in units.lengths])
+        scale = np.concatenate([down, down * two_to(units.time)])
+        states = np.concatenate([places, rates], axis=1) * scale
+        errors = np.linalg.norm(np.concatenate([wrong, wrong_rates], axis=1) * scale, axis=1)
+        rounding = 2.0**-52 * float(np.max(np.linalg.norm(states, axis=1)))
+        return "closed form" if closed else "pairs of doubles", states, float(np.max(errors)) + rounding
+
+
+def scene_system(whole: Whole) -> SceneSystem:
+    """Return a scene as a system, its numbers packed, for use outside of the precision of balls.
+
+    Raises
+    ------
+    NotApplicable
+        If nothing moves.
+    """
+    system = SceneSystem(whole)
+    if not len(system.initial_state) or not len(system.parameters):
+        raise NotApplicable("nothing moves, and no method has anything to do", remedy="give something a velocity")
+    return system

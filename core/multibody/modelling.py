@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from core.balls import precision
 from core.errors import InvalidParameter
 from core.multibody.assembly import assemble_places, assemble_rates
 from core.multibody.description import Described, described
 from core.multibody.dynamics import accelerations, parts, restricted, singular_row
+from core.multibody.generic_equation import SceneSystem, scene_system
 from core.multibody.language import Scene
 from core.multibody.modes import Modes
 from core.multibody.motion import Motion, Rest
@@ -15,7 +17,7 @@ from core.multibody.numerals import Numerals
 from core.multibody.numerical import Numerical
 from core.multibody.passes import reduced
 from core.multibody.periods import repeating
-from core.multibody.polynomials import ZERO, Ball, is_zero
+from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
 from core.multibody.table import Table
 from core.multibody.uniform import Uniform
 from core.multibody.vertical_symmetry import precessing
@@ -92,6 +94,20 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
     dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
     whole = Whole(found.measures, small, full, gains, motions, dropped)
     return Modelled(found, whole, pieces, moved, fitted)
+
+
+def system_of(scene: Scene) -> SceneSystem:
+    """Return a scene as a system that methods can run.
+
+    Raises
+    ------
+    InvalidParameter
+        As `modelled`.
+    NotApplicable
+        If nothing moves.
+    """
+    with precision(BITS):
+        return scene_system(modelled(scene).whole)
 
 
 def _piece(found: Described, table: Table, indices: list[int]) -> Piece:

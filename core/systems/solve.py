@@ -259,7 +259,7 @@ def _warnings(stated: Accuracy, method: AbstractMethod) -> tuple[Notice, ...]:
 
 @contextmanager
 def inside_field(step: str) -> Iterator[None]:
-    """Prefix the path of every fault with the field of the question that holds the method."""
+    """Prefix the path of every fault with the field of the question to which it belongs."""
     try:
         yield
     except InvalidParameter as fault:

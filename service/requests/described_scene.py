@@ -11,7 +11,7 @@ from dataclasses import MISSING, fields
 from decimal import Decimal
 from fractions import Fraction
 from types import NoneType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin, get_type_hints
 
 from pydantic import Field, SkipValidation, create_model
 
@@ -100,8 +100,8 @@ ConnectionReadByCore: Any = _by_core(SceneConnection)
 SCENE_FIELDS = tuple(entry.name for entry in fields(language.Scene))
 
 
-class DescribedSceneRequest(Request):
-    """Bodies, what connects them, and what is asked about them."""
+class SceneDescription(Request):
+    """Bodies, and what connects them."""
 
     gravity: Gravity = Field(
         default=None, description="Acceleration of free fall (m/s^2), of two or three components; none if left out."
@@ -116,6 +116,32 @@ class DescribedSceneRequest(Request):
     numbers: Literal["decimals", "doubles"] = Field(
         default="decimals", description="Whether 0.1 is the decimal or the double nearest to it."
     )
+
+    def with_digits(self, document: Any) -> Self:
+        """Return the question with the numbers of its scene as they are written."""
+        if self.numbers == "doubles":
+            return self
+        bodies = {
+            name: form.model_copy(
+                update={key: value for key, value in document["bodies"][name].items() if key != "body"}
+            )
+            for name, form in self.bodies.items()
+        }
+        read = {name: document[name] for name in ("gravity", "connections", "let") if name in document}
+        return self.model_copy(update={**read, "bodies": bodies})
+
+    def scene(self) -> language.Scene:
+        """Return the scene, or raise `InvalidParameter`."""
+        description = {name: getattr(self, name) for name in SCENE_FIELDS if name in self.model_fields_set}
+        description["bodies"] = {
+            name: {field: getattr(form, field) for field in form.model_fields_set} for name, form in self.bodies.items()
+        }
+        return scene_from(description)
+
+
+class DescribedSceneRequest(SceneDescription):
+    """Bodies, what connects them, and what is asked about them."""
+
     times: Times | None = Field(
         default=None, description="Measured from the given state, of either sign, in any order; none: no motion."
     )
@@ -139,24 +165,3 @@ class DescribedSceneRequest(Request):
     outputs: list[Output] | None = Field(
         default=None, min_length=1, description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}."
     )
-
-    def with_digits(self, document: Any) -> DescribedSceneRequest:
-        """Return the question with the numbers of its scene as they are written."""
-        if self.numbers == "doubles":
-            return self
-        bodies = {
-            name: form.model_copy(
-                update={key: value for key, value in document["bodies"][name].items() if key != "body"}
-            )
-            for name, form in self.bodies.items()
-        }
-        read = {name: document[name] for name in ("gravity", "connections", "let") if name in document}
-        return self.model_copy(update={**read, "bodies": bodies})
-
-    def scene(self) -> language.Scene:
-        """Return the scene, or raise `InvalidParameter`."""
-        description = {name: getattr(self, name) for name in SCENE_FIELDS if name in self.model_fields_set}
-        description["bodies"] = {
-            name: {field: getattr(form, field) for field in form.model_fields_set} for name, form in self.bodies.items()
-        }
-        return scene_from(description)
