@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from core.multibody.answer import SceneAccuracy
+from core.multibody.columns import apart
 from core.multibody.solve import solve_scene
+from tests.core.multibody.random_scenes import any_scene
 from tests.core.multibody.worked_examples import LAGRANGE_TOP, MASSIVE_PULLEY, column, read
 
 STONE: dict[str, Any] = {
@@ -134,3 +136,29 @@ def test_forces_and_energies_have_none() -> None:
     assert answer.trajectory is not None
     assert answer.trajectory.accuracy.inherited is None
     assert "places and rates" in str(answer.trajectory.accuracy.why)
+
+
+def numbers_of(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    if isinstance(value, dict):
+        return [found for name, entry in value.items() for found in numbers_of(entry, (*path, name))]
+    if isinstance(value, list):
+        return [found for i, entry in enumerate(value) for found in numbers_of(entry, (*path, i))]
+    return [path] if isinstance(value, (int, float)) and not isinstance(value, bool) and value else []
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_no_number_of_a_random_scene_changes_more(seed: int) -> None:
+    """One number of each description, changed by 4e-10 of itself and run anew as another scene."""
+    scene, share = any_scene(seed), 4e-10
+    paths = numbers_of({name: scene[name] for name in scene if name != "numbers"})
+    path = paths[int(np.random.default_rng(seed).integers(len(paths)))]
+    changed = copy.deepcopy(scene)
+    place: Any = changed
+    for step in path[:-1]:
+        place = place[step]
+    place[path[-1]] *= 1 + share
+    answer, _ = stated(scene, [0.4, 0.8], share, 1e-6)
+    other = solve_scene(read(changed), [0.4, 0.8], ("trajectory",), 1e-10)
+    for name, one in answer.trajectory.columns.items():
+        two = column(other, name)
+        assert apart(one, two) <= 1.001 * one.inherited + one.error + two.error + 1e-14
