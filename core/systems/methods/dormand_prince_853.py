@@ -33,7 +33,7 @@ from core.quantities import Quantity, check
 from core.systems.methods.dormand_prince_tableau import ERROR_3 as E3
 from core.systems.methods.dormand_prince_tableau import ERROR_5 as E5
 from core.systems.methods.dormand_prince_tableau import INTERPOLANT, STAGES, A, B, C
-from core.systems.methods.method import Family, Leg, Marching, Units
+from core.systems.methods.method import PROJECTED, Family, Leg, Marching, Units
 from core.systems.system import PROJECTION, VECTOR_FIELD, Floats, Integers, System, unconstrained
 
 SMALLEST_TOLERANCE = 1e-16
@@ -261,6 +261,7 @@ class DormandPrince853(Marching):
         "By the method's own interpolant of order seven, at three further evaluations in every step with a sample. "
         "The steps do not depend on the samples; only the last one ends at the farthest."
     )
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "The default where there is no closed form: smooth motions to errors from 1e-4 down to 1e-13, with as many "
         "samples as wanted at little extra cost."

@@ -10,7 +10,7 @@ import numpy as np
 from core.compiled import kernel
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import ONE_STEP, OVERFLOW, FixedStep, keep, march_by, replace
-from core.systems.methods.method import Family
+from core.systems.methods.method import PROJECTED, Family
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
 
@@ -61,6 +61,7 @@ class ExplicitEuler(FixedStep):
     order: ClassVar[int] = 1
     family: ClassVar[Family] = "explicit"
     between_steps: ClassVar[str] = ONE_STEP + " For this method that is the straight line to the next grid point."
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "To see what a first-order method does, which most physics engines use: on a free body its energy grows at "
         "every step, and ten times less error costs ten times more steps."

@@ -58,6 +58,7 @@ class FromSciPy(Marching):
 
     tolerance: SciPyTolerance
     setting: ClassVar[str] = "tolerance"
+    on_constraints: ClassVar[str] = "Samples alone are projected: between them the state drifts off the constraints."
 
     def finer(self) -> Self | None:
         """Return the same method with a sixteenth of the tolerance, None where a quarter cannot be had."""

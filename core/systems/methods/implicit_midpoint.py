@@ -19,7 +19,7 @@ from core.compiled import kernel
 from core.double_double import two_sum
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep, march_by, replace
-from core.systems.methods.method import Family, Invariance
+from core.systems.methods.method import PROJECTED, Family, Invariance
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
 ITERATIONS = 100
@@ -104,6 +104,7 @@ class ImplicitMidpoint(FixedStep):
     order: ClassVar[int] = 2
     family: ClassVar[Family] = "implicit"
     preserves: ClassVar[tuple[Invariance, ...]] = ("quadratic invariants", "time symmetry")
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "For long runs in which energy and angular momentum must not drift at all; the phase still does, in proportion "
         "to the square of the step."

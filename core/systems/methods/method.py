@@ -23,6 +23,12 @@ Invariance = Literal["every first integral", "quadratic invariants", "invariants
 EXTREME = 300
 """Exponents of two beyond which states are brought near one: cubes of what lies within stay doubles."""
 
+PROJECTED = (
+    "The state is projected onto the constraints after every step, and so are samples. The order remains; of what the "
+    "method preserves otherwise, nothing is promised."
+)
+"""What methods do that march by the equation of motion alone."""
+
 LONGEST, SHORTEST = float(np.finfo(np.float64).max), float(np.finfo(np.float64).smallest_subnormal)
 
 COUNTABLE = 10**18
@@ -61,6 +67,8 @@ class AbstractMethod(ABC):
         What the method keeps to round-off, whatever its step.
     between_steps : str
         How samples come about whose times lie between the ends of steps.
+    on_constraints : str
+        How constraints are kept, such as those of a described scene.
     when_to_use : str
         One sentence.
     """
@@ -70,6 +78,7 @@ class AbstractMethod(ABC):
     family: ClassVar[Family]
     preserves: ClassVar[tuple[Invariance, ...]] = ()
     between_steps: ClassVar[str]
+    on_constraints: ClassVar[str] = "Not for systems with constraints."
     when_to_use: ClassVar[str]
 
     @abstractmethod

@@ -16,7 +16,7 @@ import numpy as np
 from core.compiled import kernel
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
-from core.systems.methods.method import Family
+from core.systems.methods.method import PROJECTED, Family
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
 
@@ -77,6 +77,7 @@ class RungeKutta4(FixedStep):
 
     order: ClassVar[int] = 4
     family: ClassVar[Family] = "explicit"
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "For moderate accuracy (1e-3 to 1e-8) over a few periods at a fixed cost per step, and as the yardstick that "
         "most readers know."
