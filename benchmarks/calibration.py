@@ -122,6 +122,9 @@ def described_scenes() -> list[dict[str, Any]]:
         for count in (1, 4, 16)
         for method in ({"kind": "runge-kutta-4", "step": 1e-3}, {"kind": "lsoda", "tolerance": 1e-6})
     ]
+    for count in (64, 100):
+        found += [chain(count), chain(count) | {"times": span(30, 1.0), "accuracy": 0.9}]
+    found += [chain(count) | {"times": span(30, 10.0), "accuracy": 0.9} for count in (8, 16)]
     found += [chain(count) | {"outputs": ["equilibria"]} for count in (1, 2, 3)]
     return found
 

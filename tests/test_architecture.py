@@ -170,7 +170,7 @@ TESTED_IN |= {
         "description": "coordinates inertia laws measures rolling strings",
         "language": "reading",
         "numerical": "packed periods returns series series_pairs vertical_symmetry",
-        "solve": "answer columns dynamics events modelling motion uniform whole",
+        "solve": "answer dynamics events modelling motion uniform whole",
     }.items()
     for name in names.split()
 }

@@ -228,11 +228,18 @@ def worst(columns: Mapping[str, Column]) -> float:
 def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> float:
     """Return the largest of figures by column, relative to the largest value among the columns of its unit.
 
-    What is zero by symmetry has no scale of its own.
+    What is zero by symmetry has no scale of its own. Angles that are zero within their error are measured against one
+    radian, and their rates against the largest speed over the largest distance.
     """
     largest: dict[str, float] = {}
+    unknown: dict[str, float] = {}
     for column in columns.values():
         largest[column.unit] = max(largest.get(column.unit, 0.0), largest_of(column))
+        unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
+    away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
+    for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
+        if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
+            largest[unit] = max(largest.get(unit, 0.0), scale)
     scales = {name: largest[columns[name].unit] for name in figures}
     return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
 

@@ -85,8 +85,8 @@ def _connection_form() -> type[Request]:
         name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
         for name, hint in hints.items()
     }
-    told = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
-    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=told))
+    meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
+    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=meaning))
     docs = language.Connection.__doc__
     form: type[Request] = create_model("SceneConnection", __base__=Request, __doc__=docs, **own)
     return form

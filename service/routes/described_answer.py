@@ -136,7 +136,7 @@ class DescribedAccuracy(View):
 
 
 class DescribedSceneAnswer(Envelope):
-    """What was asked for of a scene."""
+    """The requested answer about a scene."""
 
     model: DescribedModel
     accelerations: dict[str, BodyAccelerations] | None = Field(default=None, description="By body.")

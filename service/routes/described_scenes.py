@@ -17,13 +17,14 @@ from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.from_scipy import FromSciPy
+from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
 from service.routes.described_answer import DescribedSceneAnswer
 from service.routes.described_figure import drawn
-from service.routes.examples import examples
 from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
+from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import Request, fields_of, sample_count, sample_times
 
@@ -38,14 +39,18 @@ Forces that the scene does not determine are null.
 
 Not covered yet: contact, friction, impacts, strings that become taut again, connections with `from` and `until`. They
 are refused, and a string that becomes slack ends the motion. It is not proven that all equilibria are found. A plan
-reads numbers as doubles, and does not foresee for how long a motion can be followed. The paths of a motion in the
-plane, and its columns over time, are answered as a figure to `Accept: image/svg+xml`."""
+reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
+about three bodies. The paths of a motion in the plane, and its columns over time, are answered as a figure to
+`Accept: image/svg+xml`."""
 
 NEAR = 0.01
 """How far (s) a motion is followed when it is planned."""
 
 QUICK = 10.0
 """How fast (rad/s) a scene is taken to move, where a method chooses its steps."""
+
+SEARCHED = 10_000.0
+"""Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
@@ -54,10 +59,11 @@ LONGEST = 4000.0
 def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     """Answer a question about a described scene."""
     times = () if question.times is None else sample_times(question.times, budget)
+    outputs = DEFAULT_OUTPUTS if question.outputs is None else question.outputs
     found = solve_scene(
         question.scene(),
         times,
-        question.outputs or DEFAULT_OUTPUTS,
+        outputs,
         question.accuracy,
         method=question.method,
         input_uncertainty=question.input_uncertainty,
@@ -110,16 +116,23 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
-    found = {"question": 1.0, "bodies": bodies, "connections": connections, "pairs of connections": connections**2}
+    found = {
+        "question": 1.0,
+        "bodies": bodies,
+        "connections": connections,
+        "pairs of connections": connections**2,
+        "connections times pairs of bodies": connections * bodies**2,
+    }
     if question.times is not None:
         samples = sample_count(question.times, budget)
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
-        followed = min(bodies - 1.0, connections) * min(LONGEST, extent(question.times))
+        coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
         found |= {
             "motions": bodies + connections,
             "samples of bodies": samples * bodies,
             "samples of connections": samples * connections,
-            "seconds of coupled bodies": max(0.0, followed),
+            "seconds of coupled bodies": seconds * coupled,
+            "seconds of pairs of coupled bodies": seconds * coupled**2,
         }
         if question.input_uncertainty is not None:
             # Everything is done again for every number.
@@ -160,13 +173,13 @@ def numbers_in(question: DescribedSceneRequest) -> int:
 def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
     """Answer a question at few times near the start, where the rows are as long; its error is known from the whole."""
     if question.times is None:
-        return PlanningProbe(solved(question, budget))
+        return PlanningProbe(_without_long_searches(question, budget))
     instants = sample_times(question.times, budget)
     few = instants[few_of(instants.size)]
     reach = min(NEAR, FEW_STEPS * getattr(question.method, "step", NEAR))
     near = few * min(1.0, reach / max(reach, float(np.abs(few).max())))
     changes = {"times": near.tolist(), "input_uncertainty": None}
-    fields = solved(question.model_copy(update=changes), budget)
+    fields = _without_long_searches(question.model_copy(update=changes), budget)
     if hasattr(question.method, "step"):
         _require_affordable(question, fields["model"], budget)
     fields["warnings"] = [notice for notice in fields["warnings"] if notice.code not in OF_FEW_STEPS]
@@ -181,6 +194,16 @@ def _require_affordable(question: DescribedSceneRequest, model: Mapping[str, Any
     if count > allowed:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", int(count), allowed, path=("method", "step"), remedy=remedy)
+
+
+def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> Answer:
+    """Answer a question, without its equilibria if looking for them takes long."""
+    try:
+        with work_limit(SEARCHED):
+            return solved(question, budget)
+    except WorkLimitReached:
+        others = question.outputs and [name for name in question.outputs if name != "equilibria"]
+        return solved(question.model_copy(update={"outputs": others}), budget)
 
 
 DESCRIBED_SCENES = (
@@ -201,8 +224,8 @@ DESCRIBED_SCENES = (
 
 
 def described_examples() -> list[dict[str, Any]]:
-    """Return the examples of described scenes as entries of the catalogue of scenes."""
+    """Return the described scenes as entries of the catalogue of scenes."""
     return [
         {"name": name, "path": PATH, "summary": one.summary, "outputs": list(OUTPUTS), "example": dict(one.question)}
-        for name, one in examples()[OPERATION].items()
+        for name, one in scene_catalogue().items()
     ]

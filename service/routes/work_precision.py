@@ -172,7 +172,9 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
     if question.methods is None:
         found |= {"ladders": repeats, "ladder samples": repeats * samples}
-        radians = speed_of(rates) * extent(question.times) - LADDER_RADIANS
+        adaptive = (Lsoda(min(SCIPY_TOLERANCES)), DormandPrince853(min(TOLERANCES)))
+        speed = speed_to_follow(adaptive, body, speed_of(rates))
+        radians = speed * extent(question.times) - LADDER_RADIANS
         return found | _long_ladder(radians, budget.evaluations // (repeats * runs), repeats)
     speed = speed_to_follow(question.methods, body, speed_of(rates))
     for method in question.methods:

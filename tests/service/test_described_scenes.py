@@ -15,9 +15,11 @@ import pytest
 
 from core.multibody.language import MOST_BODIES, MOST_CONNECTIONS
 from core.systems.budget import Budget
+from core.work import work_limit
 from service.requests.described_scene import DescribedSceneRequest
 from service.requests.request_reader import Limits, Reader
 from service.routes import questions
+from service.routes.described_scenes import SEARCHED
 from service.routing import PostRoute
 from tests.service.conftest import Server, client_of, inline_service
 
@@ -303,7 +305,7 @@ class TestCatalogue:
         async with client_of(SERVICE) as client:
             listed = (await client.get(PATH)).json()["scenes"]
         described = {entry["name"]: entry["example"] for entry in listed if entry["path"] == PATH}
-        assert {"massive-pulley", "yo-yo", "double-pendulum", "bead-on-hoop", "lagrange-top"} == set(described)
+        assert {file.stem for file in EXAMPLES.glob("*.json")} == set(described)
         assert {entry["path"] for entry in listed} - {PATH} == {
             route.path for route in questions() if route.path.startswith("/v1/scenes/")
         }
@@ -343,6 +345,27 @@ class TestPrice:
 
 
 class TestPlan:
+    async def test_long_searches_for_equilibria_are_not_made(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i + 1, 0]} for i in range(8)}
+        ends = [[0, 0], *bodies]
+        chain = PENDULUM | {
+            "bodies": bodies,
+            "connections": [ROD | {"a": name, "b": end} for name, end in zip(bodies, ends, strict=False)],
+        }
+        route = next(route for route in questions() if route.path == "/v1/plan")
+        question = {"path": PATH, "request": chain | {"outputs": ["equilibria"]}}
+        with work_limit(2 * SEARCHED) as meter:
+            plan = route.handle(Reader(route.question, Limits()).read(json.dumps(question).encode()), Budget())
+        assert plan["answerable"]
+        assert plan["model"]["degrees_of_freedom"] == 8
+        assert meter.spent < SEARCHED
+
+    async def test_searches_that_are_too_long_are_foreseen_to_be_refused(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i, 0]} for i in range(100)}
+        request = {"bodies": bodies, "outputs": ["equilibria"]}
+        (fault,) = (await asked({"path": PATH, "request": request}, "/v1/plan")).json()["errors"]
+        assert (fault["code"], fault["pointer"]) == ("budget-exceeded", "/request/outputs")
+
     async def test_the_model_is_foreseen_without_its_motion(self) -> None:
         plan = (await asked({"path": PATH, "request": PENDULUM | {"times": [1e300]}}, "/v1/plan")).json()
         assert plan["answerable"]
