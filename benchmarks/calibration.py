@@ -117,6 +117,11 @@ def described_scenes() -> list[dict[str, Any]]:
     found += [
         chain(count) | {"times": span(30, stop), "accuracy": 0.9} for count in (2, 3, 4) for stop in (10.0, 100.0)
     ]
+    found += [
+        chain(count) | {"times": span(2, 1.0), "method": method, "accuracy": 0.9}
+        for count in (1, 4, 16)
+        for method in ({"kind": "runge-kutta-4", "step": 1e-3}, {"kind": "lsoda", "tolerance": 1e-6})
+    ]
     for count in (64, 100):
         found += [chain(count), chain(count) | {"times": span(30, 1.0), "accuracy": 0.9}]
     found += [chain(count) | {"times": span(30, 10.0), "accuracy": 0.9} for count in (8, 16)]

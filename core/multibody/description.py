@@ -29,15 +29,15 @@ class Described:
     paths: Mapping[str, Path]
 
 
-def described(scene: Scene) -> Described:
-    """Return the table of a scene; the precision of balls is the caller's.
+def described(scene: Scene, numerals: Numerals | None = None) -> Described:
+    """Return the table of a scene, its numbers read by `numerals` if given; the precision of balls is the caller's.
 
     Raises
     ------
     InvalidParameter
         With the path to what cannot be.
     """
-    numerals = Numerals.of(scene.let, scene.numbers)
+    numerals = numerals or Numerals.of(scene.let, scene.numbers)
     names = scene.names()
     coordinates = Coordinates(scene, numerals, _seen(scene, numerals))
     measures = Measures(coordinates)

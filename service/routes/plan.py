@@ -21,6 +21,7 @@ from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
 from service.routes.described_answer import ScenePart
+from service.routes.planning_probes import OF_FEW_STEPS
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
@@ -171,10 +172,6 @@ def _length(fields: Answer, growth: Mapping[str, float]) -> float:
     return 1.0 + sum(len(name) + 4 + len(written(value)) * growth.get(name, 1.0) for name, value in entries)
 
 
-OF_FEW_STEPS = ("accuracy-not-reached", "rounded-beyond-accuracy")
-"""Warnings about the few steps that are run of a method."""
-
-
 def _stated(fields: Answer) -> dict[str, Any] | None:
     """Return the statement of error of an answer; of an ensemble, the worst member's."""
     stated = [fields["accuracy"]] if "accuracy" in fields else [one["accuracy"] for one in fields.get("members", ())]
@@ -190,11 +187,12 @@ def _evaluations(route: PostRoute, request: Any, budget: Budget) -> int | None:
     if not isinstance(route.price, CalibratedCost):
         return 0
     counted = route.price.counts(request, budget)
-    # How many steps ladders and described scenes take is only known by running them.
-    if "ladders" in counted or "connections" in counted:
+    # How many steps ladders take, and described scenes that choose them, is only known by running them.
+    fixed = hasattr(getattr(request, "method", None), "step")
+    if "ladders" in counted or ("connections" in counted and not fixed):
         return None
     count = round(min(UNCOUNTABLE, sum(n for name, n in counted.items() if name.startswith("evaluations of "))))
-    if hasattr(getattr(request, "method", None), "step") and count > budget.evaluations:
+    if fixed and count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
     return count
