@@ -189,7 +189,7 @@ def test_the_first_arc_that_leaves_a_margin_is_the_first_of_all(arc: Arc, shaft:
 @settings(deadline=None, derandomize=True, max_examples=25)
 @given(arcs(), st.sampled_from([0, 1]), st.integers(1, 9))
 def test_arcs_are_candidates_where_the_lowest_point_between_jerks_changes_sign(arc: Arc, shaft: int, n: int) -> None:
-    """Moving x moves every arc alike: the vertices x - v^2/2a of two arcs that follow each other are put around zero."""
+    """Moving x moves every arc alike: the vertices x - v^2/2a of two arcs in turn are put around zero."""
     one = arc
     for _ in range(n):
         one = one.next()
