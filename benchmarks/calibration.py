@@ -351,7 +351,7 @@ def compare(answering: RequestHandler) -> None:
             print(path, "refused:", type(refused).__name__)
             continue
         milliseconds = 1e3 * (seconds + writing)
-        entry = {"path": path, "milliseconds": round(milliseconds, 3), "bytes": length}
+        entry = {"path": path, "milliseconds": round(milliseconds, 3), "bytes": int(length)}
         entry["time_ratio"] = round(foreseen["milliseconds"] / milliseconds, 3)
         entry["bytes_ratio"] = round(foreseen["bytes"] / length, 3)
         result.append(entry)
