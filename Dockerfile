@@ -12,6 +12,7 @@ COPY requirements.lock .
 RUN environment/bin/pip install --require-hashes -r requirements.lock
 COPY core core
 COPY service service
+COPY examples examples
 # Kernels are compiled by answering every example once, and kept beside the compiler's setting below. The generic
 # processor is named so that the image runs on every machine of its architecture.
 ENV NUMBA_CACHE_DIR=/polhode/compiled NUMBA_CPU_NAME=generic

@@ -7,7 +7,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check environment openapi judge plans record peers clean
+.PHONY: serve test check environment openapi judge plans record peers peers-scenes newest clean
 
 serve: $(ENV)/runs
 	@$(BIN)/python -m service
@@ -42,6 +42,7 @@ openapi: environment
 
 judge: environment
 	$(BIN)/python -m tests.core.certified.judge 100000
+	$(BIN)/python -m tests.core.multibody.judge 10000
 
 plans: environment
 	RANDOM_QUESTIONS=300 $(BIN)/python -m pytest -q tests/service/test_plan.py -k random
@@ -55,6 +56,9 @@ PEERS := .venv-peers
 peers: $(PEERS)/made
 	$(PEERS)/bin/python -m benchmarks.peers
 
+peers-scenes: $(PEERS)/made
+	$(PEERS)/bin/python -m benchmarks.described_scenes
+
 $(PEERS)/made: requirements-dev.lock benchmarks/peers.txt
 	$(PYTHON) -m venv $(PEERS)
 	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-dev.lock
@@ -63,8 +67,18 @@ $(PEERS)/made: requirements-dev.lock benchmarks/peers.txt
 	done < benchmarks/peers.txt
 	touch $@
 
+# The tests with the newest release of the server, whose minor version is otherwise pinned; to be run on a schedule.
+NEWEST := .venv-newest
+
+newest:
+	$(PYTHON) -m venv $(NEWEST)
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --upgrade uvicorn
+	$(NEWEST)/bin/python -m pip list 2>/dev/null | grep -i uvicorn
+	$(NEWEST)/bin/python -m pytest -q -n 2 --dist worksteal
+
 clean:
-	rm -rf $(ENV) $(PEERS) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(ENV) $(PEERS) $(NEWEST) .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find core service -name __pycache__ -prune -exec rm -rf {} +
 
 # A longer fuzz than the tests', with a new seed each time; FUZZ is the number of questions for each endpoint.

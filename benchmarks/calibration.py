@@ -117,6 +117,14 @@ def described_scenes() -> list[dict[str, Any]]:
     found += [
         chain(count) | {"times": span(30, stop), "accuracy": 0.9} for count in (2, 3, 4) for stop in (10.0, 100.0)
     ]
+    found += [
+        chain(count) | {"times": span(2, 1.0), "method": method, "accuracy": 0.9}
+        for count in (1, 4, 16)
+        for method in ({"kind": "runge-kutta-4", "step": 1e-3}, {"kind": "lsoda", "tolerance": 1e-6})
+    ]
+    for count in (64, 100):
+        found += [chain(count), chain(count) | {"times": span(30, 1.0), "accuracy": 0.9}]
+    found += [chain(count) | {"times": span(30, 10.0), "accuracy": 0.9} for count in (8, 16)]
     found += [chain(count) | {"outputs": ["equilibria"]} for count in (1, 2, 3)]
     return found
 
@@ -343,7 +351,7 @@ def compare(answering: RequestHandler) -> None:
             print(path, "refused:", type(refused).__name__)
             continue
         milliseconds = 1e3 * (seconds + writing)
-        entry = {"path": path, "milliseconds": round(milliseconds, 3), "bytes": length}
+        entry = {"path": path, "milliseconds": round(milliseconds, 3), "bytes": int(length)}
         entry["time_ratio"] = round(foreseen["milliseconds"] / milliseconds, 3)
         entry["bytes_ratio"] = round(foreseen["bytes"] / length, 3)
         result.append(entry)

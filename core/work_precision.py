@@ -1,9 +1,10 @@
 """Error against cost: what each method, with each setting, makes of one question.
 
-Errors are measured against the closed form where there is one, otherwise against an integrator at the end of double
-precision, whose own estimated error is added. Costs are counted, which is the same on every machine, and on request
-timed as well. The conventions are those of work-precision diagrams: the reference is far below the tightest error,
-times are medians of repeated runs, and a method that fails with a setting is listed with its reason.
+Errors are measured against the closed form where there is one, those of described scenes against their own models,
+otherwise against an integrator at the end of double precision, whose own estimated error is added. Costs are counted,
+which is the same on every machine, and on request timed as well. The conventions are those of work-precision diagrams:
+the reference is far below the tightest error, times are medians of repeated runs, and a method that fails with a
+setting is listed with its reason.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
+from core.multibody.generic_equation import SceneSystem
 from core.systems.budget import Budget
 from core.systems.error_statements import bound_of, drifts, estimated, known_norm, measured
 from core.systems.methods import (
@@ -119,7 +121,7 @@ class WorkPrecision:
     Attributes
     ----------
     reference : str
-        ``"closed form"`` or the kind of the integrator that stood in for it.
+        ``"closed form"``, ``"pairs of doubles"``, or the kind of the integrator that stood in for them.
     reference_error : float
         Contained in every error that is stated.
     curves : tuple of Curve
@@ -244,18 +246,26 @@ def _reference(system: System, times: Floats, budget: Budget) -> _Reference:
     exact = system.closed_form()
     if exact is not None:
         return _Reference("closed form", exact.sample(times), bound_of(exact, times), exact.largest_norm)
+    if isinstance(system, SceneSystem):
+        kind, states, largest = system.reference(times)
+        norm = known_norm(states, system.initial_state)
+        return _known(_Reference(kind, states, largest / norm if norm > 0.0 else 0.0, norm))
     method = DormandPrince853(10 * SMALLEST_TOLERANCE)
     run = method.integrate(system, times, budget)
     error = estimated(method, system, times, run, budget, run.work.evaluations).errors.largest
-    if error > LARGEST_FITTED:
+    return _known(_Reference(method.kind, run.states, error, known_norm(run.states, system.initial_state)))
+
+
+def _known(reference: _Reference) -> _Reference:
+    if reference.error > LARGEST_FITTED:
         raise AccuracyUnreachable(
             LARGEST_FITTED,
-            error,
+            reference.error,
             "no reference can be had this far from the start",
             path=("times",),
             remedy="ask for earlier times",
         )
-    return _Reference(method.kind, run.states, error, known_norm(run.states, system.initial_state))
+    return reference
 
 
 def _measure(

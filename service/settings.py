@@ -73,7 +73,7 @@ class Settings(BaseSettings):
         description="Predicted time in the queue above which new large questions are refused (429).",
     )
     max_held_bytes: int = Field(
-        default=512_000_000,
+        default=256_000_000,
         ge=1,
         description="Memory of bodies that are arriving, of requests that are being answered and of answers that are "
         "being read by their clients above which new large requests are refused (429).",

@@ -175,7 +175,7 @@ class Composite:
                 f"{float(found.principal.moments[0]):.6g} kg m^2: a hole is larger than what it is cut from",
                 remedy="let each hole lie inside of what it is cut from",
             )
-        return replace(found, about=self.about, described_by=self).judged("parts")
+        return replace(found, about=self.about, described_by=self).with_validity_warning("parts")
 
 
 _Moments = tuple[MassMoments, Fraction, tuple[Notice, ...], tuple[Condition, ...]]

@@ -192,11 +192,11 @@ class MassProperties:
             mass = (Condition("positive-mass", self.mass > 0.0, f"the mass is {self.mass:.6g} kg"),)
         return Validity.of(self.principal, (*mass, *self.conditions))
 
-    def told(self, warnings: tuple[Notice, ...], conditions: tuple[Condition, ...] = ()) -> MassProperties:
+    def with_warnings(self, warnings: tuple[Notice, ...], conditions: tuple[Condition, ...] = ()) -> MassProperties:
         """Return a copy with further warnings and conditions."""
         return replace(self, warnings=(*self.warnings, *warnings), conditions=(*self.conditions, *conditions))
 
-    def judged(self, field: str) -> MassProperties:
+    def with_validity_warning(self, field: str) -> MassProperties:
         """Return a copy, with a warning at `field` if no distribution of positive mass has these moments."""
         if moments_of_matter(self.principal):
             return self
@@ -207,7 +207,7 @@ class MassProperties:
             "the equations of motion hold for them all the same",
             (field,),
         )
-        return self.told((notice,))
+        return self.with_warnings((notice,))
 
 
 def _after(exact: Matrix, value: Floats, tail: Floats, rounding: Rounding) -> Rounding:

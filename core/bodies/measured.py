@@ -33,8 +33,8 @@ SUMMED_EXACTLY = 400
 
 THIN_ROD = "a thin rod has [0, m l^2/12, m l^2/12]; a body without extent does not turn"
 
-KEPT = 32
-"""Bodies known by their principal moments, asked about last, of which the mass properties are kept."""
+CACHED_BODIES = 32
+"""How many bodies given by principal moments have their mass properties cached, the latest ones."""
 
 InertiaRow = tuple[InertiaComponent, InertiaComponent, InertiaComponent]
 
@@ -68,11 +68,11 @@ class PrincipalMoments:
         return _of_moments(float(a) + 0.0, float(b) + 0.0, float(c) + 0.0)
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED_BODIES)
 def _of_moments(a: float, b: float, c: float) -> MassProperties:
-    """Return the mass properties for principal moments, which are kept: a body is asked about again and again."""
+    """Return the mass properties for principal moments; cached, as questions about one body follow each other."""
     # Doubles without a negative zero, so that those which compare equal are the same.
-    return diagonal((a, b, c)).judged("moments")
+    return diagonal((a, b, c)).with_validity_warning("moments")
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ class InertiaTensor:
                 f"the smallest principal moment, {lowest:.6g} kg m^2, is zero to within the rounding of the components",
                 ("tensor",),
             )
-            properties = properties.told((notice,))
+            properties = properties.with_warnings((notice,))
         differing = max(abs(given[i][j] - given[j][i]) for i, j in ((0, 1), (0, 2), (1, 2)))
         if differing:
             notice = Notice(
@@ -151,8 +151,8 @@ class InertiaTensor:
                 "the mean of both was taken",
                 ("tensor",),
             )
-            properties = properties.told((notice,))
-        return properties.judged("tensor")
+            properties = properties.with_warnings((notice,))
+        return properties.with_validity_warning("tensor")
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +164,7 @@ class PointMasses:
     masses : float or sequence of n floats
         One mass for all, or one for each (kg).
     positions : array_like, shape (n, 3)
-        In body axes (m); kept as an array that cannot be written.
+        In body axes (m).
     about : {"center-of-mass", "origin"}
         The point about which the body turns. A free body turns about its centre of mass; "origin" is a body
         pinned there.

@@ -109,7 +109,7 @@ class Mesh(Uniform):
                 f"bound a solid: no matter has the moments that were found (not so: {failed})",
                 remedy="turn separate surfaces outwards, and take apart surfaces that pass through each other",
             )
-        return found.told(self._solid.notices, conditions)
+        return found.with_warnings(self._solid.notices, conditions)
 
 
 @dataclass(frozen=True)

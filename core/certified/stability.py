@@ -105,39 +105,44 @@ def certified_stability(
         flip = _flip(inertia, spin, exact_numbers(disturbance, ("disturbance",), 2), digits)
     rational = inertia.rational_moments
     ranks = (0, 1, 2) if rational is None else [sorted(set(rational)).index(moment) for moment in rational]
-    told = [classify_equilibrium(ranks, axis, spin != 0) for axis in range(3)]
+    verdict = [classify_equilibrium(ranks, axis, spin != 0) for axis in range(3)]
 
     def evaluate() -> tuple[CertifiedEquilibrium, ...]:
         state = principal_axes(inertia)
-        return tuple(_about(state, rational, axis, spin, told[axis], digits) for axis in range(3))
+        return tuple(_about(state, rational, axis, spin, verdict[axis], digits) for axis in range(3))
 
     equilibria = (*until_determined(evaluate, bits_for(digits)), _rest())
     return CertifiedStability(inertia.symmetry, decimal_of_fraction(spin, digits), equilibria, flip)
 
 
 def _about(
-    state: PrincipalState, rational: tuple[Fraction, ...] | None, axis: int, spin: Fraction, told: Verdict, digits: int
+    state: PrincipalState,
+    rational: tuple[Fraction, ...] | None,
+    axis: int,
+    spin: Fraction,
+    verdict: Verdict,
+    digits: int,
 ) -> CertifiedEquilibrium:
     size, drifts = "0", "0"
-    if told.kind != "degenerate":
+    if verdict.kind != "degenerate":
         size = decimal(enclosed(abs(spin)) * _eigenvalue(state, axis), digits)
     elif rational is not None:
         low, high = (rational[n] for n in range(3) if n != axis)
         drifts = decimal_of_fraction(drift(rational[axis], low, high, spin), digits)
     minus = "0" if size == "0" else f"-{size}"
-    saddle = told.kind == "saddle"
+    saddle = verdict.kind == "saddle"
     return CertifiedEquilibrium(
         decimals(oriented(_column(state, axis)), digits, floor_of_directions(digits)),
         decimal(state.moments[axis], digits) if rational is None else decimal_of_fraction(rational[axis], digits),
         ((size, "0"), (minus, "0"), ("0", "0")) if saddle else (("0", size), ("0", minus), ("0", "0")),
-        told.kind,
-        told.stable,
+        verdict.kind,
+        verdict.stable,
         size if saddle else "0",
         drifts,
-        told.linearly_stable,
-        told.attitude,
-        told.survives_dissipation,
-        told.reason,
+        verdict.linearly_stable,
+        verdict.attitude,
+        verdict.survives_dissipation,
+        verdict.reason,
     )
 
 
@@ -158,19 +163,19 @@ def _column(state: PrincipalState, axis: int) -> Balls:
 
 
 def _rest() -> CertifiedEquilibrium:
-    zero, told = ("0", "0"), REST
+    zero, verdict = ("0", "0"), REST
     return CertifiedEquilibrium(
         None,
         None,
         (zero, zero, zero),
-        told.kind,
-        told.stable,
+        verdict.kind,
+        verdict.stable,
         "0",
         "0",
-        told.linearly_stable,
-        told.attitude,
-        told.survives_dissipation,
-        told.reason,
+        verdict.linearly_stable,
+        verdict.attitude,
+        verdict.survives_dissipation,
+        verdict.reason,
     )
 
 

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from core.multibody.packed import Floats, Integers
+from core.notices import Notice
+from core.systems.trajectory import Work
 
-How = Literal["closed form", "measured against pairs"]
+How = Literal["closed form", "measured against pairs", "measured against closed form"]
 
 
 @dataclass(frozen=True)
@@ -133,12 +135,42 @@ class Column:
         Largest error of any sample, as a length of the vector, in the unit of the column.
     how : str
         How the error is known.
+    inherited : float or None
+        Largest change of any sample by the uncertainty of the inputs, to first order; None where it is not known.
     """
 
     values: Floats
     unit: str
     error: float
     how: How
+    inherited: float | None = None
+
+
+@dataclass(frozen=True)
+class SceneAccuracy:
+    """How right the samples of a scene are.
+
+    Attributes
+    ----------
+    requested : float
+    error : float
+        Largest error of any column, relative to the largest value among the columns of its unit.
+    how : str
+        How that is known.
+    inherited : float or None
+        Largest change of any column by the uncertainty of the inputs, relative likewise; None where it is not known.
+    horizon : float or None
+        Time until which that change stays below the accuracy (s); None where it is not known.
+    why : str or None
+        Why one of them is not.
+    """
+
+    requested: float
+    error: float
+    how: How
+    inherited: float | None = None
+    horizon: float | None = None
+    why: str | None = None
 
 
 @dataclass(frozen=True)
@@ -151,11 +183,21 @@ class SceneTrajectory:
     rows : ndarray of int, shape (t,)
         Which of the times asked for these are.
     columns : mapping of str to Column
+    accuracy : SceneAccuracy
+    method : str or None
+        Kind of the method that was named; None where the model's own motion is answered.
+    work : Work or None
+        What the method cost.
+    warnings : tuple of Notice
     """
 
     time: Floats
     rows: Integers
     columns: Mapping[str, Column]
+    accuracy: SceneAccuracy
+    method: str | None = None
+    work: Work | None = None
+    warnings: tuple[Notice, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -206,15 +206,45 @@ def _stated(values: Floats, errors: Floats) -> float:
     return _TELL * float(np.max(errors, initial=0.0)) + _SMALL * float(np.max(size, initial=0.0))
 
 
-def worst(columns: Mapping[str, Column]) -> float:
-    """Return the largest error of a column, relative to the largest value among the columns of its unit.
+def apart(column: Column, other: Column) -> float:
+    """Return the largest distance between the samples of two columns of one quantity.
 
-    What is zero by symmetry has no scale of its own.
+    Opposite quaternions are one attitude.
+    """
+    first, second = column.values, other.values
+    if first.ndim == 1:
+        return float(np.max(np.abs(first - second), initial=0.0))
+    each = np.linalg.norm(first - second, axis=1)
+    if first.shape[1] == 4:
+        each = np.minimum(each, np.linalg.norm(first + second, axis=1))
+    return float(np.max(each, initial=0.0))
+
+
+def worst(columns: Mapping[str, Column]) -> float:
+    """Return the largest error of a column, relative to the largest value among the columns of its unit."""
+    return relative({name: column.error for name, column in columns.items()}, columns)
+
+
+def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> float:
+    """Return the largest of figures by column, relative to the largest value among the columns of its unit.
+
+    What is zero by symmetry has no scale of its own. Angles that are zero within their error are measured against one
+    radian, and their rates against the largest speed over the largest distance.
     """
     largest: dict[str, float] = {}
+    unknown: dict[str, float] = {}
     for column in columns.values():
-        size = np.abs(column.values) if column.values.ndim == 1 else np.linalg.norm(column.values, axis=1)
-        largest[column.unit] = max(largest.get(column.unit, 0.0), float(np.max(size, initial=0.0)))
-    return max(
-        (column.error / largest[column.unit] for column in columns.values() if largest[column.unit] > 0.0), default=0.0
-    )
+        largest[column.unit] = max(largest.get(column.unit, 0.0), largest_of(column))
+        unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
+    away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
+    for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
+        if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
+            largest[unit] = max(largest.get(unit, 0.0), scale)
+    scales = {name: largest[columns[name].unit] for name in figures}
+    return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
+
+
+def largest_of(column: Column) -> float:
+    """Return the largest magnitude of a sample."""
+    size = np.abs(column.values) if column.values.ndim == 1 else np.linalg.norm(column.values, axis=1)
+    return float(np.max(size, initial=0.0))

@@ -12,7 +12,7 @@ from core.multibody.coordinates import Coordinates, dimension_of
 from core.multibody.language import GROUND, Scene
 from core.multibody.measures import Measures, perpendicular
 from core.multibody.numerals import Numerals
-from core.multibody.polynomials import ONE, constant, difference, evaluated
+from core.multibody.polynomials import ONE, constant, difference, evaluated, is_zero
 from core.multibody.rolling import rolling
 from core.multibody.strings import string
 
@@ -29,17 +29,17 @@ class Described:
     paths: Mapping[str, Path]
 
 
-def described(scene: Scene) -> Described:
-    """Return the table of a scene; the precision of balls is the caller's.
+def described(scene: Scene, numerals: Numerals | None = None) -> Described:
+    """Return the table of a scene, its numbers read by `numerals` if given; the precision of balls is the caller's.
 
     Raises
     ------
     InvalidParameter
         With the path to what cannot be.
     """
-    numerals = Numerals.of(scene.let, scene.numbers)
+    numerals = numerals or Numerals.of(scene.let, scene.numbers)
     names = scene.names()
-    coordinates = Coordinates(scene, numerals, _seen(scene))
+    coordinates = Coordinates(scene, numerals, _seen(scene, numerals))
     measures = Measures(coordinates)
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
     paths["clock"] = ()
@@ -49,7 +49,7 @@ def described(scene: Scene) -> Described:
     return Described(scene, measures, paths)
 
 
-def _seen(scene: Scene) -> dict[str, set[str]]:
+def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
     """Return what of each body the connections see: places by name, and "direction", "turn", "orientation"."""
     found: dict[str, set[str]] = {name: set() for name in scene.bodies}
     plane = dimension_of(scene) == 2
@@ -73,7 +73,10 @@ def _seen(scene: Scene) -> dict[str, set[str]]:
         on = getattr(connection, "on", None)
         if isinstance(on, Mapping):
             see(on.get("at"), "direction", "orientation")
-        if kind in ("weld", "slider") or (kind == "pin" and connection.axis is not None):
+        if kind == "weld" and plane and _concentric(scene, numerals, connection):
+            see(connection.a, "turn")
+            see(connection.b, "turn")
+        elif kind in ("weld", "slider") or (kind == "pin" and connection.axis is not None):
             see(connection.a, "direction", "orientation")
             see(connection.b, "direction", "orientation")
         if kind == "string" and isinstance(connection.through, (list, tuple)):
@@ -90,6 +93,18 @@ def _seen(scene: Scene) -> dict[str, set[str]]:
                 see(place, "turn")
             see(getattr(connection, "body", None), "turn", "orientation")
     return found
+
+
+def _concentric(scene: Scene, numerals: Numerals, connection: Any) -> bool:
+    """Return whether two wheels of the plane are welded centre to centre: no direction matters then, only the turn."""
+    centres = []
+    for place in (connection.a, connection.b):
+        name, _, spot = place.partition(".") if isinstance(place, str) else ("", "", "")
+        body = scene.bodies.get(name)
+        if body is None or body.inertia is None or spot not in ("", "centre"):
+            return False
+        centres.append(numerals.vector(body.at, ("bodies", name, "at"), 2))
+    return all(is_zero(x - y) for x, y in zip(*centres, strict=True))
 
 
 def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import null_space
 
-from core.errors import NotApplicable
+from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.answer import Equilibrium
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
@@ -19,12 +19,20 @@ from core.multibody.packed import Floats, Packed, Units, packed, state, two_to, 
 from core.multibody.passes import Reduced, reduced
 from core.multibody.table import Table
 from core.multibody.whole import values
+from core.work import spend
 
 MOST_FOUND = 100
 _STARTS = 128
 """Starts for every degree of freedom."""
 _ROUNDS = 60
+_MOST_OPERATIONS = 80_000_000
+"""Of one round: starts times the cube of the unknowns. More would take longer than a minute, and gigabytes."""
+_OPERATIONS_PER_UNIT = 40.0
+"""So many, in every round, take a unit of work (`core.work`)."""
 _SAME = 1e-7
+_CONVERGED = 1e-10
+_SETTLED = 1e-6
+"""Largest last relative change of the multipliers: beside a length of zero they grow without bound."""
 _SMALL = 1e-9
 
 
@@ -36,6 +44,8 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
     NotApplicable
         For scenes that are driven, or held by rates that no measure gives: rolling on curves, and torsion springs or
         drums beside a direction.
+    BudgetExceeded
+        If the search would take too long.
     """
     small = reduced(found.measures.table, pinning=False)
     table = small.table
@@ -107,6 +117,12 @@ class _Dense:
 def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Floats]]:
     n, m = len(start), len(dense.offset)
     count = min(4096, _STARTS * max(1, freedom))
+    operations = count * (n + m) ** 3
+    if operations > _MOST_OPERATIONS:
+        what = f"operations in each round of the search for equilibria ({count} starts, {n + m} unknowns)"
+        remedy = "ask without equilibria, or about fewer bodies"
+        raise BudgetExceeded(what, operations, _MOST_OPERATIONS, path=("outputs",), remedy=remedy)
+    spend(operations / _OPERATIONS_PER_UNIT)
     # Always the same starts: equal questions have equal answers.
     random = np.random.Generator(np.random.Philox(7))
     q = start + random.normal(size=(count, n)) * random.uniform(0.05, 2.0, size=(count, 1))
@@ -125,7 +141,15 @@ def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Fl
             if not len(q):
                 return []
         step = _newton(dense, q, multipliers)
-    done = np.abs(step[:, :n]).max(axis=1) < 1e-10 * (1.0 + np.abs(q).max(axis=1))
+        left, measures = _residuals(dense, q, multipliers, dense.jacobian(q))
+    # A step alone may be short where the equations are nearly singular and not solved.
+    size = 1.0 + np.abs(q).max(axis=1)
+    terms = np.abs(dense.load).max(initial=0.0) + np.abs(q @ dense.stiffness.T).max(axis=1)
+    done = np.abs(step[:, :n]).max(axis=1) < _CONVERGED * size
+    done &= np.abs(left).max(axis=1) <= _CONVERGED * terms
+    done &= np.abs(measures).max(axis=1, initial=0.0) < _CONVERGED * size**2
+    largest = np.abs(multipliers).max(axis=1, initial=0.0)
+    done &= np.abs(step[:, n:]).max(axis=1, initial=0.0) <= _SETTLED * (largest + terms)
     found: list[tuple[Floats, Floats]] = []
     for place, multiplier in zip(q[done], multipliers[done], strict=True):
         if all(np.abs(place - other).max() > _SAME * (1.0 + np.abs(place).max()) for other, _ in found):
@@ -152,12 +176,17 @@ def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> Floats:
     system[:, :n, :n] = np.einsum("rji,...r->...ji", dense.slopes, multipliers) - dense.stiffness
     system[:, :n, n:] = np.swapaxes(w, 1, 2)
     system[:, n:, :n] = w
-    left = dense.load - q @ dense.stiffness.T + np.einsum("...rj,...r->...j", w, multipliers)
-    right = -np.concatenate([left, dense.measures(q)], axis=1)
+    right = -np.concatenate(_residuals(dense, q, multipliers, w), axis=1)
     # Places without a single solution nearby make no step of their own.
     inverse = np.linalg.pinv(system, rcond=1e-13)
     found: Floats = np.einsum("...ij,...j->...i", inverse, right)
     return found
+
+
+def _residuals(dense: _Dense, q: Floats, multipliers: Floats, w: Floats) -> tuple[Floats, Floats]:
+    """Return the forces left over and the measures that are not held."""
+    left = dense.load - q @ dense.stiffness.T + np.einsum("...rj,...r->...j", w, multipliers)
+    return left, dense.measures(q)
 
 
 def _expanded(small: Reduced, units: Units, q: Floats) -> Floats:

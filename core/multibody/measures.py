@@ -174,6 +174,10 @@ class Measures:
         """Hold the orientation of one body to another."""
         frames = self.coordinates.frames
         if any(point.body is not None and not frames[point.body].orients for point in (a, b)):
+            turns = [None if point.body is None else frames[point.body].turn for point in (a, b)]
+            if turns[0] is not None and turns[1] is not None:
+                apart = difference(coordinate(turns[0]), coordinate(turns[1]))
+                self.hold(name, difference(apart, constant(evaluated(apart, self.table.q))))
             # A particle has no orientation that could be held or hold.
             return
         if a.body is None:

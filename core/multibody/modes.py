@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from flint import acb, acb_mat, arb, arb_mat
+from flint import acb, acb_mat, acb_poly, arb, arb_mat
 
 from core.balls import precision
 from core.errors import BudgetExceeded
@@ -40,6 +40,22 @@ class Mode:
 
     frequency: Ball
     growth: Ball
+
+
+def _roots_but_zero(matrix: Any) -> list[Any]:
+    """Return the characteristic roots without zero, which is double where something moves freely.
+
+    Raises
+    ------
+    ValueError
+        Where others coincide.
+    """
+    coefficients = matrix.charpoly().coeffs()
+    while coefficients and is_zero(coefficients[0].real) and is_zero(coefficients[0].imag):
+        del coefficients[0]
+    rest = acb_poly(coefficients)
+    size = min((float(abs(root)) for root in rest.roots()), default=1.0)
+    return list(rest.roots(tol=size * 2.0**-100))
 
 
 @dataclass(frozen=True)
@@ -92,7 +108,10 @@ class Modes:
         try:
             roots = inner.eig(multiple=True)
         except ValueError:
-            return ()
+            try:
+                roots = _roots_but_zero(inner)
+            except ValueError:
+                return ()
         found = []
         for root in roots:
             real = ZERO if is_zero(root.real) else root.real

@@ -8,8 +8,8 @@ grammar with limits on length, depth and digits; nothing is ever evaluated as co
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
@@ -25,6 +25,8 @@ LONGEST_FORMULA = 200
 DEEPEST = 20
 """Parentheses and functions inside one another."""
 LARGEST_EXPONENT = 400
+SHIFT = 2.0**-70
+"""Share of itself by which a number is moved, to see what depends on it."""
 MOST_NAMES = 100
 
 LONGEST_NAME = 64
@@ -52,13 +54,21 @@ class Numerals:
         Named numbers.
     doubles : bool
         Whether a number that arrives as a double is that double exactly, and not the shortest decimal that reads as it.
+    moved : collection of paths
+        Numbers that are read as larger by the share `SHIFT` of themselves.
+    read : dict
+        Filled with the numbers other than zero by their paths, as they are read; formulas are none.
     """
 
     let: Mapping[str, Ball]
     doubles: bool = False
+    moved: Collection[Path] = ()
+    read: dict[Path, Ball] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, let: Any, numbers: Literal["decimals", "doubles"] = "decimals") -> Numerals:
+    def of(
+        cls, let: Any, numbers: Literal["decimals", "doubles"] = "decimals", moved: Collection[Path] = ()
+    ) -> Numerals:
         """Evaluate a list of definitions, each of which may use those before it.
 
         Raises
@@ -73,12 +83,13 @@ class Numerals:
         if len(let) > MOST_NAMES:
             raise InvalidParameter("let", f"have at most {MOST_NAMES} names, not {len(let)}")
         known: dict[str, Ball] = {}
+        found = cls(known, numbers == "doubles", moved)
         for name, number in let.items():
             plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
             if not plain or name in (*_FUNCTIONS, "pi"):
                 raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
-            known[name] = cls(known, numbers == "doubles").number(number, ("let", name))
-        return cls(known, numbers == "doubles")
+            known[name] = found.number(number, ("let", name))
+        return found
 
     def number(self, value: Any, path: Path) -> Ball:
         """Return a number as a ball.
@@ -97,9 +108,11 @@ class Numerals:
             if isinstance(inner, Mapping):
                 raise InvalidParameter((*path, "degrees"), "be a number or a formula")
             return self.number(inner, (*path, "degrees")) * arb.pi() / 180
-        if isinstance(value, float) and isfinite(value) and not self.doubles:
-            return _decimal(repr(value))
-        return _ball(_exact(value, path))
+        plain = isinstance(value, float) and isfinite(value) and not self.doubles
+        found = _decimal(repr(value)) if plain else _ball(_exact(value, path))
+        if found != 0:
+            self.read[path] = found
+        return found + found * SHIFT if path in self.moved else found
 
     def angle(self, value: Any, path: Path) -> tuple[Ball, Ball]:
         """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""

@@ -80,21 +80,8 @@ class Numerical:
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, and how far they are from a run in pairs."""
-        n = len(self.table.names)
-        scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
         names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "judge")
-        both = []
-        for kind in names:
-            q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
-            for way in (scaled >= 0.0, scaled < 0.0):
-                if np.any(way):
-                    chosen = scaled[way]
-                    run = self.run(kind, float(chosen[np.argmax(np.abs(chosen))]))
-                    q[way], v[way] = evaluate(run, chosen)
-            both.append((q, v))
-        up = np.array([two_to(e) for e in self.units.lengths])[None, :, None]
-        down = two_to(-self.units.time)
-        (q, v), (other, rate) = ((a * up, b * up * down) for a, b in both)
+        (q, v), (other, rate) = (self.by(kind, times) for kind in names)
         q_error, v_error = (
             np.abs((a[..., 0] - b[..., 0]) + (a[..., 1] - b[..., 1])) for a, b in ((q, other), (v, rate))
         )
@@ -106,6 +93,19 @@ class Numerical:
             q_error = 4.0 * q_error + 2.0**-50 * coarse.q_error
             v_error = 4.0 * v_error + 2.0**-50 * coarse.v_error
         return States(q, v, q_error, v_error, (other, rate))
+
+    def by(self, kind: str, times: Floats) -> tuple[Floats, Floats]:
+        """Return coordinates and rates by one kind of run, each of shape (t, n, 2)."""
+        n = len(self.table.names)
+        scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
+        q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
+        for way in (scaled >= 0.0, scaled < 0.0):
+            if np.any(way):
+                chosen = scaled[way]
+                run = self.run(kind, float(chosen[np.argmax(np.abs(chosen))]))
+                q[way], v[way] = evaluate(run, chosen)
+        up = np.array([two_to(e) for e in self.units.lengths])[None, :, None]
+        return q * up, v * up * two_to(-self.units.time)
 
     def places(self, times: Floats) -> Floats:
         """Return coordinates alone, shape (t, n), without a judge: enough to count turns."""

@@ -110,6 +110,27 @@ class Whole:
             reference,
         )
 
+    def states_at(self, z: Floats, w: Floats) -> WholeStates:
+        """Return the states that go with coordinates and rates of the reduced table, each of shape (t, n)."""
+        slopes, offsets = self._affine
+        q = _spread(slopes, offsets, np.stack([z, np.zeros_like(z)], axis=2))
+        v = _spread(slopes, np.zeros_like(offsets), np.stack([w, np.zeros_like(w)], axis=2))
+        nothing = np.zeros(q.shape[:2])
+        return WholeStates(q, v, nothing, nothing, None)
+
+    def in_pairs(self, times: Floats) -> tuple[Floats, Floats]:
+        """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2)."""
+        shape = (len(times), len(self.reduced.table.names), 2)
+        z, w = np.zeros(shape), np.zeros(shape)
+        for indices, motion in self.parts:
+            if isinstance(motion, Numerical):
+                z[:, list(indices)], w[:, list(indices)] = motion.by("fine", times)
+            else:
+                found = motion.states(times)
+                z[:, list(indices)], w[:, list(indices)] = found.q, found.v
+        slopes, offsets = self._affine
+        return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w)
+
     def places(self, times: Floats) -> Floats:
         """Return every coordinate at times of one sign, shape (t, n), to a few roundings of the answer's."""
         z = np.zeros((len(times), len(self.reduced.table.names)))

@@ -56,18 +56,18 @@ class Ensemble:
 
         Members that say the same in other figures say one thing: a client counts kinds, and looks the figures up.
         """
-        told: dict[tuple[str, Path], list[tuple[int, Notice]]] = {}
+        grouped: dict[tuple[str, Path], list[tuple[int, Notice]]] = {}
         for k, member in enumerate(self.members):
             for notice in member.warnings:
-                told.setdefault((notice.code, notice.path), []).append((k, notice))
-        return (*(self.merged(members) for members in told.values()), *self.by_rounding)
+                grouped.setdefault((notice.code, notice.path), []).append((k, notice))
+        return (*(self.merged(members) for members in grouped.values()), *self.by_rounding)
 
-    def merged(self, told: Sequence[tuple[int, Notice]]) -> Notice:
+    def merged(self, grouped: Sequence[tuple[int, Notice]]) -> Notice:
         """Return one notice for what members, each with its index, say alike."""
-        which = list(dict.fromkeys(k for k, _ in told))
-        worst, notice = max(told, key=lambda entry: self.members[entry[0]].accuracy.error)
+        which = list(dict.fromkeys(k for k, _ in grouped))
+        worst, notice = max(grouped, key=lambda entry: self.members[entry[0]].accuracy.error)
         everyone = len(which) == len(self.members)
-        if everyone and len({entry.detail for _, entry in told}) == 1:
+        if everyone and len({entry.detail for _, entry in grouped}) == 1:
             return notice
         named = ", ".join(map(str, which[:MOST_NAMED])) + (", ..." if len(which) > MOST_NAMED else "")
         of = f"all {len(which)} members" if everyone else f"{len(which)} of {len(self.members)} members ({named})"

@@ -230,7 +230,7 @@ class TorqueFree:
     @property
     def model(self) -> Model:
         """The model as an integrator sees it."""
-        return Model("torque-free rigid body", "Euler's equations", "an integrator was asked for", 3)
+        return Model("torque-free rigid body", "Euler's equations", "an integrator was requested", 3)
 
     def closed_form(self) -> FreeRotation:
         """Return the exact solution."""

@@ -204,7 +204,7 @@ class SceneAnswer:
     trajectory : mapping of str to ndarray, or None
         Columns, the first of them ``time``: only the samples that exist.
     ended : str or None
-        ``"horizon"``, or the event that ended the motion before it; None if nothing ends it or no motion was asked for.
+        ``"horizon"``, or the event that ended the motion before it; None if nothing ends it or no motion was requested.
     accuracy : Accuracy
         Bound of the error: of figures relative to themselves, of samples to the largest norm of their column.
     warnings : tuple of Notice

@@ -153,7 +153,7 @@ class ChainOnWedge(ConstrainedSystem):
 
     def static_model(self) -> Model:
         """Return the model of a question about one instant."""
-        return Model("heavy chain on a wedge", "one instant", "no motion was asked for", 0)
+        return Model("heavy chain on a wedge", "one instant", "no motion was requested", 0)
 
     @cached_property
     def _slide(self) -> Slide:

@@ -177,7 +177,7 @@ class RodInHole(ConstrainedSystem):
 
     def static_model(self) -> Model:
         """Return the model of a question about one instant."""
-        return Model("rod in a cylindrical hole", "one instant", "no motion was asked for", 0)
+        return Model("rod in a cylindrical hole", "one instant", "no motion was requested", 0)
 
     @cached_property
     def _rod(self) -> Rod:

@@ -256,7 +256,7 @@ class UnwindingShafts(ConstrainedSystem):
 
     def static_model(self) -> Model:
         """Return the model of a question about one instant."""
-        return Model("two unwinding shafts on one string", "one instant", "no motion was asked for", 0)
+        return Model("two unwinding shafts on one string", "one instant", "no motion was requested", 0)
 
     def notices(self, wanted: frozenset[str]) -> tuple[Notice, ...]:
         """Return what is not determined."""

@@ -85,7 +85,7 @@ def solve(
         return _evaluated(system, exact, instants, accuracy, input_uncertainty)
     if method is None:
         return _refined(system, instants, accuracy, budget)
-    with _inside("method"):
+    with inside_field("method"):
         run = method.integrate(system, instants, budget)
     if exact is not None:
         # A closed form that cannot be evaluated this far cannot judge either, and leaves it to the finer run.
@@ -153,7 +153,7 @@ def _compared_with_closed_form(
     input_uncertainty: float,
 ) -> Trajectory:
     reference, own = exact.sample(times), bound_of(exact, times)
-    with _inside("method"):
+    with inside_field("method"):
         found = measured(run.states, reference, times, exact.largest_norm).beyond(own)
     inherited, notices = _inherited(exact, times, input_uncertainty)
     stated = Accuracy(
@@ -188,7 +188,7 @@ def _compared_with_finer_run(
 ) -> Trajectory:
     # A closed form that is out of reach at these times still knows the norm of the whole motion.
     norm = None if exact is None else exact.largest_norm
-    with _inside("method"):
+    with inside_field("method"):
         estimate = estimated(method, system, times, run, budget, run.work.evaluations, norm)
     errors, spent = estimate.errors, estimate.integration.work.evaluations
     uncertain: tuple[Notice, ...] = ()
@@ -258,8 +258,8 @@ def _warnings(stated: Accuracy, method: AbstractMethod) -> tuple[Notice, ...]:
 
 
 @contextmanager
-def _inside(step: str) -> Iterator[None]:
-    """Prefix the path of every fault with the field of the question that holds the method."""
+def inside_field(step: str) -> Iterator[None]:
+    """Prefix the path of every fault with the field of the question to which it belongs."""
     try:
         yield
     except InvalidParameter as fault:

@@ -10,6 +10,8 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
+from core.compiled import kernel
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -24,6 +26,9 @@ DISCRETE_STEP = types.boolean(types.float64, types.float64[::1], types.float64[:
 
 It tells whether the discrete equation was solved; its solution is the one that tends to rest as the duration does.
 """
+
+PROJECTION = types.void(types.float64[::1], types.float64[::1])
+"""Signature of a projection onto what constrains a motion: (state to be moved, parameters)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,12 +49,17 @@ class Splitting:
     flow: Any
 
 
+@kernel(PROJECTION)
+def unconstrained(state: Floats, parameters: Floats) -> None:
+    """Leave a state where it is."""
+
+
 @dataclass(frozen=True, eq=False)
 class Structure:
     """What a system offers to structure-preserving methods beyond its equation of motion.
 
-    One field per capability, each None where the system lacks it, so that a further one is a further field and no
-    change for the systems without it.
+    One field per capability, each with a default for systems that lack it, so that a further one is a further field and
+    no change for the systems without it.
 
     Attributes
     ----------
@@ -59,11 +69,18 @@ class Structure:
     degree : int or None
         The equation does not depend on time and is homogeneous of this degree in the state: a state s times as large
         moves on the same curve, s times as large, s^(degree - 1) times as fast.
+    projection : compiled function of signature `PROJECTION`
+        Puts a state onto the constraints of the motion, which the equation alone would drift off; NaN where that does
+        not succeed.
+    weight : int
+        Units of work (`core.work`) of one evaluation of the equation, which the budget counts as so many evaluations.
     """
 
     splitting: Splitting | None = None
     discrete: Any = None
     degree: int | None = None
+    projection: Any = unconstrained
+    weight: int = 1
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from service.routing import PostRoute
 from service.settings import Settings
 
 SECONDS_PER_BYTE = 1e-7
-"""Of reading a request; what it asks for is not known before."""
+"""Of reading a request, which is done twice; what it asks for is not known before."""
 
 READER_NICE, COMPUTE_NICE = 5, 10
 """The reader goes before the computations, so that requests are refused in time where every core computes."""
@@ -130,9 +130,10 @@ class Compute:
         task = Task(route.path, body, npz, media, deadline)
         with self.holding(len(body)):
             self._require_turn(self.reader, sender)
-            predicted = await self._done(self.reader, task, SECONDS_PER_BYTE * len(body), sender)
+            reading = SECONDS_PER_BYTE * len(body)
+            predicted = await self._done(self.reader, task, reading, sender)
             # Nothing computes for longer than the deadline, whatever was predicted.
-            seconds = min(predicted, deadline)
+            seconds = min(reading + predicted, deadline)
             self._require_turn(self.processes, sender)
             if sender.key is not None:
                 sender.key.work(seconds)

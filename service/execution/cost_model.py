@@ -16,6 +16,7 @@ from math import exp, floor, hypot, inf, log, sqrt
 from sys import float_info
 from typing import Any
 
+from core.elliptic.functions import LARGEST_QUARTER
 from core.systems.budget import Budget
 
 Counts = Mapping[str, float]
@@ -70,8 +71,10 @@ class CalibratedCost:
     @cached_property
     def _seconds(self) -> Counts:
         seconds = calibration().seconds
-        # A body is looked at in the same way whatever is asked about it, and where it is small that does not stand out.
-        return {"points": seconds["mass_properties"]["points"], **seconds[self.operation]}
+        # A body is looked at in the same way for every question, and where it is small that does not stand out.
+        points = seconds["mass_properties"]["points"]
+        judging = seconds["rotation_trajectory"]["evaluations of dormand-prince-853"]
+        return {"points": points, "judging evaluations": judging, **seconds[self.operation]}
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
@@ -157,6 +160,16 @@ def effort(method: Any, times: Any, speed: float, samples: float, members: int =
         f"samples of {kind}": samples * members,
         f"evaluations of {kind}": evaluations(method, times, speed) * members,
     }
+
+
+def judged(method: Any, times: Any, speed: float, budget: Budget, members: int = 1) -> dict[str, float]:
+    """Return what is counted of judging the error of a method where the closed form is out of reach.
+
+    No method can follow such a motion: each member spends the budget of evaluations on a finer one in vain.
+    """
+    if method is None or method.kind == "closed-form" or speed * farthest(times) <= LARGEST_QUARTER:
+        return {}
+    return {"judging evaluations": float(budget.evaluations) * members}
 
 
 def steps(times: Any, step: float) -> float:

@@ -35,6 +35,9 @@ BEGIN_SECONDS = 0.5
 PAUSE = 0.5
 """Seconds before another attempt where a process could not be started, or did not live until it was ready."""
 
+LONGEST_PAUSE = 30.0
+"""What the pause grows to while nothing can be started."""
+
 _EXIT_CODES = Lock()
 """Starting a process polls all others; of two threads that read an exit code at the same time one would find none."""
 
@@ -363,7 +366,8 @@ class Processes:
             # Whatever is lacking, files or threads or memory: a process that is not replaced would be missed for good.
             except Exception:
                 LOG.exception("a compute process could not be started")
-                await asyncio.sleep(PAUSE)
+                pause = min(max(2.0 * pause, PAUSE), LONGEST_PAUSE)
+                await asyncio.sleep(pause)
         process = Process(self, handle)
         self._all.add(process)
         ours.setblocking(False)

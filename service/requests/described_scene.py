@@ -11,7 +11,7 @@ from dataclasses import MISSING, fields
 from decimal import Decimal
 from fractions import Fraction
 from types import NoneType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin, get_type_hints
 
 from pydantic import Field, SkipValidation, create_model
 
@@ -19,8 +19,9 @@ from core.bodies import Body
 from core.multibody import language
 from core.multibody.reading import scene_from
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
-from core.quantities import Tolerance
-from service.schemas import Request, Times
+from core.quantities import Tolerance, Uncertainty
+from core.systems.methods import Method
+from service.schemas import ROUND, Request, Rounding, Times
 
 
 class AngleInDegrees(Request):
@@ -84,8 +85,8 @@ def _connection_form() -> type[Request]:
         name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
         for name, hint in hints.items()
     }
-    told = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
-    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=told))
+    meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
+    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=meaning))
     docs = language.Connection.__doc__
     form: type[Request] = create_model("SceneConnection", __base__=Request, __doc__=docs, **own)
     return form
@@ -99,8 +100,8 @@ ConnectionReadByCore: Any = _by_core(SceneConnection)
 SCENE_FIELDS = tuple(entry.name for entry in fields(language.Scene))
 
 
-class DescribedSceneRequest(Request):
-    """Bodies, what connects them, and what is asked about them."""
+class SceneDescription(Request):
+    """Bodies, and what connects them."""
 
     gravity: Gravity = Field(
         default=None, description="Acceleration of free fall (m/s^2), of two or three components; none if left out."
@@ -115,18 +116,8 @@ class DescribedSceneRequest(Request):
     numbers: Literal["decimals", "doubles"] = Field(
         default="decimals", description="Whether 0.1 is the decimal or the double nearest to it."
     )
-    times: Times | None = Field(
-        default=None, description="Measured from the given state, of either sign, in any order; none: no motion."
-    )
-    accuracy: Tolerance = Field(
-        default=1e-9,
-        description="Largest tolerated error of any column, relative to the largest value in columns of its unit.",
-    )
-    outputs: list[Output] | None = Field(
-        default=None, min_length=1, description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}."
-    )
 
-    def with_digits(self, document: Any) -> DescribedSceneRequest:
+    def with_digits(self, document: Any) -> Self:
         """Return the question with the numbers of its scene as they are written."""
         if self.numbers == "doubles":
             return self
@@ -146,3 +137,31 @@ class DescribedSceneRequest(Request):
             name: {field: getattr(form, field) for field in form.model_fields_set} for name, form in self.bodies.items()
         }
         return scene_from(description)
+
+
+class DescribedSceneRequest(SceneDescription):
+    """Bodies, what connects them, and what is asked about them."""
+
+    times: Times | None = Field(
+        default=None, description="Measured from the given state, of either sign, in any order; none: no motion."
+    )
+    accuracy: Tolerance = Field(
+        default=1e-9,
+        description="Largest tolerated error of any column, relative to the largest value in columns of its unit.",
+    )
+    method: Method | None = Field(
+        default=None,
+        description="Computes the motion in place of the smallest model, and is answered whatever its error. The whole "
+        "scene is run as one system, and put back onto its connections after every step; by lsoda and radau, its "
+        "samples alone. An evaluation counts as 4 + n^3/200 of the evaluations that are allowed, n being the number of "
+        "coordinates and equations of constraint that remain.",
+    )
+    input_uncertainty: Uncertainty | None = Field(
+        default=None,
+        description="Relative uncertainty of every number of the description, 1.1e-16 for numbers known as doubles. "
+        "If it is given, accuracy.inherited says what it does to places and rates. Formulas are exact.",
+    )
+    round: Rounding | None = ROUND
+    outputs: list[Output] | None = Field(
+        default=None, min_length=1, description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}."
+    )

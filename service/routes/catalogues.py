@@ -56,6 +56,7 @@ class MethodEntry(View):
     family: Family
     preserves: list[Invariance]
     between_steps: str = Field(description="How samples come about whose times lie between the ends of steps.")
+    on_constraints: str = Field(description="How constraints are kept, such as those of a described scene.")
     when_to_use: str
     record: list[MethodRecord]
 
@@ -107,6 +108,7 @@ def methods() -> list[dict[str, Any]]:
             "family": member.family,
             "preserves": member.preserves,
             "between_steps": member.between_steps,
+            "on_constraints": member.on_constraints,
             "when_to_use": member.when_to_use,
             "record": sorted(measured.get(member.kind, []), key=lambda shown: shown["tolerance"]),
         }

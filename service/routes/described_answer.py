@@ -8,6 +8,7 @@ from pydantic import Field
 
 from core.multibody.answer import How
 from core.quantities import Unit
+from core.systems.trajectory import Work
 from service.schemas import Envelope, Joules, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
 
 Metres = Annotated[list[float], Unit("m"), Field(min_length=2, max_length=3)]
@@ -81,6 +82,10 @@ class SceneColumn(View):
     unit: str
     error: Annotated[float, OwnUnit] = Field(description="Largest error of any row, as the length of a vector.")
     how: How
+    inherited: Annotated[float | None, OwnUnit] = Field(
+        description="Largest change of any row by input_uncertainty, to first order; null for forces and energies, and "
+        "where it is not known."
+    )
 
 
 class DescribedTrajectory(View):
@@ -116,17 +121,29 @@ class DescribedAccuracy(View):
     requested: Ratio[float]
     error: Ratio[float] = Field(description="Largest of any column, relative to the largest value in its unit.")
     how: How = Field(
-        description="closed form: bounded. measured against pairs: the difference from a run with numbers of 106 bits."
+        description="closed form: bounded. measured against pairs: the difference from a run with numbers of 106 bits. "
+        "measured against closed form: of a method, the difference from it with its bound added."
     )
+    inherited: Ratio[float] | None = Field(
+        description="Largest change of any column of places and rates by input_uncertainty, to first order, relative "
+        "to the largest value in its unit; null where it is not asked for or not known."
+    )
+    horizon: Seconds[float] | None = Field(
+        description="Until when that change stays below the accuracy, one of 64 times up to the farthest; null where "
+        "it does all the time, or is not known."
+    )
+    why: str | None = Field(description="Why one of these is null, where an uncertainty was given.")
 
 
 class DescribedSceneAnswer(Envelope):
-    """What was asked for of a scene."""
+    """The requested answer about a scene."""
 
     model: DescribedModel
     accelerations: dict[str, BodyAccelerations] | None = Field(default=None, description="By body.")
     forces: dict[str, ConnectionForce] | None = Field(default=None, description="By connection.")
     energy: StartEnergy | None = None
+    method: str | None = Field(default=None, description="Kind of the method that was named, if one was.")
+    work: Work | None = Field(default=None, description="What that method cost.")
     period: Seconds[float] | None = Field(description="Of the motion, where a single part moves and repeats.")
     ended: str | None = Field(
         description="horizon, or the kind of the event that ended the motion; null without times."

@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
+from core.errors import BudgetExceeded
 from core.multibody.answer import SceneModel
-from core.multibody.columns import worst
+from core.multibody.generic_equation import weight_of
+from core.multibody.inherited import MOST_INPUTS
 from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
 from core.notices import Notice
 from core.systems.budget import Budget
-from service.execution.cost_model import CalibratedCost, extent
+from core.systems.methods.from_scipy import FromSciPy
+from core.work import WorkLimitReached, work_limit
+from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
+from service.responses.svg import SVG
 from service.routes.described_answer import DescribedSceneAnswer
-from service.routes.examples import examples
-from service.routes.planning_probes import few_of
+from service.routes.described_figure import drawn
+from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
+from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
-from service.schemas import fields_of, sample_count, sample_times
+from service.schemas import Request, fields_of, sample_count, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
 
@@ -31,12 +38,19 @@ vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are l
 Forces that the scene does not determine are null.
 
 Not covered yet: contact, friction, impacts, strings that become taut again, connections with `from` and `until`. They
-are refused, and a string that becomes slack ends the motion. There is no choice of method, no rounding and no
-propagated uncertainty. It is not proven that all equilibria are found. A plan reads numbers as doubles, and does not
-foresee for how long a motion can be followed."""
+are refused, and a string that becomes slack ends the motion. It is not proven that all equilibria are found. A plan
+reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
+about three bodies. The paths of a motion in the plane, and its columns over time, are answered as a figure to
+`Accept: image/svg+xml`."""
 
 NEAR = 0.01
 """How far (s) a motion is followed when it is planned."""
+
+QUICK = 10.0
+"""How fast (rad/s) a scene is taken to move, where a method chooses its steps."""
+
+SEARCHED = 10_000.0
+"""Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
@@ -45,8 +59,19 @@ LONGEST = 4000.0
 def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     """Answer a question about a described scene."""
     times = () if question.times is None else sample_times(question.times, budget)
-    found = solve_scene(question.scene(), times, question.outputs or DEFAULT_OUTPUTS, question.accuracy)
-    answer: Answer = {"model": _model(found.model), "warnings": []}
+    outputs = DEFAULT_OUTPUTS if question.outputs is None else question.outputs
+    found = solve_scene(
+        question.scene(),
+        times,
+        outputs,
+        question.accuracy,
+        method=question.method,
+        input_uncertainty=question.input_uncertainty,
+        digits=question.round,
+        budget=budget,
+    )
+    motion = found.trajectory
+    answer: Answer = {"model": _model(found.model), "warnings": [] if motion is None else list(motion.warnings)}
     for name, start in (
         ("accelerations", {body: fields_of(one) for body, one in (found.accelerations or {}).items()}),
         ("forces", {force: fields_of(one) for force, one in (found.forces or {}).items()}),
@@ -54,22 +79,15 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     ):
         if getattr(found, name) is not None:
             answer[name] = _in_range(start, name, answer["warnings"])
+    if motion is not None and motion.method is not None:
+        answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
-    answer["ended"] = None if found.trajectory is None else "horizon" if found.ended is None else found.ended.kind
+    answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
     answer["events"] = found.events
-    if found.trajectory is not None:
-        columns = found.trajectory.columns
-        answer["trajectory"] = {
-            "time": found.trajectory.time,
-            "rows": found.trajectory.rows,
-            "columns": {name: fields_of(column) for name, column in columns.items()},
-        }
-        hows = {column.how for column in columns.values()}
-        answer["accuracy"] = {
-            "requested": question.accuracy,
-            "error": worst(columns),
-            "how": "measured against pairs" if "measured against pairs" in hows else "closed form",
-        }
+    if motion is not None:
+        columns = {name: fields_of(column) for name, column in motion.columns.items()}
+        answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}
+        answer["accuracy"] = motion.accuracy
     if found.equilibria is not None:
         answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
     return answer
@@ -98,32 +116,94 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
-    found = {"question": 1.0, "bodies": bodies, "connections": connections, "pairs of connections": connections**2}
-    if "equilibria" in (question.outputs or ()):
-        found |= {"searches": bodies, "searches of pairs": bodies**2}
+    found = {
+        "question": 1.0,
+        "bodies": bodies,
+        "connections": connections,
+        "pairs of connections": connections**2,
+        "connections times pairs of bodies": connections * bodies**2,
+    }
     if question.times is not None:
         samples = sample_count(question.times, budget)
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
-        followed = min(bodies - 1.0, connections) * min(LONGEST, extent(question.times))
+        coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
         found |= {
             "motions": bodies + connections,
             "samples of bodies": samples * bodies,
             "samples of connections": samples * connections,
-            "seconds of coupled bodies": max(0.0, followed),
+            "seconds of coupled bodies": seconds * coupled,
+            "seconds of pairs of coupled bodies": seconds * coupled**2,
         }
+        if question.input_uncertainty is not None:
+            # Everything is done again for every number.
+            again = 1.0 + min(MOST_INPUTS, numbers_in(question))
+            found = {name: count * again for name, count in found.items()}
+        found |= _of_method(question, bodies, connections)
+    if "equilibria" in (question.outputs or ()):
+        found |= {"searches": bodies, "searches of pairs": bodies**2}
     return found
+
+
+def _of_method(question: DescribedSceneRequest, bodies: float, connections: float) -> dict[str, float]:
+    """Return what is counted of the method that is named."""
+    method = question.method
+    if method is None or in_closed_form(method):
+        return {}
+    count = evaluations(method, question.times, QUICK)
+    largest = min(1e4, 3.0 * bodies + connections)
+    found = {f"evaluations of {method.kind}": count, "evaluations by their weight": count * weight_of(round(largest))}
+    return found | {"evaluations by SciPy": count} if isinstance(method, FromSciPy) else found
+
+
+def numbers_in(question: DescribedSceneRequest) -> int:
+    """Return how many numbers a description has, those of formulas apart."""
+
+    def among(value: Any) -> int:
+        if isinstance(value, Request):
+            return sum(among(getattr(value, name)) for name in value.model_fields_set)
+        if isinstance(value, Mapping):
+            return sum(map(among, value.values()))
+        if isinstance(value, (list, tuple)):
+            return sum(map(among, value))
+        return isinstance(value, (int, float, Decimal)) and not isinstance(value, bool) and value != 0
+
+    return among([question.gravity, question.bodies, question.connections, question.let])
 
 
 def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
     """Answer a question at few times near the start, where the rows are as long; its error is known from the whole."""
     if question.times is None:
-        return PlanningProbe(solved(question, budget))
+        return PlanningProbe(_without_long_searches(question, budget))
     instants = sample_times(question.times, budget)
     few = instants[few_of(instants.size)]
-    near = few * min(1.0, NEAR / max(NEAR, float(np.abs(few).max())))
-    fields = solved(question.model_copy(update={"times": near.tolist()}), budget)
+    reach = min(NEAR, FEW_STEPS * getattr(question.method, "step", NEAR))
+    near = few * min(1.0, reach / max(reach, float(np.abs(few).max())))
+    changes = {"times": near.tolist(), "input_uncertainty": None}
+    fields = _without_long_searches(question.model_copy(update=changes), budget)
+    if hasattr(question.method, "step"):
+        _require_affordable(question, fields["model"], budget)
+    fields["warnings"] = [notice for notice in fields["warnings"] if notice.code not in OF_FEW_STEPS]
     del fields["accuracy"]
     return PlanningProbe(fields, {"trajectory": instants.size / few.size})
+
+
+def _require_affordable(question: DescribedSceneRequest, model: Mapping[str, Any], budget: Budget) -> None:
+    """Raise `BudgetExceeded` for a step with which more evaluations are needed than are allowed."""
+    count = evaluations(question.method, question.times, QUICK)
+    allowed = budget.evaluations // weight_of(model["coordinates"] + model["rows"])
+    if count > allowed:
+        remedy = "use a larger step, or ask for earlier times"
+        raise BudgetExceeded("evaluations", int(count), allowed, path=("method", "step"), remedy=remedy)
+
+
+def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> Answer:
+    """Answer a question, without its equilibria if looking for them takes long."""
+    try:
+        with work_limit(SEARCHED):
+            return solved(question, budget)
+    except WorkLimitReached:
+        others = question.outputs and [name for name in question.outputs if name != "equilibria"]
+        return solved(question.model_copy(update={"outputs": others}), budget)
 
 
 DESCRIBED_SCENES = (
@@ -138,13 +218,14 @@ DESCRIBED_SCENES = (
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
         description=DESCRIPTION,
+        representations={SVG: drawn},
     ),
 )
 
 
 def described_examples() -> list[dict[str, Any]]:
-    """Return the examples of described scenes as entries of the catalogue of scenes."""
+    """Return the described scenes as entries of the catalogue of scenes."""
     return [
         {"name": name, "path": PATH, "summary": one.summary, "outputs": list(OUTPUTS), "example": dict(one.question)}
-        for name, one in examples()[OPERATION].items()
+        for name, one in scene_catalogue().items()
     ]

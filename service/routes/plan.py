@@ -21,6 +21,7 @@ from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
 from service.routes.described_answer import ScenePart
+from service.routes.planning_probes import OF_FEW_STEPS
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
@@ -83,7 +84,7 @@ class PlannedFault(FaultView):
 class PlanAnswer(Envelope):
     """A plan."""
 
-    path: str = Field(description="As asked.")
+    path: str = Field(description="As in the request.")
     answerable: bool = Field(description="Whether the request would be answered.")
     model: PlannedModel | None = Field(description="null for questions that no model of motion is chosen for.")
     method: Method | None = Field(description="null where no motion is computed.")
@@ -109,8 +110,8 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
             fault = Fault("/path", "must be the path of a question", remedy)
             return _refused(question.path, Problem(REGISTRY["not-found"], fault.detail, (fault,)), "")
         try:
-            asked = reader(route.path).read(json.dumps(question.request).encode())
-            return {"path": route.path, **_planned(route, asked, budget)}
+            request = reader(route.path).read(json.dumps(question.request).encode())
+            return {"path": route.path, **_planned(route, request, budget)}
         except Refusal as refusal:
             return _refused(route.path, refusal.problem, WITHIN)
         except MechanicsError as error:
@@ -129,11 +130,11 @@ def planning(routes: Sequence[PostRoute]) -> PostRoute:
     )
 
 
-def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
-    seconds = route.price(asked, budget)
-    method, evaluations = getattr(asked, "method", None), _evaluations(route, asked, budget)
+def _planned(route: PostRoute, request: Any, budget: Budget) -> Answer:
+    seconds = route.price(request, budget)
+    method, evaluations = getattr(request, "method", None), _evaluations(route, request, budget)
     probed = route.planning_probe
-    probe = PlanningProbe(route.handle(asked, budget)) if probed is None else probed(asked, budget)
+    probe = PlanningProbe(route.handle(request, budget)) if probed is None else probed(request, budget)
     fields, exact = probe.fields, probe.exact
     length = _length(fields, probe.growth)
     model, stated, notices = fields.get("model"), _stated(fields), list(fields.get("warnings", ()))
@@ -141,8 +142,8 @@ def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
         model = fields["members"][0]["model"]
     if probe.error is not None:
         notices = [notice for notice in (exact or fields)["warnings"] if notice.code not in OF_FEW_STEPS]
-        if probe.error > asked.accuracy:
-            detail = f"with this setting the error of {asked.method.kind} is of the order of {probe.error:.1g}"
+        if probe.error > request.accuracy:
+            detail = f"with this setting the error of {request.method.kind} is of the order of {probe.error:.1g}"
             notices.append(Notice("accuracy-not-reached", detail, ("method",)))
         inherited = (_stated(exact) or {}).get("inherited")
         stated = {"error": probe.error, "how": "record of the method", "inherited": inherited}
@@ -154,7 +155,7 @@ def _planned(route: PostRoute, asked: Any, budget: Budget) -> Answer:
         "method": method,
         "cost": {
             "evaluations": evaluations,
-            "samples": _samples(asked),
+            "samples": _samples(request),
             "bytes": round(length),
             "milliseconds": round(1e3 * (seconds + length * calibration().writing), 3),
         },
@@ -171,10 +172,6 @@ def _length(fields: Answer, growth: Mapping[str, float]) -> float:
     return 1.0 + sum(len(name) + 4 + len(written(value)) * growth.get(name, 1.0) for name, value in entries)
 
 
-OF_FEW_STEPS = ("accuracy-not-reached", "rounded-beyond-accuracy")
-"""Warnings about the few steps that are run of a method."""
-
-
 def _stated(fields: Answer) -> dict[str, Any] | None:
     """Return the statement of error of an answer; of an ensemble, the worst member's."""
     stated = [fields["accuracy"]] if "accuracy" in fields else [one["accuracy"] for one in fields.get("members", ())]
@@ -186,25 +183,26 @@ def _stated(fields: Answer) -> dict[str, Any] | None:
     return {"error": worst["error"], "how": worst["how"], "inherited": worst.get("inherited")}
 
 
-def _evaluations(route: PostRoute, asked: Any, budget: Budget) -> int | None:
+def _evaluations(route: PostRoute, request: Any, budget: Budget) -> int | None:
     if not isinstance(route.price, CalibratedCost):
         return 0
-    counted = route.price.counts(asked, budget)
-    # How many steps ladders and described scenes take is only known by running them.
-    if "ladders" in counted or "connections" in counted:
+    counted = route.price.counts(request, budget)
+    # How many steps ladders take, and described scenes that choose them, is only known by running them.
+    fixed = hasattr(getattr(request, "method", None), "step")
+    if "ladders" in counted or ("connections" in counted and not fixed):
         return None
     count = round(min(UNCOUNTABLE, sum(n for name, n in counted.items() if name.startswith("evaluations of "))))
-    if hasattr(getattr(asked, "method", None), "step") and count > budget.evaluations:
+    if fixed and count > budget.evaluations:
         remedy = "use a larger step, or ask for earlier times"
         raise BudgetExceeded("evaluations", count, budget.evaluations, path=("method", "step"), remedy=remedy)
     return count
 
 
-def _samples(asked: Any) -> int | None:
-    times = getattr(asked, "times", None)
+def _samples(request: Any) -> int | None:
+    times = getattr(request, "times", None)
     if times is None:
         return None
-    starts, sample = getattr(asked, "angular_velocities", None), getattr(asked, "sample", None)
+    starts, sample = getattr(request, "angular_velocities", None), getattr(request, "sample", None)
     members = sample.count if sample is not None else len(starts) if starts is not None else 1
     return int((len(times) if isinstance(times, list) else times.count) * members)
 

@@ -25,6 +25,9 @@ FEW, FEW_CERTIFIED = 64, 8
 FEW_STEPS, FEW_RADIANS = 64, 0.1
 """How far a method is run for its rows: steps of a fixed length, or a turn."""
 
+OF_FEW_STEPS = ("accuracy-not-reached", "rounded-beyond-accuracy")
+"""Warnings about the few steps that are run of a method."""
+
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 
 

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import exp, log
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
+from core.errors import InvalidParameter
+from core.multibody.generic_equation import weight_of
+from core.multibody.modelling import system_of
+from core.notices import Notice
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Method, Radau
+from core.systems.solve import inside_field
+from core.systems.system import System
 from core.work_precision import (
     DEFAULT_RUNS,
     SCIPY_TOLERANCES,
@@ -22,12 +29,25 @@ from core.work_precision import (
     check_distinct,
     work_precision,
 )
-from service.execution.cost_model import CalibratedCost, calibration, effort, extent, extreme, speed_of
+from service.execution.cost_model import CalibratedCost, calibration, effort, evaluations, extent, extreme, speed_of
+from service.requests.described_scene import SceneDescription
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
-from service.routes.rotation.trajectory import ANGULAR_VELOCITY, TIMES
+from service.routes.described_scenes import NEAR, QUICK
+from service.routes.rotation.trajectory import TIMES
 from service.routing import Answer, PlanningProbe, PostRoute
-from service.schemas import Envelope, Ratio, Request, Seconds, Times, View, fields_of, sample_count, sample_times
+from service.schemas import (
+    Envelope,
+    Ratio,
+    Request,
+    Seconds,
+    Times,
+    View,
+    fields_of,
+    require_one,
+    sample_count,
+    sample_times,
+)
 
 LADDER_RADIANS = 50.0
 """How far the body turns in the motions on which ladders are measured."""
@@ -36,10 +56,11 @@ SCIPY_KINDS = (Lsoda.kind, Radau.kind)
 
 
 class WorkPrecisionRequest(Request):
-    """A free rotation, and the methods to be compared on it."""
+    """A free rotation or a described scene, and the methods to be compared on it."""
 
-    body: Body
-    angular_velocity: AngularVelocity = ANGULAR_VELOCITY
+    body: Body | None = Field(default=None, description="That turns freely; this with its angular velocity, or scene.")
+    angular_velocity: AngularVelocity | None = Field(default=None, description="At t = 0, in body axes.")
+    scene: SceneDescription | None = Field(default=None, description="As to POST /v1/scenes.")
     times: Times = TIMES
     methods: Annotated[list[Method], Field(min_length=1, max_length=100)] | None = Field(
         default=None, description="With their settings, a method as often as wanted; default: a ladder of every method."
@@ -49,9 +70,26 @@ class WorkPrecisionRequest(Request):
         default=0, description="How often each run is timed; 0 times nothing, and equal questions get equal answers."
     )
 
+    def with_digits(self, document: Any) -> WorkPrecisionRequest:
+        """Return the question with the numbers of its scene as they are written."""
+        if self.scene is None:
+            return self
+        return self.model_copy(update={"scene": self.scene.with_digits(document["scene"])})
+
+    def rotation(self) -> tuple[Any, AngularVelocity]:
+        """Return the body that turns and how, or raise `InvalidParameter`."""
+        require_one(self, "body", "scene")
+        if self.body is None or self.angular_velocity is None:
+            raise InvalidParameter("angular_velocity", "be given with the body", remedy="or give a scene alone")
+        return self.body, self.angular_velocity
+
 
 class MethodMeasurement(View):
-    """One method with one setting; errors are relative to the largest norm of the whole motion."""
+    """One method with one setting; errors are relative to the largest norm of the state in the whole motion.
+
+    The state of a scene holds the coordinates that remain of it, and then their rates, in units in which they are of
+    the order of one: SI units times powers of two.
+    """
 
     method: Method = Field(description="With its setting.")
     error: Ratio[float] | None = Field(description="Largest of any sample; null if the method failed.")
@@ -97,8 +135,15 @@ class WorkPrecisionAnswer(Envelope):
 
 def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Answer:
     """Answer with every method's errors and work."""
-    body = properties_of(question.body)
-    system = TorqueFree(body, np.array(question.angular_velocity))
+    warnings: Sequence[Notice] = ()
+    if question.scene is not None:
+        require_one(question, "body", "scene")
+        with inside_field("scene"):
+            system: System = system_of(question.scene.scene())
+    else:
+        body, rates = question.rotation()
+        system = turning = TorqueFree(properties_of(body), np.array(rates))
+        warnings = turning.warnings
     times = sample_times(question.times, budget)
     # The budget is for the question, and each of its runs has an equal share.
     share = max(1, budget.evaluations // ((1 + question.repeats) * _runs(question)))
@@ -110,7 +155,7 @@ def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Ans
         repeats=question.repeats,
         budget=Budget(share, budget.samples),
     )
-    return fields_of(found) | {"warnings": system.warnings}
+    return fields_of(found) | {"warnings": warnings}
 
 
 def _runs(question: WorkPrecisionRequest) -> int:
@@ -121,21 +166,47 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     """Return what is counted of a comparison; a ladder depends on the motion and is counted whole."""
     samples, repeats = sample_count(question.times, budget), 1 + question.repeats
     runs = _runs(question)
+    if question.scene is not None:
+        return _counts_of_scene(question.scene, question, budget)
+    body, rates = question.rotation()
     found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
     if question.methods is None:
         found |= {"ladders": repeats, "ladder samples": repeats * samples}
-        return found | _long_ladder(question, budget.evaluations // (repeats * runs), repeats)
-    speed = speed_to_follow(question.methods, question.body, speed_of(question.angular_velocity))
+        adaptive = (Lsoda(min(SCIPY_TOLERANCES)), DormandPrince853(min(TOLERANCES)))
+        speed = speed_to_follow(adaptive, body, speed_of(rates))
+        radians = speed * extent(question.times) - LADDER_RADIANS
+        return found | _long_ladder(radians, budget.evaluations // (repeats * runs), repeats)
+    speed = speed_to_follow(question.methods, body, speed_of(rates))
     for method in question.methods:
         for name, count in effort(method, question.times, speed, samples, repeats).items():
             found[name] = found.get(name, 0.0) + count
     return found
 
 
-def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> dict[str, float]:
-    """Return what is counted of a ladder on a motion that is longer than the one on which ladders are measured."""
-    speed = speed_of(question.angular_velocity)
-    radians = speed * extent(question.times) - LADDER_RADIANS
+def _counts_of_scene(scene: SceneDescription, question: WorkPrecisionRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a comparison on a described scene; the motion that it is measured against included."""
+    repeats, samples = 1 + question.repeats, sample_count(question.times, budget)
+    bodies, connections = float(len(scene.bodies)), float(len(scene.connections))
+    weight = weight_of(round(min(1e4, 3.0 * bodies + connections)))
+    if question.methods is None:
+        share = budget.evaluations // (repeats * DEFAULT_RUNS * weight)
+        spent = _long_ladder(QUICK * extent(question.times), share, repeats)
+    else:
+        spent = {}
+        for method in question.methods:
+            name = f"evaluations of {method.kind}"
+            spent[name] = spent.get(name, 0.0) + repeats * evaluations(method, question.times, QUICK)
+    runs = _runs(question)
+    return spent | {
+        "measured": runs * (1.0 + bodies + connections),
+        "measured samples": runs * samples * (bodies + connections),
+        "evaluations by their weight": weight * sum(spent.values()),
+        "evaluations by SciPy": sum(spent.get(f"evaluations of {kind}", 0.0) for kind in SCIPY_KINDS),
+    }
+
+
+def _long_ladder(radians: float, share: int, repeats: int) -> dict[str, float]:
+    """Return what is counted of a ladder on a motion over so many radians, beyond those of measured ladders."""
     if not radians > 0.0:
         return {}
     counts: dict[str, float] = {}
@@ -153,9 +224,13 @@ def _long_ladder(question: WorkPrecisionRequest, share: int, repeats: int) -> di
 
 
 def work_precision_probe(question: WorkPrecisionRequest, budget: Budget) -> PlanningProbe:
-    """Answer the question about the closed form at the farthest time alone."""
+    """Answer the question about the closed form at the farthest time alone; about a scene, by few steps."""
     if question.methods is not None:
         check_distinct(question.methods)
+    if question.scene is not None:
+        changes = {"times": [NEAR], "methods": [DormandPrince853(1e-6)], "repeats": 0}
+        near = answer_work_precision(question.model_copy(update=changes), budget)
+        return PlanningProbe(near, {"curves": float(_runs(question))})
     changes = {"times": [extreme(question.times)], "methods": [ClosedFormEvaluation()], "repeats": 0}
     growth = {"curves": float(_runs(question))}
     return PlanningProbe(answer_work_precision(question.model_copy(update=changes), budget), growth)

@@ -8,7 +8,8 @@ from itertools import count
 import numpy as np
 import pytest
 
-from core.errors import AccuracyUnreachable, InvalidParameter
+from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
+from core.multibody.modelling import system_of
 from core.systems.budget import Budget
 from core.systems.error_statements import known_norm, measured
 from core.systems.methods import (
@@ -21,6 +22,8 @@ from core.systems.methods import (
 )
 from core.systems.solve import solve
 from core.work_precision import Measurement, pareto_front, work_precision
+from tests.core.multibody.test_generic_equation import PENDULUM, PROJECTILE
+from tests.core.multibody.worked_examples import read
 from tests.core.systems.systems import elliptic_functions, explosion, lorenz, prey_and_predator, stiff
 
 TIMES = np.linspace(0, 10, 11)
@@ -170,3 +173,35 @@ def test_questions_that_cannot_be_asked() -> None:
 def test_equal_points_are_one_on_the_front() -> None:
     one = Measurement(ClosedFormEvaluation(), error=1e-15)
     assert pareto_front([one, replace(one), Measurement(ExplicitEuler(1.0), error=0.1, evaluations=9)]) == (one,)
+
+
+def test_a_described_scene_is_measured_against_pairs_with_the_orders_of_the_methods() -> None:
+    """The pendulum's rod is a constraint: after projection every method has its order."""
+    system = system_of(read(PENDULUM))
+    found = work_precision(system, [0.5, 2.0])
+    assert found.reference == "pairs of doubles"
+    assert found.reference_error < 1e-14
+    orders = {curve.kind: curve.fitted_order for curve in found.curves}
+    for kind, order in (("explicit-euler", 1), ("implicit-midpoint", 2), ("runge-kutta-4", 4)):
+        assert orders[kind] == pytest.approx(order, abs=0.35)
+    assert {*orders} == {
+        *("explicit-euler", "implicit-midpoint", "runge-kutta-4"),
+        *("dormand-prince-853", "lsoda", "radau"),
+    }
+    assert found.recommendation.method is not None
+    assert found.pareto_front[-1].error < 1e-12
+
+
+def test_a_scene_in_closed_form_is_measured_against_that() -> None:
+    found = work_precision(system_of(read(PROJECTILE)), [1.0], [ExplicitEuler(0.125), RungeKutta4(0.125)])
+    assert found.reference == "closed form"
+    euler, kutta = (curve.measurements[0] for curve in found.curves)
+    assert euler.error is not None
+    assert kutta.error is not None
+    assert kutta.error < 1e-15 < 1e-2 < euler.error
+
+
+def test_a_scene_at_rest_has_nothing_to_compare() -> None:
+    hanging = {"bodies": {"bob": {"mass": 1, "at": [0, -1]}}}
+    with pytest.raises(NotApplicable):
+        system_of(read(hanging))

@@ -16,6 +16,7 @@ import pytest
 from examples import source_questions
 from examples.ask import names, path_of, request_of
 from examples.source_questions import QUESTIONS, TEMPLATE, figures, page
+from service.routes.scene_catalogue import scene_catalogue
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "source-questions.md"
@@ -369,7 +370,8 @@ def test_every_number_that_is_found_is_shown(found):
 
 def test_every_example_is_linked_and_every_link_leads_somewhere():
     text = PAGE.read_text(encoding="utf-8")
-    # Submissions are linked from the page for course staff.
-    assert set(linked(text)) == {name for name in names() if not name.startswith("assessments/")}
+    # The catalogue of described scenes, and what was submitted, have pages of their own.
+    own = {f"scenes/{name}" for name in scene_catalogue()}
+    assert set(linked(text)) == {name for name in names() if not name.startswith("assessments/")} - own
     for target in re.findall(r"\]\(([^)#]+)\)", text):
         assert (PAGE.parent / target).exists(), target

@@ -11,6 +11,7 @@ from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import httpx
@@ -82,6 +83,9 @@ class Server:
         )
         self.log: list[str] = []
         self.port = self._port()
+        # A pipe that nobody empties would stop the server when it is full.
+        self._reading = Thread(target=self._read, daemon=True)
+        self._reading.start()
         self.url = f"http://127.0.0.1:{self.port}"
 
     def _port(self) -> int:
@@ -91,6 +95,11 @@ class Server:
             if "running on" in line:
                 return int(line.split("running on http://127.0.0.1:")[1].split()[0].strip('",'))
         raise RuntimeError("".join(self.log))
+
+    def _read(self) -> None:
+        assert self.process.stderr is not None
+        with self.process.stderr as lines:
+            self.log.extend(lines)
 
     def wait_until_ready(self) -> None:
         deadline = time.monotonic() + 300
@@ -106,8 +115,9 @@ class Server:
 
     def stop(self, told: signal.Signals = signal.SIGTERM) -> str:
         self.process.send_signal(told)
-        _, rest = self.process.communicate(timeout=30)
-        return "".join(self.log) + (rest or "")
+        self.process.wait(timeout=30)
+        self._reading.join(timeout=30)
+        return "".join(self.log)
 
 
 @pytest.fixture(scope="session")

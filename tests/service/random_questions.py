@@ -272,6 +272,36 @@ def chain(random: Random) -> Question:
     }
 
 
+def described(random: Random) -> Question:
+    """Return a scene of points: falling, on chains of rods or on springs, in the plane or in space."""
+    gravity = random.choice([[0, -9.81], [0, -9.81], [0, 0, -9.81]])
+    held = random.choice(["rods", "springs", "nothing"])
+    bodies: Question = {}
+    connections: list[Question] = []
+    at, before = [0.0] * len(gravity), "ground"
+    for i in range(1 + count(random, 3)):
+        at = [x + random.choice([-1, 1]) * number(random, 0.2, 1.0) for x in at]
+        bodies[f"p{i}"] = {"mass": number(random), "at": at}
+        if held == "nothing" and random.random() < 0.5:
+            bodies[f"p{i}"]["velocity"] = [number(random, -3.0, 3.0) for _ in at]
+        ends: Question = {"a": f"p{i}", "b": [0] * len(at) if before == "ground" else before}
+        if held == "rods":
+            connections.append({"kind": "rod", **ends})
+        elif held == "springs":
+            stiffness, rest = number(random, 5.0, 50.0), random.choice([0, number(random)])
+            connections.append({"kind": "spring", **ends, "stiffness": stiffness, "rest_length": rest})
+        before = f"p{i}"
+    found: Question = {"gravity": gravity, "bodies": bodies, "connections": connections}
+    if random.random() < 0.6:
+        found["times"] = times(random, 300, 1.0)
+        found["accuracy"] = random.choice([1e-9, 1e-6])
+    if random.random() < 0.3:
+        # Equilibria of several bodies are not foreseen.
+        known = ["accelerations", "forces", "energy", *(["equilibria"] if len(bodies) == 1 else [])]
+        found["outputs"] = random.sample(known, random.randint(1, 3))
+    return found
+
+
 def digits(random: Random) -> int:
     return random.choice([16, 20, 30, 50, random.randint(16, 150)])
 
@@ -335,6 +365,7 @@ def questions_of(outputs: Mapping[str, tuple[str, ...]]) -> dict[str, Callable[[
         "/v1/certified/rotation/precession": exact,
         "/v1/certified/rotation/stability": exact_stability,
         "/v1/certified/rotation/energy-ellipsoid": certified_surface,
+        "/v1/scenes": described,
         **{f"/v1/scenes/{name}": scene(name) for name in scenes},
         **{f"/v1/certified/scenes/{name}": certified_scene(name) for name in scenes},
     }

@@ -7,6 +7,7 @@ import json
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import httpx
 import numpy as np
@@ -14,9 +15,11 @@ import pytest
 
 from core.multibody.language import MOST_BODIES, MOST_CONNECTIONS
 from core.systems.budget import Budget
+from core.work import work_limit
 from service.requests.described_scene import DescribedSceneRequest
 from service.requests.request_reader import Limits, Reader
 from service.routes import questions
+from service.routes.described_scenes import SEARCHED
 from service.routing import PostRoute
 from tests.service.conftest import Server, client_of, inline_service
 
@@ -138,7 +141,16 @@ HOSTILE: dict[str, tuple[Any, str]] = {
     "a blow, not covered yet": (of_rod(kind="impulse"), "/connections/0/kind"),
     "friction, not covered yet": (of_rod(friction=0.2), "/connections/0/friction"),
     "until, not covered yet": (of_rod(until=2), "/connections/0/until"),
-    "a method, not covered yet": (PENDULUM | {"method": {"kind": "rk4"}}, "/method"),
+    "an unknown method": (PENDULUM | {"method": {"kind": "rk5"}}, "/method/kind"),
+    "a step of zero": (PENDULUM | {"times": [1], "method": {"kind": "explicit-euler", "step": 0}}, "/method/step"),
+    "a step too short": (PENDULUM | {"times": [1], "method": {"kind": "explicit-euler", "step": 1e-9}}, "/method/step"),
+    "a method that scenes do not have": (
+        PENDULUM | {"times": [1], "method": {"kind": "symmetric-splitting", "step": 0.1}},
+        "/method/kind",
+    ),
+    "a closed form where there is none": (PENDULUM | {"times": [1], "method": {"kind": "closed-form"}}, "/method/kind"),
+    "an uncertainty of two": (PENDULUM | {"times": [1], "input_uncertainty": 2}, "/input_uncertainty"),
+    "no digits": (PENDULUM | {"times": [1], "round": 0}, "/round"),
     "a time that is no number": (PENDULUM | {"times": [0, None]}, "/times/1"),
     "too many samples": (PENDULUM | {"times": {"start": 0, "stop": 1, "count": 10**9}}, "/times/count"),
     "an unknown output": (PENDULUM | {"outputs": ["everything"]}, "/outputs/0"),
@@ -223,12 +235,77 @@ async def test_columns_travel_as_arrays() -> None:
         assert found["trajectory/columns/p.position/values"].shape == (7, 2)
 
 
+class TestMethods:
+    async def test_a_method_is_answered_with_its_error_and_its_work(self) -> None:
+        """Released at 5 m, the height falls by g t^2/2 at first: Euler's first step leaves the place where it is."""
+        question = PENDULUM | {"times": [0.0, 0.01], "outputs": ["trajectory"]}
+        answer = (await asked(question | {"method": {"kind": "explicit-euler", "step": 0.01}})).json()
+        right = (await asked(question)).json()["trajectory"]["columns"]["p.position"]["values"]
+        column = answer["trajectory"]["columns"]["p.position"]
+        assert column["values"] == [[3.0, -4.0], [3.0, -4.0]]
+        true = np.hypot(*(np.array(column["values"][1]) - np.array(right[1])))
+        assert true <= column["error"] <= true + 1e-14
+        assert column["how"] == answer["accuracy"]["how"] == "measured against pairs"
+        assert answer["method"] == "explicit-euler"
+        assert answer["work"]["evaluations"] == answer["work"]["steps"] == 1
+        assert answer["work"]["step"] == 0.01
+        (warning,) = answer["warnings"]
+        assert (warning["code"], warning["pointer"]) == ("accuracy-not-reached", "/method")
+
+    async def test_without_a_method_nothing_is_said_of_one(self) -> None:
+        answer = (await asked(PENDULUM | {"times": [1]})).json()
+        assert not {"method", "work"} & set(answer)
+        assert answer["accuracy"]["inherited"] is None
+
+    async def test_no_motion_no_method(self) -> None:
+        answer = (await asked(PENDULUM | {"method": {"kind": "radau", "tolerance": 1e-6}})).json()
+        assert not {"method", "work", "trajectory"} & set(answer)
+
+
+class TestSamples:
+    async def test_digits(self) -> None:
+        answer = (await asked(PENDULUM | {"times": [0.1, 0.7], "round": 4})).json()
+        column = answer["trajectory"]["columns"]["p.position"]
+        assert all(float(f"{x:.4g}") == x for row in column["values"] for x in row)
+        assert 1e-4 < column["error"] < 1e-2
+        assert [notice["code"] for notice in answer["warnings"]] == ["rounded-beyond-accuracy"]
+
+    async def test_inherited_by_hand(self) -> None:
+        """A stone at 2 m, thrown at 4 m/s upwards: 2 + 4 t - g t^2/2 changes by at most its terms times 1e-6."""
+        stone = {"bodies": {"p": {"mass": 1, "at": [0, 2], "velocity": [0, 4]}}, "gravity": [0, -9.81]}
+        answer = (await asked(stone | {"times": [1], "input_uncertainty": 1e-6})).json()
+        inherited = answer["trajectory"]["columns"]["p.position"]["inherited"]
+        assert inherited == pytest.approx(1e-6 * (2 + 4 + 9.81 / 2), rel=0.03)
+        assert answer["accuracy"]["inherited"] == pytest.approx(inherited / (2 + 4 - 9.81 / 2), rel=1e-9)
+        assert answer["accuracy"]["horizon"] < 1.0
+
+    async def test_figure(self) -> None:
+        question = PENDULUM | {
+            "times": {"start": 0, "stop": 1, "count": 50},
+            "outputs": ["trajectory", "forces-in-time"],
+        }
+        async with client_of(SERVICE) as client:
+            response = await client.post(PATH, json=question, headers={"accept": "image/svg+xml"})
+            refused = await client.post(PATH, json=PENDULUM, headers={"accept": "image/svg+xml"})
+        drawing = ElementTree.fromstring(response.text)
+        lines = [e for e in drawing.iter() if e.tag.endswith("polyline")]
+        # The path; two components of the velocity; the force of the rod.
+        assert len(lines) >= 4
+        points = np.array([[float(x) for x in p.split(",")] for p in lines[0].attrib["points"].split()])
+        places = np.array((await asked(question)).json()["trajectory"]["columns"]["p.position"]["values"])
+        # One scale on both axes, upwards negative.
+        scale = np.ptp(points[:, 0]) / np.ptp(places[:, 0])
+        assert points[:, 1] - points[0, 1] == pytest.approx(-scale * (places[:, 1] - places[0, 1]), abs=0.11)
+        assert refused.status_code == 422
+        assert refused.json()["errors"][0]["pointer"] == "/times"
+
+
 class TestCatalogue:
     async def test_described_examples_stand_beside_the_named_scenes(self) -> None:
         async with client_of(SERVICE) as client:
             listed = (await client.get(PATH)).json()["scenes"]
         described = {entry["name"]: entry["example"] for entry in listed if entry["path"] == PATH}
-        assert {"massive-pulley", "yo-yo", "double-pendulum", "bead-on-hoop", "lagrange-top"} == set(described)
+        assert {file.stem for file in EXAMPLES.glob("*.json")} == set(described)
         assert {entry["path"] for entry in listed} - {PATH} == {
             route.path for route in questions() if route.path.startswith("/v1/scenes/")
         }
@@ -256,17 +333,62 @@ class TestPrice:
         apart = {"bodies": {"p": POINT, "q": POINT}, "connections": [ROD]}
         assert self.price(apart | {"times": [1e9]}) == self.price(apart | {"times": [1e300]})
 
+    def test_methods_and_uncertain_numbers_cost_more(self) -> None:
+        moved = PENDULUM | {"times": [1.0]}
+        by = [moved | {"method": {"kind": "explicit-euler", "step": step}} for step in (1e-2, 1e-4)]
+        assert self.price(moved) < self.price(by[0]) < self.price(by[1])
+        # Gravity, the mass and two coordinates: four motions beside the one.
+        assert self.price(moved | {"input_uncertainty": 1e-9}) == pytest.approx(5 * self.price(moved), rel=0.01)
+
     def test_it_always_runs_in_a_compute_process(self) -> None:
         assert ROUTE.small is PostRoute.small
 
 
 class TestPlan:
+    async def test_long_searches_for_equilibria_are_not_made(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i + 1, 0]} for i in range(8)}
+        ends = [[0, 0], *bodies]
+        chain = PENDULUM | {
+            "bodies": bodies,
+            "connections": [ROD | {"a": name, "b": end} for name, end in zip(bodies, ends, strict=False)],
+        }
+        route = next(route for route in questions() if route.path == "/v1/plan")
+        question = {"path": PATH, "request": chain | {"outputs": ["equilibria"]}}
+        with work_limit(2 * SEARCHED) as meter:
+            plan = route.handle(Reader(route.question, Limits()).read(json.dumps(question).encode()), Budget())
+        assert plan["answerable"]
+        assert plan["model"]["degrees_of_freedom"] == 8
+        assert meter.spent < SEARCHED
+
+    async def test_searches_that_are_too_long_are_foreseen_to_be_refused(self) -> None:
+        bodies = {f"p{i}": POINT | {"at": [i, 0]} for i in range(100)}
+        request = {"bodies": bodies, "outputs": ["equilibria"]}
+        (fault,) = (await asked({"path": PATH, "request": request}, "/v1/plan")).json()["errors"]
+        assert (fault["code"], fault["pointer"]) == ("budget-exceeded", "/request/outputs")
+
     async def test_the_model_is_foreseen_without_its_motion(self) -> None:
         plan = (await asked({"path": PATH, "request": PENDULUM | {"times": [1e300]}}, "/v1/plan")).json()
         assert plan["answerable"]
         assert plan["model"]["name"] == "one period"
         assert plan["accuracy"] is None
         assert plan["cost"]["milliseconds"] > 0.0
+        assert plan["cost"]["evaluations"] is None
+
+    async def test_the_evaluations_of_a_step_are_foreseen_and_others_are_not(self) -> None:
+        """Four a step by the classical Runge-Kutta method; the pendulum's three unknowns make each count as four."""
+        question = PENDULUM | {"times": [2.0], "method": {"kind": "runge-kutta-4", "step": 0.01}}
+        plan = (await asked({"path": PATH, "request": question}, "/v1/plan")).json()
+        assert plan["cost"]["evaluations"] == (await asked(question)).json()["work"]["evaluations"] == 800
+        assert plan["method"] == {"kind": "runge-kutta-4", "step": 0.01}
+        assert plan["warnings"] == []
+        question["method"]["step"] = 1e-6
+        for path, request in ((PATH, question), ("/v1/plan", {"path": PATH, "request": question})):
+            problem = (await asked(request, path)).json()
+            assert problem["errors"][0]["pointer"].endswith("/method/step")
+            assert "8000000 evaluations are needed and 5000000 are allowed" in json.dumps(problem)
+        chosen = question | {"method": {"kind": "dormand-prince-853", "tolerance": 1e-6}}
+        plan = (await asked({"path": PATH, "request": chosen}, "/v1/plan")).json()
+        assert plan["answerable"]
         assert plan["cost"]["evaluations"] is None
 
     async def test_refusals_are_told_where_they_stand(self) -> None:

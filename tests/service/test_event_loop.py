@@ -6,6 +6,7 @@ environment variable POLHODE_FUZZ is the number of questions for each endpoint; 
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import random
@@ -79,11 +80,14 @@ class Calls:
         def counting(frame: FrameType, event: str, argument: Any) -> None:
             self.count += event in ("call", "c_call")
 
+        # Collecting garbage calls what others have left to be finalised.
+        gc.disable()
         sys.setprofile(counting)
         return self
 
     def __exit__(self, *error: object) -> None:
         sys.setprofile(None)
+        gc.enable()
 
 
 def numbers(node: Any) -> list[tuple[Any, Any]]:

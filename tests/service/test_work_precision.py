@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -95,3 +95,47 @@ async def test_what_is_not_offered_is_refused() -> None:
     response = await asked(QUESTION, accept="image/png")
     assert response.status_code == 406
     assert SVG in response.json()["detail"]
+
+
+class TestDescribedScenes:
+    SCENE: ClassVar[dict[str, Any]] = {
+        "gravity": [0, -9.81],
+        "bodies": {"p": {"mass": 1, "at": [3, -4]}},
+        "connections": [{"kind": "rod", "a": "p", "b": [0, 0]}],
+    }
+
+    async def test_errors_fall_and_work_grows(self) -> None:
+        methods = [{"kind": "runge-kutta-4", "step": step} for step in (0.1, 0.05)]
+        answer = (await asked({"scene": self.SCENE, "times": [1.0, 2.0], "methods": methods})).json()
+        assert answer["reference"] == "pairs of doubles"
+        coarse, fine = answer["curves"][0]["measurements"]
+        assert 10 < coarse["error"] / fine["error"] < 24
+        assert (coarse["evaluations"], fine["evaluations"]) == (80, 160)
+
+    async def test_the_ladder_is_a_figure(self) -> None:
+        response = await asked({"scene": self.SCENE, "times": [2.0]}, accept=SVG)
+        texts = [entry.text or "" for entry in ElementTree.fromstring(response.text).iter()]
+        for kind in ("explicit-euler", "radau", "lsoda", "dormand-prince-853"):
+            assert any(text.startswith(kind) for text in texts)
+
+    async def test_it_is_planned(self) -> None:
+        question = {"path": PATH, "request": {"scene": self.SCENE, "times": [2.0]}}
+        async with client_of(SERVICE) as client:
+            plan = (await client.post("/v1/plan", json=question)).json()
+        assert plan["answerable"]
+        assert plan["cost"]["milliseconds"] > 1.0
+
+    @pytest.mark.parametrize(
+        ("change", "pointer"),
+        [
+            ({"scene": SCENE | {"bodies": {"p": {"mass": -1, "at": [3, -4]}}}}, "/scene/bodies/p/mass"),
+            ({"scene": {"bodies": {"p": {"mass": 1, "at": [3, -4]}}}}, "/scene"),
+            ({"body": {"kind": "ball", "mass": 1, "radius": 1}}, "/body"),
+            ({"scene": None}, "/body"),
+            ({"scene": None, "body": {"kind": "ball", "mass": 1.0, "radius": 1.0}}, "/angular_velocity"),
+        ],
+    )
+    async def test_refusals_have_their_place(self, change: dict[str, Any], pointer: str) -> None:
+        response = await asked({"scene": self.SCENE, "times": [1.0]} | change)
+        assert response.status_code == 422
+        assert [fault["pointer"] for fault in response.json()["errors"]] == [pointer]

@@ -181,8 +181,8 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
         warnings += (NEARLY_EQUAL,)
     elif apart:
         warnings += (_EQUAL_IN_FIGURES,)
-    told = _TOLD[symmetry if k < 0 else _SYMMETRY_ABOUT[k], regime, beyond]
-    absent = told.absent.copy()
+    report = _REPORTS[symmetry if k < 0 else _SYMMETRY_ABOUT[k], regime, beyond]
+    absent = report.absent.copy()
     tilt = middle_axis_tilt(resolved, inertia)
     if tilt is not None:
         absent.pop("middle_axis_tilt", None)
@@ -190,12 +190,12 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
             code, reason = _LOST[OUT_OF_RANGE]
             absent["middle_axis_tilt"] = reason
             warnings += (Notice(code, f"middle_axis_tilt {reason} and is null"),)
-    if told.regime == "steady" and inertia.moments[0] > 0.0:
+    if report.regime == "steady" and inertia.moments[0] > 0.0:
         why = unstable_spin(inertia.apart, resolved.angular_velocity.tolist())
         warnings += () if why is None else (unstable_axis(why),)
-    if told is _CONSTANT and isnan(figures[0]):
+    if report is _CONSTANT and isnan(figures[0]):
         absent["body_rate"] = missing_reasons.STEADY_IN_BODY
-    if not isnan(figures[3]) and told.order is not None:
+    if not isnan(figures[3]) and report.order is not None:
         if inertia.rounding.exact_zeros:
             # The moments are the body's own, and the middle one is known to differ.
             absent.pop("flip_interval", None)
@@ -211,9 +211,9 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
     pointing: Floats = np.array(axis)
     pointing.setflags(write=False)
     return Precession(
-        symmetry, told.regime, pointing, body_rate, space_rate, period, flip,
+        symmetry, report.regime, pointing, body_rate, space_rate, period, flip,
         tilt.range if tilt is not None and isfinite(tilt.least) else None, tilt is not None and tilt.tumbles,
-        to_momentum, to_velocity, between, told.order, turned, mean, absent, warnings,
+        to_momentum, to_velocity, between, report.order, turned, mean, absent, warnings,
     )  # fmt: skip
 
 
@@ -303,21 +303,21 @@ def order_of_directions(symmetry: Symmetry) -> str:
     return "prolate: the angular velocity lies between the axis and the angular momentum"
 
 
-def _told_of_all() -> Mapping[tuple[Symmetry, int, bool], RegimeReport]:
-    """Return what is told by symmetry, regime and whether a symmetric body does not move as one."""
+def _all_reports() -> Mapping[tuple[Symmetry, int, bool], RegimeReport]:
+    """Return the reports by symmetry, regime and whether a symmetric body does not move as one."""
     found: dict[tuple[Symmetry, int, bool], RegimeReport] = {
-        ("triaxial", regime, False): told for regime, told in _of_three(_THREE).items()
+        ("triaxial", regime, False): report for regime, report in _of_three(_THREE).items()
     }
-    found |= {("spherical", regime, False): told for regime, told in _of_three(_NEAR_A_SPHERE).items()}
+    found |= {("spherical", regime, False): report for regime, report in _of_three(_NEAR_A_SPHERE).items()}
     symmetric: tuple[Symmetry, ...] = ("oblate", "prolate")
     for symmetry in symmetric:
         found[symmetry, STEADY, False] = _CONSTANT
         found[symmetry, PERIODIC, False] = RegimeReport("periodic", order_of_directions(symmetry), _NO_MIDDLE_AXIS)
-        found |= {(symmetry, regime, True): told for regime, told in _UNLIKE_SYMMETRIC.items()}
+        found |= {(symmetry, regime, True): report for regime, report in _UNLIKE_SYMMETRIC.items()}
     return found
 
 
-_TOLD = _told_of_all()
+_REPORTS = _all_reports()
 
 
 _EQUAL_IN_FIGURES = equal_within_rounding(

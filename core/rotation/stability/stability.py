@@ -164,15 +164,15 @@ def stability(body: MassProperties, rate: float = 1.0, disturbance: tuple[float,
 
 def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, inertia: PrincipalInertia) -> Equilibrium:
     distinct = sorted(set(moments))
-    told = classify_equilibrium([distinct.index(moment) for moment in moments], axis, rates.turning != 0.0)
+    verdict = classify_equilibrium([distinct.index(moment) for moment in moments], axis, rates.turning != 0.0)
     size = None if rates.size == OUT_OF_RANGE else rates.size
     pair: tuple[Eigenvalue, Eigenvalue] | None = None
     growth: float | None = 0.0
-    if told.kind == "saddle":
+    if verdict.kind == "saddle":
         growth = size
     if size is not None:
         back = -size if size else 0.0
-        pair = ((size, 0.0), (back, 0.0)) if told.kind == "saddle" else ((0.0, size), (0.0, back))
+        pair = ((size, 0.0), (back, 0.0)) if verdict.kind == "saddle" else ((0.0, size), (0.0, back))
     *pointing, _ = oriented(inertia.axes, axis)
     axis_of: Floats = np.array(pointing)
     axis_of.setflags(write=False)
@@ -180,14 +180,14 @@ def _about(moments: list[tuple[float, float]], axis: int, rates: LinearRates, in
         axis_of,
         float(inertia.moments[axis]),
         None if pair is None else (*pair, (0.0, 0.0)),
-        told.kind,
-        told.stable,
+        verdict.kind,
+        verdict.stable,
         growth,
         None if rates.drift == OUT_OF_RANGE else rates.drift,
-        told.linearly_stable,
-        told.attitude,
-        told.survives_dissipation,
-        told.reason,
+        verdict.linearly_stable,
+        verdict.attitude,
+        verdict.survives_dissipation,
+        verdict.reason,
     )
 
 

@@ -27,6 +27,7 @@ from core.systems.system import DISCRETE_STEP, Floats, Integers, System
 @kernel(march_by(DISCRETE_STEP))
 def _march(
     advance: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,

@@ -5,6 +5,7 @@ between 1/3 and 6 from step to step, no growth right after a rejection. Three th
 Errors are compared with the largest component of the state, so the tolerance is relative and nothing depends on units.
 The first step is chosen in units of the motion's own time, size over speed, or from the horizon where there is none.
 Time and state are summed with their roundings carried on, so that many small steps lose no more than few large ones.
+A system with constraints is projected onto them at the end of every step that is taken.
 
 Samples inside a step come from the interpolant of order seven, at three further evaluations per step that has any.
 
@@ -32,8 +33,8 @@ from core.quantities import Quantity, check
 from core.systems.methods.dormand_prince_tableau import ERROR_3 as E3
 from core.systems.methods.dormand_prince_tableau import ERROR_5 as E5
 from core.systems.methods.dormand_prince_tableau import INTERPOLANT, STAGES, A, B, C
-from core.systems.methods.method import Family, Leg, Marching, Units
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.methods.method import PROJECTED, Family, Leg, Marching, Units
+from core.systems.system import PROJECTION, VECTOR_FIELD, Floats, Integers, System, unconstrained
 
 SMALLEST_TOLERANCE = 1e-16
 """Below this the estimate sees nothing but round-off; the samples stop improving from about 1e-15 on."""
@@ -41,6 +42,7 @@ SMALLEST_TOLERANCE = 1e-16
 DONE, OUT_OF_BUDGET, STEP_VANISHED = 0, 1, 2
 
 _field = types.FunctionType(VECTOR_FIELD)
+_projection = types.FunctionType(PROJECTION)
 _row = types.float64[::1]
 _rows = types.float64[:, ::1]
 
@@ -146,10 +148,14 @@ def _fit(step: float, state: Floats, new: Floats, stages: Floats, fitted: Floats
 
 
 @kernel(
-    types.int64(_field, _row, types.float64, _row, _row, types.int64, _rows, types.int64[::1], _row),
+    types.int64(
+        _field, _projection, types.boolean, _row, types.float64, _row, _row, types.int64, _rows, types.int64[::1], _row
+    ),
 )
 def _march(
     field: Any,
+    project: Any,
+    constrained: bool,
     targets: Floats,
     tolerance: float,
     start: Floats,
@@ -188,6 +194,8 @@ def _march(
         tally[0] += STAGES - 1
         if error <= 1.0:
             then, then_rest = (horizon, 0.0) if last else two_sum(now, step + rest)
+            if constrained:
+                project(new, parameters)
             field(then, new, parameters, slope)
             tally[0] += 1
             if not math.isfinite(_largest(slope)):
@@ -253,6 +261,7 @@ class DormandPrince853(Marching):
         "By the method's own interpolant of order seven, at three further evaluations in every step with a sample. "
         "The steps do not depend on the samples; only the last one ends at the farthest."
     )
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "The default where there is no closed form: smooth motions to errors from 1e-4 down to 1e-13, with as many "
         "samples as wanted at little extra cost."
@@ -274,8 +283,19 @@ class DormandPrince853(Marching):
     def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         samples = np.empty((targets.size, start.size))
         tally, reached = np.zeros(3, np.int64), np.zeros(1)
+        project = system.structure.projection
         outcome = _march(
-            system.equation, targets, self.tolerance, start, system.parameters, limit, samples, tally, reached
+            system.equation,
+            project,
+            project is not unconstrained,
+            targets,
+            self.tolerance,
+            start,
+            system.parameters,
+            limit,
+            samples,
+            tally,
+            reached,
         )
         if outcome == OUT_OF_BUDGET:
             raise self._out_of_budget(int(tally[0]), limit, float(reached[0]) / float(targets[-1]))

@@ -10,13 +10,14 @@ import numpy as np
 from core.compiled import kernel
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import ONE_STEP, OVERFLOW, FixedStep, keep, march_by, replace
-from core.systems.methods.method import Family
+from core.systems.methods.method import PROJECTED, Family
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
 
 @kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,
@@ -26,6 +27,7 @@ def _march(
     tally: Integers,
 ) -> int:
     slope, grid = np.empty_like(state), np.empty_like(state)
+    constrained = tally[3] == 1
     for i in range(len(count)):
         for run in range(2):
             replace(grid, state)
@@ -34,6 +36,8 @@ def _march(
                 field(begin[i, run] + j * h, state, parameters, slope)
                 for k in range(state.size):
                     state[k] += h * slope[k]
+                if constrained:
+                    project(state, parameters)
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
@@ -57,6 +61,7 @@ class ExplicitEuler(FixedStep):
     order: ClassVar[int] = 1
     family: ClassVar[Family] = "explicit"
     between_steps: ClassVar[str] = ONE_STEP + " For this method that is the straight line to the next grid point."
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "To see what a first-order method does, which most physics engines use: on a free body its energy grows at "
         "every step, and ten times less error costs ten times more steps."

@@ -5,7 +5,8 @@ moves the march: its states at the grid points n h are the same whatever times a
 point up to its own rounding is answered with the state there. A time between two grid points is answered by the
 method's own continuous extension: one further step, of the remaining length, from the grid point before it. Such a step
 has the local error of the method, so that samples keep its order, and it conserves what every step of the method does;
-the march goes on from the grid point as if it had not been taken.
+the march goes on from the grid point as if it had not been taken. The state of a system with constraints is projected
+onto them after every step.
 
 References
 ----------
@@ -27,7 +28,7 @@ from core.double_double import two_prod
 from core.errors import InvalidParameter
 from core.quantities import Duration
 from core.systems.methods.method import Leg, Marching, Units
-from core.systems.system import Floats, Integers, System
+from core.systems.system import PROJECTION, Floats, Integers, System, unconstrained
 
 _doubles = types.float64[::1]
 _integers = types.int64[::1]
@@ -38,9 +39,10 @@ _counts = types.int64[:, ::1]
 def march_by(law: Any) -> Any:
     """Return the signature of a compiled march by a law of motion that is itself compiled with the signature `law`.
 
-    Its arguments are (law, begin, step, count, state, parameters, samples to be filled in, tally). `begin`, `step` and
-    `count`, shape (n, 2), hold for each sample the start, the signed length and the number of two runs of steps: along
-    the grid, and from the grid to the sample. The march goes on from the state between the two. The result is the
+    Its arguments are (law, projection, begin, step, count, state, parameters, samples to be filled in, tally). The
+    projection puts the state onto the constraints after each step, if ``tally[3]`` says there are any. `begin`, `step`
+    and `count`, shape (n, 2), hold for each sample the start, the signed length and the number of two runs of steps:
+    along the grid, and from the grid to the sample. The march goes on from the state between the two. The result is the
     number of samples that were reached. ``tally[0]`` holds the evaluations that are left beyond the declared ones, and
     is counted down by methods that need such; ``tally[1]`` says why a march stopped early; ``tally[2]`` holds the
     declared evaluations of each step.
@@ -49,7 +51,17 @@ def march_by(law: Any) -> Any:
     cost 5 to 30 ns a step, where a step of forward Euler takes 9.
     """
     samples = types.float64[:, ::1]
-    return types.int64(types.FunctionType(law), _table, _table, _counts, _doubles, _doubles, samples, _integers)
+    return types.int64(
+        types.FunctionType(law),
+        types.FunctionType(PROJECTION),
+        _table,
+        _table,
+        _counts,
+        _doubles,
+        _doubles,
+        samples,
+        _integers,
+    )
 
 
 OVERFLOW, NO_CONVERGENCE, OUT_OF_BUDGET = 1, 2, 3
@@ -167,9 +179,10 @@ class FixedStep(Marching):
             raise self._over_budget(total * each, limit)
         declared = int(total) * each
         samples = np.empty((targets.size, start.size))
-        tally = np.array([limit - declared, 0, each])
-        march = self._compiled()
-        reached = march(self._law(system), begin, length, count, start.copy(), system.parameters, samples, tally)
+        projection = system.structure.projection
+        tally = np.array([limit - declared, 0, each, projection is not unconstrained])
+        march, law = self._compiled(), self._law(system)
+        reached = march(law, projection, begin, length, count, start.copy(), system.parameters, samples, tally)
         if tally[1]:
             time = units.given_time(float(targets[reached]))
             raise self._failure(int(tally[1]), time, int(count[:reached].sum()) / total, limit)

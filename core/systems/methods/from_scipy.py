@@ -3,6 +3,9 @@
 SciPy's solvers hold absolute lengths for first and smallest steps and absolute tolerances. They are given the motion
 in units in which the horizon and the largest component of the initial state lie between 1 and 2; the units are powers
 of two, so nothing is rounded. SciPy is imported when the first of these methods runs.
+
+Its solvers hold the history of a motion, which cannot be moved: of a system with constraints the samples alone are
+projected onto them.
 """
 
 from __future__ import annotations
@@ -55,6 +58,7 @@ class FromSciPy(Marching):
 
     tolerance: SciPyTolerance
     setting: ClassVar[str] = "tolerance"
+    on_constraints: ClassVar[str] = "Samples alone are projected: between them the state drifts off the constraints."
 
     def finer(self) -> Self | None:
         """Return the same method with a sixteenth of the tolerance, None where a quarter cannot be had."""

@@ -19,7 +19,7 @@ from core.compiled import kernel
 from core.double_double import two_sum
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep, march_by, replace
-from core.systems.methods.method import Family, Invariance
+from core.systems.methods.method import PROJECTED, Family, Invariance
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
 ITERATIONS = 100
@@ -28,6 +28,7 @@ ITERATIONS = 100
 @kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,
@@ -39,6 +40,7 @@ def _march(
     slope, new, middle = np.empty_like(state), np.empty_like(state), np.empty_like(state)
     tail = np.zeros_like(state)
     grid, grid_tail, grid_slope = np.empty_like(state), np.empty_like(state), np.empty_like(state)
+    constrained = tally[3] == 1
     # The slope of the last step is the first guess; for the first step it is the one at the start.
     field(begin[0, 0], state, parameters, slope)
     tally[0] -= 1
@@ -75,6 +77,8 @@ def _march(
                 for k in range(state.size):
                     # The rounding of the sum is carried on, which keeps the invariants from drifting.
                     state[k], tail[k] = two_sum(state[k], h * slope[k] + tail[k])
+                if constrained:
+                    project(state, parameters)
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
@@ -100,6 +104,7 @@ class ImplicitMidpoint(FixedStep):
     order: ClassVar[int] = 2
     family: ClassVar[Family] = "implicit"
     preserves: ClassVar[tuple[Invariance, ...]] = ("quadratic invariants", "time symmetry")
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "For long runs in which energy and angular momentum must not drift at all; the phase still does, in proportion "
         "to the square of the step."

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
+from numba import types
 
+from core.compiled import kernel
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.systems.budget import Budget
-from core.systems.system import Floats, System
+from core.systems.system import PROJECTION, Floats, System, unconstrained
 from core.systems.trajectory import Work
 from core.work import WorkLimitReached, remaining, spend
 
@@ -20,6 +22,12 @@ Invariance = Literal["every first integral", "quadratic invariants", "invariants
 
 EXTREME = 300
 """Exponents of two beyond which states are brought near one: cubes of what lies within stay doubles."""
+
+PROJECTED = (
+    "The state is projected onto the constraints after every step, and so are samples. The order remains; of what the "
+    "method preserves otherwise, nothing is promised."
+)
+"""What methods do that march by the equation of motion alone."""
 
 LONGEST, SHORTEST = float(np.finfo(np.float64).max), float(np.finfo(np.float64).smallest_subnormal)
 
@@ -59,6 +67,8 @@ class AbstractMethod(ABC):
         What the method keeps to round-off, whatever its step.
     between_steps : str
         How samples come about whose times lie between the ends of steps.
+    on_constraints : str
+        How constraints are kept, such as those of a described scene.
     when_to_use : str
         One sentence.
     """
@@ -68,6 +78,7 @@ class AbstractMethod(ABC):
     family: ClassVar[Family]
     preserves: ClassVar[tuple[Invariance, ...]] = ()
     between_steps: ClassVar[str]
+    on_constraints: ClassVar[str] = "Not for systems with constraints."
     when_to_use: ClassVar[str]
 
     @abstractmethod
@@ -101,6 +112,13 @@ class AbstractMethod(ABC):
     def coarser(self) -> AbstractMethod | None:
         """Return the same method made clearly less accurate, None if it cannot be; asked where `finer` has none."""
         return None
+
+
+@kernel(types.void(types.FunctionType(PROJECTION), types.float64[:, ::1], types.float64[::1]))
+def _project(projection: Any, states: Floats, parameters: Floats) -> None:
+    """Put samples onto the constraints, which what lies between steps leaves."""
+    for s in range(states.shape[0]):
+        projection(states[s], parameters)
 
 
 class Leg(NamedTuple):
@@ -183,6 +201,7 @@ class Marching(AbstractMethod):
             raise self._over_budget(math.inf, budget.evaluations)
         states = np.empty((times.size, start.size))
         states[times == 0.0] = begin
+        allowed = budget.evaluations // system.structure.weight
         evaluations = steps = rejected = 0
         for side in (np.flatnonzero(times > 0.0), np.flatnonzero(times < 0.0)):
             if not side.size:
@@ -191,25 +210,31 @@ class Marching(AbstractMethod):
             run = side[-1] - side[0] + 1 == side.size
             place = slice(side[0], side[-1] + 1) if run else side
             targets, rows = _outwards(times[place])
-            leg = self._limited(system, begin, targets, budget.evaluations - evaluations, units)
+            leg = self._limited(system, begin, targets, allowed - evaluations, units)
             states[place] = leg.states if rows is None else leg.states[rows]
             evaluations += leg.evaluations
             steps += leg.steps
             rejected += leg.rejected
+        if system.structure.projection is not unconstrained:
+            _project(system.structure.projection, states, system.parameters)
+            lost = ~np.isfinite(states).all(axis=1)
+            if lost.any():
+                raise self._off_constraints(units.given_time(float(np.abs(times[lost]).min())))
         return Integration(
             units.given_states(states), Work(times.size, evaluations, steps, rejected, step=self.grid_step)
         )
 
     def _limited(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         """March within the work that may be done here as well as within the budget."""
-        left = remaining()
+        weight = system.structure.weight
+        left = remaining() / weight
         try:
             leg = self._march(system, start, targets, int(min(limit, max(0.0, left))), units)
         except BudgetExceeded:
             if left < limit:
                 raise WorkLimitReached from None
             raise
-        spend(leg.evaluations)
+        spend(leg.evaluations * weight)
         return leg
 
     @abstractmethod
@@ -229,6 +254,10 @@ class Marching(AbstractMethod):
     def _overflow(self, time: float, remedy: str) -> InvalidParameter:
         rule = f"be small enough that the states stay in the double range; they left it before t = {time:.6g} s"
         return InvalidParameter(self.setting, rule, remedy=remedy)
+
+    def _off_constraints(self, time: float) -> InvalidParameter:
+        rule = f"be small enough that the states stay near the constraints; they left them before t = {time:.6g} s"
+        return InvalidParameter(self.setting, rule, remedy=f"use a smaller {self.setting}")
 
     def _over_budget(self, needed: float, limit: int) -> BudgetExceeded:
         count = int(min(max(needed, limit + 1.0), float(COUNTABLE)))

@@ -16,13 +16,14 @@ import numpy as np
 from core.compiled import kernel
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
-from core.systems.methods.method import Family
+from core.systems.methods.method import PROJECTED, Family
 from core.systems.system import VECTOR_FIELD, Floats, Integers, System
 
 
 @kernel(march_by(VECTOR_FIELD))
 def _march(
     field: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,
@@ -33,6 +34,7 @@ def _march(
 ) -> int:
     k1, k2, k3, k4 = np.empty_like(state), np.empty_like(state), np.empty_like(state), np.empty_like(state)
     stage, grid = np.empty_like(state), np.empty_like(state)
+    constrained = tally[3] == 1
     for i in range(len(count)):
         for run in range(2):
             replace(grid, state)
@@ -51,6 +53,8 @@ def _march(
                 field(t + h, stage, parameters, k4)
                 for k in range(state.size):
                     state[k] += h * ((k1[k] + k4[k]) + 2 * (k2[k] + k3[k])) / 6
+                if constrained:
+                    project(state, parameters)
         if not keep(state, i, samples):
             tally[1] = OVERFLOW
             return i
@@ -73,6 +77,7 @@ class RungeKutta4(FixedStep):
 
     order: ClassVar[int] = 4
     family: ClassVar[Family] = "explicit"
+    on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
         "For moderate accuracy (1e-3 to 1e-8) over a few periods at a fixed cost per step, and as the yardstick that "
         "most readers know."

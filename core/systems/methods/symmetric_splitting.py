@@ -25,6 +25,7 @@ from core.systems.system import PART_FLOW, Floats, Integers, Splitting, System
 @kernel(march_by(PART_FLOW))
 def _march(
     flow: Any,
+    project: Any,
     begin: Floats,
     step: Floats,
     count: Integers,

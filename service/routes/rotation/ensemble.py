@@ -19,7 +19,7 @@ from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, judged, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
 from service.routes.planning_probes import few_of, in_closed_form, probe_in_samples
 from service.routes.rotation.surfaces import Count, Seed
@@ -139,6 +139,7 @@ def ensemble_counts(question: EnsembleRequest, budget: Budget) -> dict[str, floa
         "samples": samples * members,
         "times": samples,
         **effort(question.method, question.times, _speed(question), samples, members),
+        **judged(question.method, question.times, _speed(question), budget, members),
         **numbers(3 * samples * members, question.round),
     }
 

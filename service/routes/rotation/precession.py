@@ -17,7 +17,7 @@ from core.rotation.stability.stability import stability
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation
-from service.execution.cost_model import CalibratedCost, effort, speed_of
+from service.execution.cost_model import CalibratedCost, effort, judged, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
 from service.routing import Answer, PlanningProbe, PostRoute
@@ -156,7 +156,8 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
         return found
     times = Span(start=0.0, stop=measure.duration, count=measure.samples)
     speed = speed_to_follow((measure.method,), question.body, speed_of(question.angular_velocity))
-    return found | effort(measure.method, times, speed, measure.samples)
+    found |= effort(measure.method, times, speed, measure.samples)
+    return found | judged(measure.method, times, speed, budget)
 
 
 def precession_probe(question: PrecessionRequest, budget: Budget) -> PlanningProbe:

@@ -13,7 +13,7 @@ from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import How, Work
-from service.execution.cost_model import CalibratedCost, effort, numbers, speed_of
+from service.execution.cost_model import CalibratedCost, effort, judged, numbers, speed_of
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
 from service.routes.planning_probes import in_closed_form, probe_in_samples
 from service.routing import Answer, PostRoute
@@ -208,6 +208,7 @@ def trajectory_counts(question: TrajectoryRequest, budget: Budget) -> dict[str, 
     if "attitude" in wanted:
         found |= {"attitudes": 1.0, "attitude samples": samples}
     found |= effort(question.method, question.times, _speed(question), samples)
+    found |= judged(question.method, question.times, _speed(question), budget)
     columns = 3 * ("angular_velocity" in wanted) + 4 * ("attitude" in wanted)
     return found | {"times": samples * ("time" in wanted)} | numbers(samples * columns, question.round)
 

@@ -79,7 +79,7 @@ def test_what_is_not_known_is_not_invented() -> None:
 
 def test_further_warnings_and_conditions_are_adopted() -> None:
     notice, condition = Notice("seen", "something was seen", ("here",)), Condition("round", False, "it is not round")
-    found = body().told((notice,), (condition,))
+    found = body().with_warnings((notice,), (condition,))
     assert found.warnings == (notice,)
     assert condition in found.validity.violations
     assert not found.validity.physical
@@ -93,11 +93,11 @@ def test_the_report_has_a_condition_for_the_mass() -> None:
 
 
 def test_an_unphysical_tensor_is_reported_at_its_field() -> None:
-    judged = diagonal((2.0, 1.0, 0.5)).judged("moments")
+    judged = diagonal((2.0, 1.0, 0.5)).with_validity_warning("moments")
     assert [(notice.code, notice.path) for notice in judged.warnings] == [("unphysical-inertia", ("moments",))]
     assert "2 <= 0.5 + 1" in judged.warnings[0].detail
     sound = diagonal((2.0, 1.0, 1.5))
-    assert sound.judged("moments") is sound
+    assert sound.with_validity_warning("moments") is sound
 
 
 @pytest.mark.parametrize("size", [Fraction(10) ** 309, Fraction(1, 10**330)])

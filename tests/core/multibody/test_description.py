@@ -527,3 +527,50 @@ def test_frame_that_spins_in_space() -> None:
         a, _ = flow(rate, ["1", "0"])(mpmath.mpf(0.6))
         place = column(answer, "arm.position")
         assert abs(place.values[0, 1] - mpmath.sin(a) / 2) <= place.error < 1e-13
+
+
+def hoop(*, welded: bool) -> dict[str, Any]:
+    """A hoop that rolls with a load on its rim; a part of its mass may be a disc that is welded to its centre."""
+    whole = {"mass": 3, "radius": 0.5, "inertia": 0.5, "at": [0, 0.5], "places": {"rim": [0.5, 0]}}
+    bodies: dict[str, Any] = {"hoop": whole, "load": {"mass": 0.5, "at": [0.5, 0.5]}}
+    connections: list[dict[str, Any]] = [
+        {"kind": "rolling", "place": "hoop", "on": {"at": [0, 0]}},
+        {"kind": "pin", "a": "load", "b": "hoop.rim"},
+    ]
+    if welded:
+        bodies["hoop"] = whole | {"mass": 1, "inertia": 0.25}
+        bodies["disc"] = {"mass": 2, "inertia": 0.25, "at": [0, 0.5], "angle": 1}
+        connections.append({"kind": "weld", "a": "disc", "b": "hoop.centre"})
+    return {"gravity": [0, -9.81], "bodies": bodies, "connections": connections}
+
+
+def test_a_disc_welded_to_the_centre_of_a_wheel_turns_with_it() -> None:
+    one, two = (solve_scene(read(hoop(welded=welded)), [0.3, 2.0]) for welded in (False, True))
+    assert (one.model.name, two.model.name) == ("one period", "one period")
+    assert one.period == pytest.approx(two.period, rel=1e-15)
+    for name in ("hoop.angle", "load.position", "load.velocity"):
+        away = column(one, name).values - column(two, name).values
+        assert np.abs(away).max() <= column(one, name).error + column(two, name).error
+    turned = column(two, "disc.angle")
+    assert turned.values == pytest.approx(column(two, "hoop.angle").values + 1, abs=4e-15)
+
+
+def test_a_spool_of_two_welded_wheels_is_uniformly_accelerated() -> None:
+    """(M + I/R^2 + m (1 - r/R)^2) a = m g (1 - r/R)."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "flange": {"mass": 2, "radius": 0.2, "inertia": 0.03, "at": [0, 0.2]},
+            "axle": {"mass": 0, "radius": 0.1, "inertia": 0, "at": [0, 0.2]},
+            "weight": {"mass": 1, "at": [1, -0.5]},
+        },
+        "connections": [
+            {"kind": "weld", "a": "axle", "b": "flange"},
+            {"kind": "rolling", "place": "flange", "on": {"at": [0, 0]}},
+            {"kind": "string", "through": ["axle", [1, 0.1], "weight"], "sides": {"axle": "below"}},
+        ],
+    }
+    answer = solve_scene(read(scene))
+    assert answer.model.name == "constant acceleration"
+    assert (answer.model.coordinates, answer.model.rows) == (1, 0)
+    assert linear(answer, "flange") == pytest.approx((9.81 / 6, 0), rel=1e-15)

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.errors import NotApplicable
+from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import BEAD_ON_HOOP, points, read
 
@@ -75,4 +75,33 @@ def test_rolling_on_a_curve_is_refused() -> None:
         "connections": [{"kind": "rolling", "place": "disc", "on": {"at": [0, 0], "radius": -1}}],
     }
     with pytest.raises(NotApplicable):
+        solve_scene(read(scene), outputs=("equilibria",))
+
+
+def test_places_beside_a_spring_of_no_length_are_no_equilibria() -> None:
+    """V = -g (cos a + cos b) + k/2 (d - 1)^2 has four; beside d = 0 Newton's steps are short, too."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"left": {"mass": 1, "at": [0.6, -0.8]}, "right": {"mass": 1, "at": [1, -1]}},
+        "connections": [
+            {"kind": "rod", "a": "left", "b": [0, 0]},
+            {"kind": "rod", "a": "right", "b": [1, 0]},
+            {"kind": "spring", "a": "left", "b": "right", "stiffness": 3, "rest_length": 1},
+        ],
+    }
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    assert len(found) == 4
+    for one in found:
+        left, right = one.positions["left"], one.positions["right"]
+        d = (right[0] - left[0], right[1] - left[1])
+        pull = 3 * (1 - 1 / math.hypot(*d))
+        # Across each rod: the spring against the weight.
+        assert (pull * d[0]) * -left[1] + (pull * d[1] - 9.81) * left[0] == pytest.approx(0, abs=1e-11)
+        assert -(pull * d[0]) * -right[1] - (pull * d[1] + 9.81) * (right[0] - 1) == pytest.approx(0, abs=1e-11)
+
+
+def test_searches_that_would_take_minutes_and_gigabytes_are_refused() -> None:
+    scene = {"gravity": [0, -9.81], "bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(100)}}
+    with pytest.raises(BudgetExceeded, match="4096 starts, 200 unknowns"):
         solve_scene(read(scene), outputs=("equilibria",))

@@ -104,3 +104,30 @@ def test_a_weight_on_a_spring_falls_about_its_equilibrium() -> None:
         assert abs(pull.values[0] - 8 * fall) <= pull.error
         total = column(answer, "energy.kinetic").values[0] + column(answer, "energy.potential").values[0]
         assert total == pytest.approx(-20, rel=1e-14)
+
+
+def test_a_spring_beside_a_free_fall_has_its_mode() -> None:
+    """3 u'' = k e - g of the string, e'' = 4 g/3 - 7 k e/3 of the spring.
+
+    The tension 2 (g + u'') vanishes at k e = -2 g.
+    """
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "left": {"mass": 2, "at": [-0.1, -50]},
+            "right": {"mass": 1, "at": [0.1, -50]},
+            "bob": {"mass": 0.5, "at": [0.1, -50.5]},
+        },
+        "connections": [
+            {"kind": "string", "name": "s", "through": ["left", [-0.1, 0], [0.1, 0], "right"]},
+            {"kind": "spring", "a": "right", "b": "bob", "stiffness": 6000, "rest_length": 0.4},
+        ],
+    }
+    answer = solve_scene(read(scene), [10.0])
+    k, g, (part,) = mpmath.mpf(6000), mpmath.mpf("9.81"), answer.model.apart
+    assert part.modes == ((pytest.approx(math.sqrt(14000), rel=1e-15), 0.0),)
+    mean = 4 * g / (7 * k)
+    first = mpmath.acos((-2 * g / k - mean) / (mpmath.mpf("0.1") - mean)) / mpmath.sqrt(7 * k / 3)
+    assert answer.ended is not None
+    assert (answer.ended.kind, answer.ended.name) == ("slack", "s")
+    assert abs(answer.ended.time - first) <= answer.ended.error + 1e-15

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import pytest
 from flint import arb
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.balls import precision
@@ -156,11 +156,8 @@ def test_jerks_that_lose_nothing_never_accumulate() -> None:
             sequence.accumulated()
 
 
-@settings(deadline=None, derandomize=True, max_examples=25)
-@given(arcs(), st.sampled_from([0, 1]))
-def test_the_first_arc_that_leaves_a_margin_is_the_first_of_all(arc: Arc, shaft: int) -> None:
-    """The margin is x of one shaft; candidates come from roots, the oracle looks at one arc after the other."""
-    arc = replace(arc, x=tuple(abs(x) + Fraction(1, 7) for x in arc.x))
+def first_below(arc: Arc, shaft: int):
+    """Return the arc in which x of a shaft first turns negative, as the sequence finds it from roots; None if never."""
     with precision(BITS):
         sequence = arc.sequence()
         acceleration = sequence.drive.positions[shaft]
@@ -169,18 +166,48 @@ def test_the_first_arc_that_leaves_a_margin_is_the_first_of_all(arc: Arc, shaft:
             time = exit_time(state.positions[shaft], state.velocities[shaft], acceleration)
             return time if time is not None and not time > length else None
 
-        start = sequence.start
-        gain = sequence.gains()[0][shaft]
+        start, gain = sequence.start, sequence.gains()[0][shaft]
         margins = [(start.positions[shaft], start.velocities[shaft], acceleration, gain)]
         found = sequence.first_arc(margins, [], leaves)
-        for n in range(25):
-            low = arc.x[shaft], arc.v[shaft], arc.slope_accelerations[shaft], arc.length
-            if lowest(*low) < 0:
-                assert found is not None
-                assert found[0] == n
-                return
-            arc = arc.next()
-        assert found is None or found[0] >= 25
+        return None if found is None else found[0]
+
+
+@settings(deadline=None, derandomize=True, max_examples=25)
+@given(arcs(), st.sampled_from([0, 1]))
+def test_the_first_arc_that_leaves_a_margin_is_the_first_of_all(arc: Arc, shaft: int) -> None:
+    """Candidates come from roots; here one arc is looked at after the other."""
+    arc = replace(arc, x=tuple(abs(x) + Fraction(1, 7) for x in arc.x))
+    found = first_below(arc, shaft)
+    for n in range(25):
+        if lowest_of(arc, shaft) < 0:
+            assert found == n
+            return
+        arc = arc.next()
+    assert found is None or found >= 25
+
+
+@settings(deadline=None, derandomize=True, max_examples=25)
+@given(arcs(), st.sampled_from([0, 1]), st.integers(1, 9))
+def test_arcs_are_candidates_where_the_lowest_point_between_jerks_changes_sign(arc: Arc, shaft: int, n: int) -> None:
+    """Moving x moves every arc alike: the vertices x - v^2/2a of two arcs in turn are put around zero."""
+    one = arc
+    for _ in range(n):
+        one = one.next()
+    vertices = [
+        each.x[shaft] - each.v[shaft] ** 2 / (2 * each.slope_accelerations[shaft]) for each in (one, one.next())
+    ]
+    assume(vertices[0] != vertices[1])
+    arc = replace(arc, x=tuple(x - sum(vertices) / 2 for x in arc.x))
+    with precision(BITS):
+        sequence = arc.sequence()
+        start, gain = sequence.start, sequence.gains()[0][shaft]
+        margin = (start.positions[shaft], start.velocities[shaft], sequence.drive.positions[shaft], gain)
+        assert {n, n + 1} <= set(sequence.candidates([margin], []))
+
+
+def lowest_of(arc: Arc, shaft: int) -> Fraction:
+    """Return the least x of a shaft on an arc."""
+    return lowest(arc.x[shaft], arc.v[shaft], arc.slope_accelerations[shaft], arc.length)
 
 
 def lowest(x: Fraction, v: Fraction, a: Fraction, length: Fraction) -> Fraction:

@@ -13,6 +13,7 @@ import orjson
 import pytest
 
 from service.app import Service
+from service.execution.admission import SECONDS_PER_BYTE
 from service.execution.messages import encoded
 from service.execution.worker import Task
 from service.http.keys import new_key
@@ -341,3 +342,23 @@ async def test_a_price_beyond_all_bounds_counts_as_the_deadline(client: httpx.As
     assert (await client.post("/v1/toy", json=LARGE)).status_code == 200
     assert (await endless).json()["code"] == "deadline-exceeded"
     assert service.compute.processes.backlog == 0.0
+
+
+async def test_reading_is_priced_as_it_is_done_twice(
+    client: httpx.AsyncClient, service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await ready(service)
+    service.compute.speed.clear()
+    predicted: list[float] = []
+    for processes in (service.compute.reader, service.compute.processes):
+
+        def submit(*arguments: Any, submit: Any = processes.submit, **more: Any) -> Any:
+            predicted.append(arguments[2])
+            return submit(*arguments, **more)
+
+        monkeypatch.setattr(processes, "submit", submit)
+    body = orjson.dumps(LARGE) + b" " * 1_000_000
+    assert (await client.post("/v1/toy", content=body, headers=dict(JSON))).status_code == 200
+    reading, answering = predicted
+    assert reading == SECONDS_PER_BYTE * len(body)
+    assert answering >= reading

@@ -19,6 +19,7 @@ from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ExplicitEuler, Method
+from core.work_precision import DEFAULT_RUNS, SCIPY_TOLERANCES
 from service.execution.cost_model import (
     UNCOUNTABLE,
     CalibratedCost,
@@ -297,6 +298,32 @@ class TestMotionsThatOutrunTheirStart:
             for name, body in (("oblique", {}), ("principal", along))
         }
         assert least <= price_of["oblique"] / price_of["principal"] < most
+
+    def test_ladders_of_such_motions_are_as_dear_as_their_share_of_the_budget(self) -> None:
+        places = [[1e104, 0.0, 0.0], [0.0, 1e92, 0.0], [0.0, 0.0, 1e92]]
+        body = {"kind": "point-masses", "masses": [1.0, 1.0, 1.0], "positions": places}
+        question = {"body": body, "angular_velocity": [1e-3, 1.0, 1.0], "times": [0.0, 10.0]}
+        route = ROUTES["/v1/work-precision"]
+        counts = route.price.counts(ANSWERING.read(route, json.dumps(question).encode()), Budget())  # type: ignore[attr-defined]
+        share = Budget().evaluations // DEFAULT_RUNS
+        for kind in ("lsoda", "radau"):
+            assert counts[f"evaluations of {kind}"] == share * len(SCIPY_TOLERANCES)
+
+    def test_judging_a_method_where_the_closed_form_is_out_of_reach_is_counted(self) -> None:
+        """The judge of each member spends the whole budget."""
+        budget = Budget(evaluations=3000)
+        question = {
+            "body": {"kind": "principal-moments", "moments": [1.0, 2.0, 3.0]},
+            "angular_velocities": [[1e57, 1e57, 1e57], [1e57, 2e57, 1e57]],
+            "times": [1.0],
+            "method": {"kind": "symmetric-splitting", "step": 269.0},
+        }
+        route = ROUTES["/v1/rotation/ensemble"]
+        read = ANSWERING.read(route, json.dumps(question).encode())
+        assert "2970 are allowed" in str(route.handle(read, budget)["warnings"])
+        assert route.price.counts(read, budget)["judging evaluations"] == 6000.0  # type: ignore[attr-defined]
+        slow = read.model_copy(update={"angular_velocities": [[1.0, 1.0, 1.0]]})
+        assert "judging evaluations" not in route.price.counts(slow, budget)  # type: ignore[attr-defined]
 
     def test_starts_of_an_energy_are_as_dear_as_the_same_starts_given(self) -> None:
         moments, sample = (3.0, 2.0, 1.5), {"energy": 1e10, "count": 20, "seed": 1}

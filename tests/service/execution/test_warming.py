@@ -14,7 +14,6 @@ Kernel = tuple[str, str]
 OF_NO_REQUEST = {
     ("core.elliptic.integrals", "_carlson_rf"),
     ("core.elliptic.integrals", "_complete_k"),
-    ("core.rotation.precession.constants", "angle_per_period"),
 }
 """Kernels that Python code calls for users of the library; requests reach them inside of other kernels only."""
 
@@ -39,8 +38,6 @@ def entry_kernels() -> set[Kernel]:
     trees = {
         ".".join(path.relative_to(ROOT).with_suffix("").parts): ast.parse(path.read_text())
         for path in (ROOT / "core").rglob("*.py")
-        # No request reaches described scenes yet.
-        if "multibody" not in path.parts
     }
     kernels = {(module, node.name) for module, tree in trees.items() for node in ast.walk(tree) if is_kernel(node)}  # type: ignore[attr-defined]
     found = set()

@@ -205,6 +205,34 @@ class TestReady:
             assert [record.message for record in caplog.records] == ["a compute process could not be started"] * 2
             assert await ask(processes, b"echo a").reply == b"a"
 
+    async def test_attempts_become_rare_while_nothing_can_be_started(
+        self, place: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Each of them is logged with its traceback: two a second would fill a disk."""
+        async with warm(place) as (processes, _):
+            pauses: list[float] = []
+            pair, sleep = socket.socketpair, asyncio.sleep
+
+            def lacking() -> tuple[socket.socket, socket.socket]:
+                if len(pauses) < 6:
+                    raise OSError(28, "No space left on device")
+                return pair()
+
+            async def noted(seconds: float) -> None:
+                # Other waits are those of this test.
+                if seconds in (0.0, 0.0011, 0.0022, 0.0044, 0.005):
+                    pauses.append(seconds)
+                await sleep(seconds)
+
+            monkeypatch.setattr("service.execution.worker_pool.socket.socketpair", lacking)
+            monkeypatch.setattr("service.execution.worker_pool.PAUSE", 0.0011)
+            monkeypatch.setattr("service.execution.worker_pool.LONGEST_PAUSE", 0.005)
+            monkeypatch.setattr("service.execution.worker_pool.asyncio.sleep", noted)
+            (before,) = processes.pids
+            os.kill(before, signal.SIGKILL)
+            await until(lambda: processes.ready and before not in processes.pids)
+            assert pauses[:6] == [0.0, 0.0011, 0.0022, 0.0044, 0.005, 0.005]
+
 
 class TestMessages:
     @given(st.lists(st.binary(max_size=300), max_size=6), st.lists(st.integers(0, 2000), max_size=12))

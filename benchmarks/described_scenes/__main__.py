@@ -1,0 +1,90 @@
+"""Measure whole answers about described scenes; write benchmarks/results/described_scenes.json.
+
+make peers-scenes                       (with every peer that can be installed)
+python -m benchmarks.described_scenes   (with those that are)
+
+Every example and every scene of the catalogue is answered as the service answers it, from the document to the error
+statement, without HTTP and JSON. "set-up" is the same question without times.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import time
+from importlib import metadata
+from typing import Any
+
+from benchmarks.described_scenes.double_pendulum import ENTRANTS, EXACT, Entrant
+from benchmarks.machine import RESULTS, described, medians
+from core.systems.budget import Budget
+from service.requests.described_scene import DescribedSceneRequest
+from service.routes.described_scenes import described_examples, solved
+
+TOO_LONG = 20.0
+"""After a run that takes longer (s), dearer settings are left out."""
+
+
+def installed(package: str) -> bool:
+    """Return whether a distribution is there."""
+    try:
+        metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return False
+    return True
+
+
+def catalogue(repeats: int) -> dict[str, Any]:
+    """Return milliseconds of the set-up and of the whole answer, by scene."""
+    rows = {}
+    for entry in described_examples():
+        document = json.loads(json.dumps(entry["example"]))
+        question = DescribedSceneRequest.model_validate(document)
+        start = question.model_copy(update={"times": None})
+        runs = {"whole": lambda q=question: solved(q, Budget()), "set-up": lambda q=start: solved(q, Budget())}
+        found = medians(runs, repeats)
+        rows[entry["name"]] = {name: round(1e3 * seconds, 3) for name, seconds in found.items()}
+    return rows
+
+
+def dial(entrant: Entrant) -> dict[str, Any]:
+    """Return error against milliseconds of one way to compute the double pendulum."""
+    points = []
+    for setting in entrant.settings:
+        since = time.perf_counter()
+        run = entrant.prepare(setting)
+        prepared = time.perf_counter() - since
+        since = time.perf_counter()
+        found = run()
+        once = time.perf_counter() - since
+        error = max(abs(x - y) for x, y in zip(found, EXACT, strict=True))
+        seconds = medians({"run": run}, 5)["run"] if once < 1.0 else once
+        points.append({"setting": setting, "error": error, "milliseconds": 1e3 * seconds, "prepared": 1e3 * prepared})
+        if once > TOO_LONG:
+            break
+    return {"points": points}
+
+
+def main() -> None:
+    """Measure, write and print."""
+    before = os.getloadavg()[0]
+    there = [entrant for entrant in ENTRANTS if installed(entrant.package)]
+    scenes = catalogue(9)
+    whole = [row["whole"] for row in scenes.values()]
+    result = {
+        "machine": described(*sorted({entrant.package for entrant in there})),
+        "load average": {"before": before, "after": os.getloadavg()[0]},
+        "milliseconds": {"median": statistics.median(whole), "worst": max(whole), "scenes": scenes},
+        "double pendulum, 10 s": {entrant.name: dial(entrant) for entrant in there},
+    }
+    text = json.dumps(result, indent=1) + "\n"
+    (RESULTS / "described_scenes.json").write_text(text, encoding="utf-8")
+    print(json.dumps({"median": statistics.median(whole), "worst": max(whole)}))
+    for name, own in result["double pendulum, 10 s"].items():
+        for point in own["points"]:
+            print(f"{name:48} {point['setting']:8.1e} {point['error']:9.1e} rad {point['milliseconds']:10.2f} ms")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,162 @@
+"""Curves over linear axes as SVG, in panels below one another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from math import ceil, floor, log10
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.responses.svg import COLOURS
+
+Floats = NDArray[np.float64]
+
+LEFT, TOP, WIDTH, HEIGHT = 80.0, 50.0, 520.0, 260.0
+SQUARE = 520.0
+"""Height of a panel in which both axes have one scale."""
+GAP, PAGE = 70.0, 840.0
+MOST_LABELS = 16
+MOST_POINTS = 4000
+"""Points of one curve; of more, every second, third ... is drawn."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """Points that belong together, each coordinate of shape (n,)."""
+
+    label: str
+    x: Floats
+    y: Floats
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Lines over two axes.
+
+    Attributes
+    ----------
+    across, up : str
+        Names of the axes.
+    lines : sequence of Line
+    one_scale : bool
+        Whether a length is as long on either axis.
+    """
+
+    across: str
+    up: str
+    lines: Sequence[Line]
+    one_scale: bool = False
+
+    @property
+    def height(self) -> float:
+        """In pixels, without what stands around the axes."""
+        return SQUARE if self.one_scale else HEIGHT
+
+
+@dataclass(frozen=True)
+class Axis:
+    """From values to pixels; values are divided by a power of ten first, so that their differences are doubles."""
+
+    low: float
+    high: float
+    exponent: int
+    start: float
+    length: float
+
+    @classmethod
+    def over(cls, values: Floats, start: float, length: float) -> Axis:
+        """Return the axis that holds all values, with a margin where they are one."""
+        largest = float(np.max(np.abs(values), initial=0.0))
+        exponent = floor(log10(largest)) if largest > 0.0 else 0
+        shares = _divided(values, exponent) if len(values) else np.zeros(1)
+        low, high = float(shares.min()), float(shares.max())
+        if not high - low > 1e-9:
+            low, high = low - 1.0, high + 1.0
+        return cls(low, high, exponent, start, length)
+
+    def widened(self, width: float) -> Axis:
+        """Return the axis about the same middle with another width, in units of its power of ten."""
+        middle = 0.5 * (self.low + self.high)
+        return Axis(middle - 0.5 * width, middle + 0.5 * width, self.exponent, self.start, self.length)
+
+    def at(self, values: Floats) -> Floats:
+        """Return the places of values in pixels."""
+        found: Floats = self.start + self.length * (_divided(values, self.exponent) - self.low) / (self.high - self.low)
+        return found
+
+    def ticks(self) -> Iterator[tuple[float, str]]:
+        """Yield round values as places in pixels, with their labels."""
+        width = self.high - self.low
+        step = 10.0 ** floor(log10(width / 4))
+        step *= next(factor for factor in (1, 2, 5, 10) if width / (factor * step) <= 8)
+        for k in range(ceil(self.low / step), floor(self.high / step) + 1):
+            place = self.start + self.length * (k * step - self.low) / width
+            plain = -4 <= self.exponent <= 4
+            yield place, f"{k * step * 10.0**self.exponent:.6g}" if plain else f"{k * step:.6g}e{self.exponent}"
+
+
+def panels(title: str, shown: Sequence[Panel]) -> str:
+    """Return a figure of panels as an SVG document."""
+    parts, top = [f'<text x="{LEFT:g}" y="24" font-weight="bold">{escape(title)}</text>'], TOP
+    for panel in shown:
+        parts.extend(_drawn(panel, top))
+        top += panel.height + GAP
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {PAGE:g} {top:g}" font-family="sans-serif" '
+        f'font-size="13"><rect width="{PAGE:g}" height="{top:g}" fill="white"/>' + "".join(parts) + "</svg>\n"
+    )
+
+
+def _drawn(panel: Panel, top: float) -> Iterator[str]:
+    x = Axis.over(np.concatenate([line.x for line in panel.lines] or [np.zeros(0)]), LEFT, WIDTH)
+    y = Axis.over(np.concatenate([line.y for line in panel.lines] or [np.zeros(0)]), top + panel.height, -panel.height)
+    if panel.one_scale:
+        x, y = _alike(x, y)
+    bottom = top + panel.height
+    for place, label in x.ticks():
+        yield f'<line x1="{place:.1f}" y1="{top:g}" x2="{place:.1f}" y2="{bottom:g}" stroke="#eee"/>'
+        yield f'<text x="{place:.1f}" y="{bottom + 18:g}" text-anchor="middle" fill="#555">{label}</text>'
+    for place, label in y.ticks():
+        yield f'<line x1="{LEFT:g}" y1="{place:.1f}" x2="{LEFT + WIDTH:g}" y2="{place:.1f}" stroke="#eee"/>'
+        yield f'<text x="{LEFT - 8:g}" y="{place:.1f}" dy="4" text-anchor="end" fill="#555">{label}</text>'
+    yield f'<rect x="{LEFT:g}" y="{top:g}" width="{WIDTH:g}" height="{panel.height:g}" fill="none" stroke="#999"/>'
+    yield f'<text x="{LEFT + WIDTH / 2:g}" y="{bottom + 38:g}" text-anchor="middle">{escape(panel.across)}</text>'
+    middle = top + panel.height / 2
+    turned = f'transform="rotate(-90 18 {middle:g})"'
+    yield f'<text x="18" y="{middle:g}" {turned} text-anchor="middle">{escape(panel.up)}</text>'
+    for k, line in enumerate(panel.lines):
+        colour = COLOURS[k % len(COLOURS)]
+        every = slice(None, None, max(1, ceil(len(line.x) / MOST_POINTS)))
+        points = " ".join(
+            f"{px:.1f},{py:.1f}"
+            for px, py in zip(x.at(line.x[every]).tolist(), y.at(line.y[every]).tolist(), strict=True)
+        )
+        yield f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.2" stroke-linejoin="round"/>'
+        if len(line.x) == 1:
+            yield f'<circle cx="{points.partition(",")[0]}" cy="{points.partition(",")[2]}" r="3" fill="{colour}"/>'
+        if k < MOST_LABELS:
+            height = top + 14 + 18 * k
+            yield f'<text x="{LEFT + WIDTH + 14:g}" y="{height:g}" fill="{colour}">{escape(line.label)}</text>'
+
+
+def _alike(x: Axis, y: Axis) -> tuple[Axis, Axis]:
+    """Return two axes with one scale."""
+    exponent = max(x.exponent, y.exponent)
+    x, y = (_in_unit(axis, exponent) for axis in (x, y))
+    scale = max((x.high - x.low) / abs(x.length), (y.high - y.low) / abs(y.length))
+    return x.widened(scale * abs(x.length)), y.widened(scale * abs(y.length))
+
+
+def _in_unit(axis: Axis, exponent: int) -> Axis:
+    factor = 10.0 ** max(axis.exponent - exponent, -300)
+    return Axis(axis.low * factor, axis.high * factor, exponent, axis.start, axis.length)
+
+
+def _divided(values: Floats, exponent: int) -> Floats:
+    # Two factors, of which neither leaves the range of doubles.
+    half = exponent // 2
+    found: Floats = values / 10.0**half / 10.0 ** (exponent - half)
+    return found

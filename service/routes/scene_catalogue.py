@@ -1,0 +1,44 @@
+"""The catalogue of described scenes: the questions of examples/scenes, with what each shows and is compared with."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any
+
+
+@dataclass(frozen=True)
+class CatalogueScene:
+    """One scene of the catalogue.
+
+    Attributes
+    ----------
+    summary : str
+        What it shows.
+    model : str
+        Name of the model that is found.
+    reference : str
+        What the tests compare it with.
+    question : mapping
+        As it is sent to ``POST /v1/scenes``.
+    """
+
+    summary: str
+    model: str
+    reference: str
+    question: Mapping[str, Any]
+
+
+@cache
+def scene_catalogue() -> Mapping[str, CatalogueScene]:
+    """Return every described scene by name, in the order of the catalogue."""
+    folder = resources.files("examples").joinpath("scenes")
+    entries = tomllib.loads(folder.joinpath("catalogue.toml").read_text(encoding="utf-8"))
+    return {
+        name: CatalogueScene(**entry, question=json.loads(folder.joinpath(f"{name}.json").read_text(encoding="utf-8")))
+        for name, entry in entries.items()
+    }
