@@ -27,6 +27,10 @@ METHODS = (ExplicitEuler, RungeKutta4, ImplicitMidpoint, SymmetricSplitting)
 EXPLAINED = 1e-3
 """Share of the error that may be left unexplained by a method that the samples are consistent with."""
 
+ALIKE = 0.5
+"""Cosine between a method's errors at two steps: near 1 for short ones, where the error is step^p times one function of
+time. Errors of another origin are nearly orthogonal to them."""
+
 NEAR = 0.3
 """Share of the error that the best likely step may leave unexplained for a step near it to be looked for."""
 
@@ -156,10 +160,12 @@ class _Search:
         for _ in range(3):
             if self._unexplained(step) <= self._enough:
                 return self._consistent(step)
-            own = self._error(step)
+            own, alike = self._error(step)
             if not 0.0 < own < float("inf"):
                 step /= 8.0
                 continue
+            if alike < ALIKE:
+                return None
             step *= (error / own) ** (1.0 / self._member.order)
             for candidate in _candidates(step, spacing):
                 if self._unexplained(candidate) <= self._enough:
@@ -179,9 +185,17 @@ class _Search:
             self._tried[step] = float("inf") if states is None else float(_norms(states - self._rows).max())
         return self._tried[step]
 
-    def _error(self, step: float) -> float:
+    def _error(self, step: float) -> tuple[float, float]:
+        """Return the method's own largest error, and the cosine between its errors and those of the samples."""
         states = _run(self._member, step, self._system, self._times)
-        return 0.0 if states is None else float(_norms(states - self._right).max())
+        if states is None:
+            return 0.0, 0.0
+        own, given = states - self._right, self._rows - self._right
+        largest = float(_norms(own).max())
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            unit, other = own / largest, given / float(_norms(given).max())
+            alike = float((unit * other).sum() / np.sqrt((unit**2).sum() * (other**2).sum()))
+        return largest, alike
 
 
 def _candidates(step: float, spacing: float) -> Iterator[float]:

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.assessment.units import base_powers
 from core.systems.budget import Budget
 from core.work import work_limit
 from service.execution.request_handler import RequestHandler
@@ -498,3 +499,46 @@ async def test_names_lead_to_numbers(names: dict[str, str], pointer: str) -> Non
     response = await asked(SHAFTS, {"/tension": {"formula": "1"}}, names=names)
     assert response.status_code == 422
     assert response.json()["errors"][0]["pointer"] in (pointer, "/names/sin")
+
+
+def units_in(node: Any) -> list[str]:
+    if isinstance(node, dict):
+        own = [node["unit"]] if isinstance(node.get("unit"), str) else []
+        return own + [unit for entry in node.values() for unit in units_in(entry)]
+    return [unit for entry in node for unit in units_in(entry)] if isinstance(node, list) else []
+
+
+def test_no_example_imports_the_library_of_units_while_the_service_warms_up() -> None:
+    examples = [dict(example.question) for example in ROUTES[PATH].examples.values()]
+    assert units_in(examples)
+    assert all(base_powers(unit) is not None for unit in units_in(examples))
+
+
+def test_every_comparison_and_every_form_of_claim_has_an_example() -> None:
+    examples = ROUTES[PATH].examples
+    assert {"relabs", "sigfig", "decdig", "interval", "data", "formulas", "samples", "choices-and-sets"} <= set(
+        examples
+    )
+
+
+async def test_methods_are_looked_for_in_a_limited_number_of_samples() -> None:
+    times = [0.1 * i for i in range(10)]
+    claim = {"times": times, "value": [[0.1 * i, 1.0, 0.3 * i] for i in range(10)], "unit": "rad/s"}
+    few = handled(MOTION, *[{"/angular_velocity": claim}] * 3)
+    many = handled(MOTION, *[{"/angular_velocity": claim}] * 101)
+    assert few["warnings"] == []
+    assert [warning["code"] for warning in many["warnings"]] == ["methods-not-looked-for"]
+
+
+async def test_samples_at_times_of_their_own_cost_a_question_each() -> None:
+    route = ROUTES[PATH]
+
+    def price(count: int, shift: float) -> float:
+        claims = [
+            {"/angular_velocity": {"times": [shift * i, 1.0], "value": [[0.0] * 3] * 2, "unit": "rad/s"}}
+            for i in range(count)
+        ]
+        body = json.dumps({"question": MOTION, "submissions": claims}).encode()
+        return float(route.price(HANDLER.read(route, body), Budget()))
+
+    assert price(200, 0.1) > 3 * price(2, 0.1)

@@ -15,13 +15,14 @@ from core.assessment.comparisons import Comparison
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.errors import InvalidParameter, MechanicsError, Path
+from core.notices import Notice
 from core.quantities import Quantity, Uncertainty, Unit
 from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.routes.assessments.assessed_question import AssessedQuestion, steps_of
-from service.routes.assessments.grading import Grader
+from service.routes.assessments.grading import MOST_IDENTIFIED, Grader
 from service.routes.assessments.submissions import LONGEST_POINTER, SubmissionList
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, RadiansPerSecond, Ratio, Request, Seconds, View
@@ -35,6 +36,9 @@ FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
 
 SECONDS_OF_A_SUBMISSION = 5e-5
+
+SECONDS_OF_A_SEARCH = 1e-2
+"""For the method that samples come from."""
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
@@ -219,7 +223,11 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         grader = Grader(asked, question.comparison, comparisons, question.reveal, MISTAKES, credits, _names(question))
         results = [grader.result(i, submission) for i, submission in enumerate(question.submissions)]
         shown = {"reference": grader.references()} if question.reveal else {}
-        return {"results": results, **shown, "warnings": warnings if question.reveal else ()}
+        warnings = warnings if question.reveal else []
+        if grader.looked_for > MOST_IDENTIFIED:
+            detail = f"the method is looked for in the first {MOST_IDENTIFIED} wrong samples of a request"
+            warnings.append(Notice("methods-not-looked-for", detail, ("submissions",)))
+        return {"results": results, **shown, "warnings": warnings}
 
     def price(question: AssessmentRequest, budget: Budget) -> float:
         route = routed(question)
@@ -232,7 +240,9 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
             raise
         inputs = sum(1 for _ in numbers_of(question.question.request))
         again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
-        return again * once + SECONDS_OF_A_SUBMISSION * len(question.submissions)
+        timed = sum(map(_timed, question.submissions))
+        methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED)
+        return (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
 
     def small(question: AssessmentRequest) -> bool:
         route = table.get(question.question.path)
@@ -255,6 +265,12 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         small,
         description=DESCRIPTION,
     )
+
+
+def _timed(submission: Any) -> int:
+    """Return how many claims of a submission have times of their own."""
+    claims = submission.values() if isinstance(submission, dict) else ()
+    return sum(isinstance(claim, dict) and "times" in claim for claim in claims)
 
 
 def _uncertainty(question: AssessmentRequest) -> float | dict[Path, float] | None:

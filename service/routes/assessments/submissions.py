@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 from math import isfinite
 from typing import Any
 
@@ -159,16 +160,14 @@ def _value(value: Any, name: str) -> Any:
     raise Unreadable("must be a number, an array of numbers, a string, true, false or null", name)
 
 
+NUMBERS = {float, int}
+
+
 def _array(value: list[Any], name: str) -> Floats:
     rows = value if value and type(value[0]) is list else [value]
-    length = len(rows[0])
-    for i, row in enumerate(rows):
-        place = (name, i) if rows is value else (name,)
-        if type(row) is not list or len(row) != length or not row:
-            raise Unreadable(f"must be an array of {length or 'some'} numbers, as the first row is", *place)
-        for j, number in enumerate(row):
-            if type(number) not in (float, int):
-                raise Unreadable("must be a number", *place, j)
+    plain = {*map(type, rows)} == {list} and len({*map(len, rows)}) == 1 and rows[0] != []
+    if not plain or not {*map(type, chain.from_iterable(rows))} <= NUMBERS:
+        raise _fault(value, rows, name)
     try:
         array = np.array(value, dtype=np.float64)
     except OverflowError:
@@ -176,3 +175,16 @@ def _array(value: list[Any], name: str) -> Floats:
     if not np.isfinite(array).all():
         raise Unreadable("must have finite entries", name)
     return array
+
+
+def _fault(value: list[Any], rows: list[Any], name: str) -> Unreadable:
+    """Return the first thing that is wrong with rows of which something is."""
+    length = len(rows[0])
+    for i, row in enumerate(rows):
+        place = (name, i) if rows is value else (name,)
+        if type(row) is not list or len(row) != length or not row:
+            return Unreadable(f"must be an array of {length or 'some'} numbers, as the first row is", *place)
+        for j, number in enumerate(row):
+            if type(number) not in NUMBERS:
+                return Unreadable("must be a number", *place, j)
+    return Unreadable("must be an array of numbers", name)
