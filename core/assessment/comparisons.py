@@ -8,7 +8,8 @@ characteristic scale: an absolute 1e-8 accepts 0 for a true moment of 1e-9 kg m^
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor, inf, log10
+from decimal import Decimal
+from math import inf
 from typing import Annotated, Literal
 
 from core.errors import InvalidParameter
@@ -71,7 +72,8 @@ class SigFig:
     def tolerance(self, magnitude: float, scale: float, known: float) -> float:
         """Return the largest error that is accepted; the figures of a reference of zero are those of its scale."""
         size = magnitude or scale
-        return HALF_WIDTH * 10.0 ** (floor(log10(size)) - self.digits + 1) if size > 0.0 else 0.0
+        # The logarithm of what is just below a power of ten rounds up to it.
+        return HALF_WIDTH * 10.0 ** (Decimal(size).adjusted() - self.digits + 1) if size > 0.0 else 0.0
 
 
 @dataclass(frozen=True)

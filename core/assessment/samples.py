@@ -27,6 +27,9 @@ METHODS = (ExplicitEuler, RungeKutta4, ImplicitMidpoint, SymmetricSplitting)
 EXPLAINED = 1e-3
 """Share of the error that may be left unexplained by a method that the samples are consistent with."""
 
+ROUNDS = 3
+"""Times that a step is corrected by the error that it leads to."""
+
 ALIKE = 0.5
 """Cosine between a method's errors at two steps: near 1 for short ones, where the error is step^p times one function of
 time. Errors of another origin are nearly orthogonal to them."""
@@ -157,16 +160,19 @@ class _Search:
         if spacing == 0.0:
             return None
         error, step = float(_norms(self._rows - self._right).max()), spacing
-        for _ in range(3):
+        for corrected in range(ROUNDS):
             if self._unexplained(step) <= self._enough:
                 return self._consistent(step)
             own, alike = self._error(step)
             if not 0.0 < own < float("inf"):
                 step /= 8.0
                 continue
-            if alike < ALIKE:
-                return None
             step *= (error / own) ** (1.0 / self._member.order)
+            if alike < ALIKE:
+                # A step that is far too long shows little yet; one of about this error does.
+                if corrected:
+                    return None
+                continue
             for candidate in _candidates(step, spacing):
                 if self._unexplained(candidate) <= self._enough:
                     return self._consistent(candidate)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from decimal import Decimal
+from fractions import Fraction
 
 import pytest
 from hypothesis import given
@@ -24,8 +24,15 @@ def test_an_absolute_tolerance_is_a_share_of_the_scale_unless_it_is_given() -> N
 
 @given(size=sizes, digits=st.integers(1, 15))
 def test_significant_figures_are_those_of_the_written_decimal(size: float, digits: int) -> None:
-    exponent = Decimal(size).adjusted() - digits + 1
-    assert SigFig(digits).tolerance(size, size, 0.0) == pytest.approx(0.51 * 10.0**exponent, rel=1e-12)
+    width = Fraction(SigFig(digits).tolerance(size, size, 0.0)) / Fraction(51, 100)
+    # The unit of the last digit is that power of ten of which the number has as many digits.
+    assert 10 ** (digits - 1) * (1 - Fraction(1, 10**12)) <= Fraction(size) / width
+    assert Fraction(size) / width < 10**digits * (1 + Fraction(1, 10**12))
+    assert Fraction(str(float(f"{float(width):.6e}"))).numerator in {1, *(10**k for k in range(1, 13))}
+
+
+def test_a_number_just_below_a_power_of_ten_has_one_digit_less() -> None:
+    assert SigFig(1).tolerance(999999999999.998, 1.0, 0.0) == pytest.approx(5.1e10)
 
 
 def test_significant_figures_of_zero_are_those_of_its_scale() -> None:
