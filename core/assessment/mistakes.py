@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -18,8 +18,6 @@ from core.assessment.compare import Reference, compare, tolerance_of
 from core.assessment.comparisons import Comparison, Interval
 from core.assessment.propagation import Evaluate
 from core.errors import InvalidParameter, Path
-
-Kind = Literal["value", "answer", "question"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +70,6 @@ class Mistake:
     ----------
     tag : str
         Stable.
-    kind : {"value", "answer", "question"}
-        Whether the wrong value follows from the right value alone, which the tag would then give away; from another
-        figure of the answer; or from a changed question.
     summary : str
         What was done.
     feedback : str
@@ -86,7 +81,6 @@ class Mistake:
     """
 
     tag: str
-    kind: Kind
     summary: str
     feedback: str
     wrong: Callable[[Figure], Iterable[Any]] = field(repr=False)

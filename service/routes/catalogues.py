@@ -11,7 +11,6 @@ import orjson
 from pydantic import Field
 
 from core.assessment.catalogue import MISTAKES
-from core.assessment.mistakes import Kind
 from core.quantities import members_of
 from core.systems.accuracy import record
 from core.systems.methods import Method
@@ -71,11 +70,6 @@ class MistakeEntry(View):
     """One mistake that is recognised in submitted answers."""
 
     tag: str = Field(description="Stable name for machines.")
-    kind: Kind = Field(
-        description="value: the wrong value follows from the right one alone, so that the mistake is not named unless "
-        "the reference is revealed. answer: it is, or follows from, another figure of the answer. question: from a "
-        "changed question."
-    )
     summary: str = Field(description="What was done.")
     feedback: str = Field(description="For who made the mistake; it gives no number.")
     credit: Ratio[float] = Field(description="Share of the score, unless the assessment's credits change it.")
@@ -89,7 +83,7 @@ class MistakeCatalogue(Signed):
 
 def mistakes() -> list[dict[str, Any]]:
     """Return the catalogue of recognised mistakes as it is published."""
-    names = ("tag", "kind", "summary", "feedback", "credit")
+    names = ("tag", "summary", "feedback", "credit")
     return [{name: getattr(entry, name) for name in names} for entry in MISTAKES]
 
 

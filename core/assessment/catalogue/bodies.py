@@ -127,32 +127,32 @@ def _scaled(node: Any, factor: float, inside: bool = False) -> Any:
 
 OF_BODIES = (
     Mistake(
-        "inertia-about-another-point", "question",
+        "inertia-about-another-point",
         "The inertia about the origin for that about the centre of mass, or the reverse.",
         "The moments belong to another point: a free body turns about its centre of mass, wherever the origin is.",
         _about_another_point,
     ),
     Mistake(
-        "parallel-axis", "question", "The term of the parallel axis theorem twice, or with the wrong sign.",
+        "parallel-axis", "The term of the parallel axis theorem twice, or with the wrong sign.",
         "Check the parallel axis theorem: its term is added once, going from the centre of mass to another point.",
         _parallel_axis_wrong,
     ),
     Mistake(
-        "products-of-inertia-sign", "question", "Products of inertia with the opposite sign.",
+        "products-of-inertia-sign", "Products of inertia with the opposite sign.",
         "Check the signs off the diagonal: I_xy is minus the integral of x y dm.", _products_of_inertia, credit=0.5,
     ),
     Mistake(
-        "repeated-points-dropped", "question", "Point masses that coincide counted once.",
+        "repeated-points-dropped", "Point masses that coincide counted once.",
         "Every point mass counts, also where two are at one place.",
         lambda figure: with_body(figure, _distinct_points), credit=0.5,
     ),
     Mistake(
-        "shell-for-solid", "question", "A thin shell for a solid body, or the reverse.",
+        "shell-for-solid", "A thin shell for a solid body, or the reverse.",
         "Check the shape: the mass is spread through a solid body, and far from the axis of a shell.",
         lambda figure: with_body(figure, _hollow),
     ),
     Mistake(
-        "diameter-for-radius", "question", "A diameter in the place of a radius, or the reverse.",
+        "diameter-for-radius", "A diameter in the place of a radius, or the reverse.",
         "Check whether each length is a radius or a diameter.", _diameter,
     ),
 )  # fmt: skip

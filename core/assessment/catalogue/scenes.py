@@ -95,22 +95,22 @@ def _no_gravity(figure: Figure) -> Iterator[Any]:
 
 OF_SCENES = (
     Mistake(
-        "shafts-do-not-turn", "question", "Point masses on an Atwood machine in place of shafts that turn.",
+        "shafts-do-not-turn", "Point masses on an Atwood machine in place of shafts that turn.",
         "The shafts turn as the string unwinds, and part of the pull goes into their rotation.",
         with_fields(SHAFTS, inertia_factors=[NO_SPIN, NO_SPIN]),
     ),
     Mistake(
-        "hoop-for-solid-shaft", "question", "The moment of a thin tube for a solid shaft, or the reverse.",
+        "hoop-for-solid-shaft", "The moment of a thin tube for a solid shaft, or the reverse.",
         "Check the moment of inertia of the shafts: a solid cylinder and a thin tube differ by a factor.", _hoop,
         credit=0.5,
     ),
     Mistake(
-        "rod-inertia-about-end", "question", "M l^2/3, the moment of a rod about its end, for that about its centre.",
+        "rod-inertia-about-end", "M l^2/3, the moment of a rod about its end, for that about its centre.",
         "M l^2/3 is the moment of inertia about an end of the rod; the parallel axis theorem starts from its centre.",
         _about_the_end, credit=0.5,
     ),
     Mistake(
-        "rod-depth-and-inertia", "question",
+        "rod-depth-and-inertia",
         "The depth of the centre at release by the wrong pair of sides, a potential with unequal dimensions, and the "
         "moment about the end.",
         "Check the dimensions of the potential energy, the similar triangles that give the depth of the centre at "
@@ -118,31 +118,31 @@ OF_SCENES = (
         _similar_triangles,
     ),
     Mistake(
-        "rod-depth", "question",
+        "rod-depth",
         "The depth of the centre at release by the wrong pair of sides, with the right moment.",
         "Check the dimensions of the potential energy and the similar triangles that give the depth of the centre.",
         _energy_alone, credit=0.25,
     ),
     Mistake(
-        "rod-without-own-rotation", "question", "The rod's mass at its centre: no moment of its own.",
+        "rod-without-own-rotation", "The rod's mass at its centre: no moment of its own.",
         "The rod turns as its centre swings, and its own moment of inertia counts too.", _falling_point,
     ),
     Mistake(
-        "masses-exchanged", "question", "The two masses exchanged.", "Check which mass is on which side.",
+        "masses-exchanged", "The two masses exchanged.", "Check which mass is on which side.",
         _pairs_exchanged, credit=0.5,
     ),
     Mistake(
-        "sine-for-cosine", "question", "The cosine of a slope for its sine, or an angle measured from the vertical.",
+        "sine-for-cosine", "The cosine of a slope for its sine, or an angle measured from the vertical.",
         "Check the component of the weight along each slope, and from where its angle is measured.", _cosines,
     ),
     Mistake(
-        "calculator-in-radians", "question", "Sines of angles in degrees by a calculator set to radians.",
+        "calculator-in-radians", "Sines of angles in degrees by a calculator set to radians.",
         "The sines do not belong to these angles: check whether the calculator expects degrees or radians.",
         _calculator,
         credit=0.5,
     ),
     Mistake(
-        "without-gravity", "question", "The acceleration of free fall left out.",
+        "without-gravity", "The acceleration of free fall left out.",
         "Check the dimensions: the acceleration of free fall is missing.", _no_gravity,
     ),
 )  # fmt: skip

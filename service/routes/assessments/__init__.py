@@ -184,8 +184,8 @@ quaternion, principal axes up to sign and, where moments are equal, up to rotati
 times of the claim. Arrays count as wrong as their worst entry. Units are converted; for an angular rate 1 Hz is 2 pi
 rad/s. A tolerance finer than the reference is known is not widened: the claim is not gradable.
 
-With `reveal: false` mistakes are named only if they cannot be undone by arithmetic: a factor of 2 would give the
-reference away."""
+With `reveal: false` no mistakes are named and none gives credit: who knows that a factor of 2 is missing has the
+reference."""
 
 
 def assessing(routes: Sequence[PostRoute]) -> PostRoute:

@@ -80,7 +80,8 @@ class Grader:
     ) -> None:
         self._asked, self._comparison, self._comparisons = asked, comparison, comparisons
         self._reveal, self._credits, self._names = reveal, credits, names
-        self._catalogue = catalogue if reveal else tuple(entry for entry in catalogue if entry.kind == "question")
+        # Who knows how a value is wrong can often compute the right one from it.
+        self._catalogue = catalogue if reveal else ()
         self._references: dict[str, tuple[Path, Reference]] = {}
         self._samples: dict[tuple[str, bytes], Reference] = {}
         self._wrong: dict[int, WrongValues] = {}
@@ -156,7 +157,9 @@ class Grader:
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
             mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
-        return self._shown(pointer, judged.judgement, reference, mistakes, "" if mistakes else judged.why)
+        return self._shown(
+            pointer, judged.judgement, reference, mistakes, "" if mistakes or not self._reveal else judged.why
+        )
 
     @cached_property
     def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:
