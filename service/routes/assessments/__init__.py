@@ -21,7 +21,7 @@ from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
-from service.routes.assessments.assessed_question import AssessedQuestion, steps_of
+from service.routes.assessments.assessed_question import VARIATIONS, AssessedQuestion, steps_of
 from service.routes.assessments.grading import MOST_IDENTIFIED, Grader
 from service.routes.assessments.submissions import LONGEST_POINTER, SubmissionList
 from service.routing import Answer, PostRoute
@@ -240,7 +240,8 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
             raise
         inputs = sum(1 for _ in numbers_of(question.question.request))
         again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
-        timed = sum(map(_timed, question.submissions))
+        again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
+        timed = _claims_with("times", question.submissions)
         methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED)
         return (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
 
@@ -248,6 +249,9 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         route = table.get(question.question.path)
         if route is None or len(question.submissions) > FEW_SUBMISSIONS:
             return route is None
+        if _claims_with("formula", question.submissions):
+            # The question is then asked in many variations.
+            return False
         try:
             return route.small(reader(route.path).read(json.dumps(question.question.request).encode()))
         except (Refusal, MechanicsError):
@@ -267,10 +271,10 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
     )
 
 
-def _timed(submission: Any) -> int:
-    """Return how many claims of a submission have times of their own."""
-    claims = submission.values() if isinstance(submission, dict) else ()
-    return sum(isinstance(claim, dict) and "times" in claim for claim in claims)
+def _claims_with(key: str, submissions: Sequence[Any]) -> int:
+    """Return how many claims have a key, such as times of their own."""
+    claims = (claim for one in submissions if isinstance(one, dict) for claim in one.values())
+    return sum(isinstance(claim, dict) and key in claim for claim in claims)
 
 
 def _uncertainty(question: AssessmentRequest) -> float | dict[Path, float] | None:
