@@ -20,6 +20,12 @@ GRADED = [name for name in names() if name.startswith(grade_homework.FOLDER)]
 KNOWN = {
     ("problem-1", 0, "/tension"): ("correct", None),
     ("problem-1", 0, "/accelerations"): ("correct", None),
+    ("problem-1", 1, "/accelerations/0"): ("correct", None),
+    ("problem-1", 1, "/accelerations/1"): ("correct", None),
+    # The multiplier of the homework is minus the tension.
+    ("problem-1", 1, "/tension"): ("incorrect", "sign"),
+    # Its energy has unequal dimensions, and the formula the value above.
+    ("problem-2", 2, "/angular_velocity_at_horizontal"): ("incorrect", "rod-depth-and-inertia"),
     ("problem-2", 0, "/angular_velocity_at_horizontal"): ("incorrect", "rod-depth-and-inertia"),
     ("problem-2", 1, "/angular_velocity_at_horizontal"): ("incorrect", "rod-inertia-about-end"),
     ("1a", 0, "/angular_velocity/1"): ("incorrect", "euler-second-equation"),
@@ -59,8 +65,9 @@ def graded(answer_of):
 
 
 def row(question, test, claim):
-    value = claim["value"] if len(json.dumps(claim["value"])) < 60 else "6 samples"
-    shown = json.dumps(value) if not isinstance(value, str) else value
+    value = claim.get("value", claim.get("formula"))
+    shown = value if isinstance(value, str) else json.dumps(value) if len(json.dumps(value)) < 60 else "6 samples"
+    shown = f"`{shown}`" if "formula" in claim else shown
     tags = ", ".join(match["tag"] for match in test["matches"])
     cells = (question, f"`{test['pointer']}`", f"{shown} {claim.get('unit', '')}".strip(), test["verdict"])
     return f"| {' | '.join(cells)} | {test['score']:g} | {tags} |".replace("|  |", "| |")
