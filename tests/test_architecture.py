@@ -34,7 +34,7 @@ ALLOWED["certified"] = {"rotation", "scenes"} | ALLOWED["rotation"] | ALLOWED["s
 
 WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",
        "prometheus_client", "service"}  # fmt: skip
-OUTER = ("work_precision",)
+OUTER = ("assessment", "work_precision")
 """Modules that compare results across packages, and may therefore import all of core."""
 
 SERVICE_LAYERS = (
@@ -162,6 +162,10 @@ TESTED_IN = {
     "core/scenes/rod_motion.py": "core/scenes/test_rod_in_hole.py",
     "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
+}
+TESTED_IN |= {
+    f"core/assessment/catalogue/{name}.py": "contracts/test_mistakes.py"
+    for name in ("bodies", "general", "rotation", "scenes")
 }
 TESTED_IN |= {
     f"core/multibody/{name}.py": f"core/multibody/test_{through}.py"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from service.routes.assessments import assessing
 from service.routes.bodies import BODIES
 from service.routes.certified.answers import naming_certified
 from service.routes.certified.rotation import CERTIFIED_ROTATION
@@ -28,5 +29,7 @@ def questions() -> tuple[PostRoute, ...]:
     paths = [route.path for route in certified]
     rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
     ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
-    answering = (*(naming_certified(route, paths) for route in ordinary), *certified)
-    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, planning(answering)))
+    in_doubles = tuple(naming_certified(route, paths) for route in ordinary)
+    answering = (*in_doubles, *certified)
+    about_others = planning(answering), assessing(in_doubles)
+    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, *about_others))

@@ -10,6 +10,7 @@ from typing import Any, cast
 import orjson
 from pydantic import Field
 
+from core.assessment.catalogue import MISTAKES
 from core.quantities import members_of
 from core.systems.accuracy import record
 from core.systems.methods import Method
@@ -65,6 +66,27 @@ class MethodCatalogue(Signed):
     methods: list[MethodEntry]
 
 
+class MistakeEntry(View):
+    """One mistake that is recognised in submitted answers."""
+
+    tag: str = Field(description="Stable name for machines.")
+    summary: str = Field(description="What was done.")
+    feedback: str = Field(description="For who made the mistake; it gives no number.")
+    credit: Ratio[float] = Field(description="Share of the score, unless the assessment's credits change it.")
+
+
+class MistakeCatalogue(Signed):
+    """The catalogue of recognised mistakes."""
+
+    mistakes: list[MistakeEntry]
+
+
+def mistakes() -> list[dict[str, Any]]:
+    """Return the catalogue of recognised mistakes as it is published."""
+    names = ("tag", "summary", "feedback", "credit")
+    return [{name: getattr(entry, name) for name in names} for entry in MISTAKES]
+
+
 def methods() -> list[dict[str, Any]]:
     """Return the catalogue of methods as it is published."""
     measured: dict[str, list[dict[str, Any]]] = {}
@@ -112,6 +134,13 @@ def catalogues() -> tuple[GetRoute, ...]:
             "Every method that can be chosen, and when to use it",
             MethodCatalogue,
             methods,
+        ),
+        _catalogue(
+            "/v1/mistakes",
+            "list_mistakes",
+            "Every mistake that is recognised in submitted answers",
+            MistakeCatalogue,
+            mistakes,
         ),
         _catalogue(
             "/v1/scenes",

@@ -364,6 +364,39 @@ def plans() -> Named:
     yield "of no question", {"path": "/v1/rotation/trajectory", "request": None}
 
 
+CLAIMED: dict[str, tuple[Callable[[], Named], int, tuple[str, ...]]] = {
+    "/v1/rotation/precession": (precessions, 7, ("/period", "/flip_interval", "/body_rate", "/axis", "/tumbles")),
+    "/v1/rotation/stability": (stabilities, 7, ("/equilibria/1/eigenvalues", "/equilibria/0/moment", "/flip/interval")),
+    "/v1/rotation/trajectory": (trajectories, 19, ("/angular_velocity", "/attitude/1", "/energy")),
+    "/v1/bodies/mass-properties": (bodies, 5, ("/principal/axes", "/principal/moments", "/inertia/about_origin")),
+    "/v1/rotation/wobble": (wobbles, 2, ("/ellipticity", "/asymmetry", "/period")),
+    "/v1/scenes/rod-in-hole": (rods, 9, ("/angular_velocity_at_horizontal", "/period", "/trajectory/forces")),
+    "/v1/scenes/unwinding-shafts": (shafts, 17, ("/tension", "/accelerations", "/phases/0/kind")),
+    "/v1/scenes": (described, 5, ("/period", "/accelerations/p/linear")),
+}
+"""By endpoint: its extreme questions, which of them are assessed, and what is claimed."""
+
+
+def assessments() -> Named:
+    claims: tuple[Any, ...] = (
+        0.0,
+        SUBNORMAL,
+        -LARGEST,
+        1.0,
+        None,
+        True,
+        "center",
+        [0.0, 1.0, LARGEST],
+        [[1.0] * 3] * 3,
+    )
+    for path, (asked, share, pointers) in CLAIMED.items():
+        for name, question in list(asked())[::share]:
+            submissions = [{pointer: {"value": value, "unit": "1"} for pointer in pointers} for value in claims]
+            submissions += [{pointer: {"value": value} for pointer in pointers} for value in claims]
+            submissions += [{pointer: {"value": [1.0], "times": [LARGEST]} for pointer in pointers}]
+            yield f"{path}, {name}", {"question": {"path": path, "request": question}, "submissions": submissions}
+
+
 QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/bodies/mass-properties": bodies,
     "/v1/rotation/trajectory": trajectories,
@@ -386,4 +419,5 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/certified/scenes/chain-on-wedge": certified(chains),
     "/v1/scenes": described,
     "/v1/plan": plans,
+    "/v1/assessments": assessments,
 }

@@ -37,7 +37,8 @@ def test_it_gives_a_finite_answer_or_a_reason_and_plans_say_the_same(path: str) 
         reply = ask(path, question)
         wrong += [(name, fault) for fault in faults_of(path, question, reply)]
         answered += reply.answered
-        plan = ask("/v1/plan", {"path": path, "request": question}).of() if path != "/v1/plan" else None
+        unplanned = path in ("/v1/plan", "/v1/assessments")
+        plan = None if unplanned else ask("/v1/plan", {"path": path, "request": question}).of()
         if plan is None or plan["answerable"] == reply.answered:
             continue
         # Only by running it is it known how far a method comes.

@@ -26,8 +26,9 @@ from tests.service.random_questions import questions_of
 
 SERVICE = inline_service()
 ROUTES = {route.path: route for route in questions()}
-# Plans are made of any other question.
-PLANNED = [(route, name) for route in ROUTES.values() if route.path != "/v1/plan" for name in route.examples]
+UNPLANNED = ("/v1/plan", "/v1/assessments")
+# Plans are made of any other question; an assessment costs its question.
+PLANNED = [(route, name) for route in ROUTES.values() if route.path not in UNPLANNED for name in route.examples]
 PATH = "/v1/rotation/trajectory"
 HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
 DRAWN = questions_of({name_of(scene): scene.outputs for scene in members()})
@@ -138,7 +139,7 @@ async def test_refusals_are_those_of_the_request_itself(change: dict[str, Any]) 
 @pytest.mark.parametrize("request_", [None, 3, [], "text", {}, {"body": 10**400}])
 async def test_anything_can_be_planned(request_: Any) -> None:
     for path in ROUTES:
-        if path != "/v1/plan":
+        if path not in UNPLANNED:
             assert not (await planned(path, request_))["answerable"]
 
 
@@ -185,7 +186,7 @@ def answered(path: str, request: Any) -> tuple[Any, bytes]:
 
 
 def test_random_questions_are_drawn_for_every_endpoint() -> None:
-    assert {*DRAWN, "/v1/plan"} == set(ROUTES)
+    assert {*DRAWN, *UNPLANNED} == set(ROUTES)
 
 
 @pytest.mark.parametrize("path", DRAWN)

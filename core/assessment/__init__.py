@@ -1,0 +1,1 @@
+"""Assessment: a submitted answer compared with the computed one, and the mistakes that explain the difference."""

@@ -1,0 +1,110 @@
+"""A formula compared with a figure: at the question's parameters and at variations of them, and by its dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Protocol
+
+from core.assessment.compare import Judgement, Reference, compare
+from core.assessment.comparisons import RelAbs
+from core.assessment.formulas import Formula, Powers, Undefined
+from core.assessment.units import base_powers
+from core.errors import InvalidParameter
+
+FORMULA = RelAbs(rtol=1e-8)
+"""How far a formula may be from the figure: rounding, also of an ill-conditioned one, and no rounded constant."""
+
+ENOUGH = 10
+"""Variations without which a formula is not judged."""
+
+
+class Varied(Protocol):
+    """Parameters by name, and the figure that belongs to them."""
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """By name."""
+
+    @property
+    def figure(self) -> float:
+        """In the unit of the reference."""
+
+
+@dataclass(frozen=True)
+class JudgedFormula:
+    """What becomes of a formula.
+
+    Attributes
+    ----------
+    judgement : Judgement
+        With the error at the question's own parameters.
+    why : str
+        What is wrong; empty if nothing is known of it.
+    value : float or None
+        At the question's own parameters; None where the formula has none.
+    """
+
+    judgement: Judgement
+    why: str = ""
+    value: float | None = None
+
+
+def judge_formula(
+    formula: Formula, variations: Sequence[Varied], units: Mapping[str, str], reference: Reference
+) -> JudgedFormula:
+    """Judge a formula.
+
+    Parameters
+    ----------
+    formula : Formula
+    variations : sequence
+        The question itself, then changed ones.
+    units : mapping of str to str
+        Of the parameters.
+    reference : Reference
+        At the question's own parameters.
+    """
+    if len(variations) <= ENOUGH:
+        return JudgedFormula(Judgement("not-gradable"), "There are too few questions like this one to judge a formula.")
+    try:
+        values = [formula.value(one.parameters) for one in variations]
+    except Undefined:
+        return JudgedFormula(Judgement("incorrect"), "The formula has no value at such parameters.")
+    own = compare(reference, values[0], FORMULA)
+    if own.verdict == "not-gradable":
+        return JudgedFormula(own)
+    why = ""
+    if own.verdict == "correct":
+        if all(_agrees(value, one, reference) for value, one in zip(values, variations, strict=True)):
+            return JudgedFormula(own, value=values[0])
+        own, why = replace(own, verdict="incorrect"), AT_ONE_PLACE
+    # Dimensions explain what is wrong; a constant with a hidden unit may be right.
+    return JudgedFormula(own, _dimensional_fault(formula, units, reference.unit) or why, None if why else values[0])
+
+
+AT_ONE_PLACE = "The formula agrees at the given parameters, and at others it does not."
+
+
+def _agrees(value: float, one: Varied, reference: Reference) -> bool:
+    varied = Reference(one.figure, reference.unit, reference.form, abs(one.figure) or reference.scale)
+    return compare(varied, value, FORMULA).verdict == "correct"
+
+
+def _dimensional_fault(formula: Formula, units: Mapping[str, str], unit: str) -> str:
+    """Return what is wrong with the dimensions of a formula; empty if nothing is, or units are not known."""
+    known: dict[str, Powers] = {}
+    for name in formula.names:
+        powers = base_powers(units[name])
+        if powers is None:
+            return ""
+        known[name] = {base: Fraction(power) for base, power in powers.items()}
+    wanted = base_powers(unit)
+    try:
+        found = formula.dimensions(known)
+    except InvalidParameter as fault:
+        return f"Check the dimensions: the formula must {fault.rule}."
+    if wanted is not None and found != {base: Fraction(power) for base, power in wanted.items()}:
+        return "Check the dimensions: the formula is not of the kind of the quantity."
+    return ""

@@ -1,0 +1,147 @@
+"""Recognised mistakes: what a figure comes out as if it is computed wrongly in a known way.
+
+An entry computes the wrong values from the question itself: from the right value alone, from another figure of the same
+answer, or by asking a changed question. A submitted value that is not accepted is compared with each of them by the
+same comparison. Where several agree with it, all are named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from core.assessment.compare import Reference, compare, tolerance_of
+from core.assessment.comparisons import Comparison, Interval
+from core.assessment.propagation import Evaluate
+from core.errors import InvalidParameter, Path
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """A figure of an answer, and the question that it answers.
+
+    Attributes
+    ----------
+    subject : str
+        Last steps of the endpoint's path: ``"rotation/precession"``, ``"scenes/rod-in-hole"``.
+    request : Any
+        As it was sent.
+    path : tuple of str and int
+        Of the figure in the answer.
+    reference : Reference
+    evaluate : callable
+        Asks a changed question.
+    """
+
+    subject: str
+    request: Any
+    path: Path
+    reference: Reference
+    evaluate: Evaluate
+
+    @property
+    def name(self) -> str:
+        """Last step of the path that is no index."""
+        return next((step for step in reversed(self.path) if isinstance(step, str)), "")
+
+    @property
+    def right(self) -> Any:
+        """The right value."""
+        return self.reference.value
+
+    def beside(self, *path: str | int) -> Any:
+        """Return another figure of the same answer, None where there is none."""
+        return self.evaluate(self.request)(path)
+
+    def asked(self, request: Any) -> Any:
+        """Return this figure of the answer to a changed question, None where there is none."""
+        return self.evaluate(request)(self.path)
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One entry of the catalogue.
+
+    Attributes
+    ----------
+    tag : str
+        Stable.
+    summary : str
+        What was done.
+    feedback : str
+        A sentence for who made the mistake; it gives no number.
+    credit : float
+        Share of the score, from 0 to 1.
+    wrong : callable
+        From a figure to the values that the mistake gives.
+    """
+
+    tag: str
+    summary: str
+    feedback: str
+    wrong: Callable[[Figure], Iterable[Any]] = field(repr=False)
+    credit: float = 0.0
+
+
+Bands = list[tuple[Mistake, float, float]]
+"""Mistakes with their wrong numbers, and how near to each a number has to be."""
+
+
+@dataclass(frozen=True, eq=False)
+class WrongValues:
+    """What every entry makes of one figure: computed once, for all submissions.
+
+    Attributes
+    ----------
+    figure : Figure
+    catalogue : tuple of Mistake
+    """
+
+    figure: Figure
+    catalogue: tuple[Mistake, ...]
+    bands: dict[Comparison | None, Bands] = field(default_factory=dict, init=False, repr=False)
+
+    @cached_property
+    def entries(self) -> tuple[tuple[Mistake, Reference], ...]:
+        """The mistakes that give another value than the right one, with those values."""
+        return tuple(self._entries())
+
+    def _entries(self) -> Iterator[tuple[Mistake, Reference]]:
+        right = self.figure.reference
+        # Modulo turns, multiples of an angle would agree by chance.
+        right = replace(right, form="number") if right.form == "angle" else right
+        for mistake in self.catalogue:
+            for value in mistake.wrong(self.figure):
+                if value is None or (not isinstance(value, bool | str) and not np.isfinite(value).all()):
+                    continue
+                wrong = replace(right, value=value, scale=right.scale, error=0.0, inherited=0.0)
+                yield mistake, wrong
+
+    def matching(self, value: Any, comparison: Comparison | None) -> tuple[Mistake, ...]:
+        """Return the mistakes by which a value comes out that is not accepted, in the unit of the reference."""
+        # Limits say nothing of how near two values are.
+        near = None if isinstance(comparison, Interval) else comparison
+        if self.figure.reference.form in ("number", "angle"):
+            agreeing = (mistake for mistake, wrong, tolerance in self._bands(near) if abs(value - wrong) <= tolerance)
+        else:
+            agreeing = (mistake for mistake, wrong in self.entries if _agree(wrong, value, near))
+        return tuple({mistake.tag: mistake for mistake in agreeing}.values())
+
+    def _bands(self, comparison: Comparison | None) -> Bands:
+        """Return the mistakes with their wrong numbers, and how near to each a number has to be."""
+        if comparison not in self.bands:
+            self.bands[comparison] = [
+                (mistake, wrong.value, tolerance_of(wrong, comparison)) for mistake, wrong in self.entries
+            ]
+        return self.bands[comparison]
+
+
+def _agree(wrong: Reference, value: Any, comparison: Comparison | None) -> bool:
+    try:
+        return compare(wrong, value, comparison).verdict == "correct"
+    except InvalidParameter:
+        return False

@@ -1,0 +1,134 @@
+"""Units of submitted quantities: what one unit of them is in the unit of the reference.
+
+Units of the International System are read here; others (degrees, revolutions per minute, hours, grams) by pint, which
+is imported when the first of them arrives. A frequency in hertz counts turns: for an angular rate 1 Hz is 2 pi rad/s.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections import Counter
+from collections.abc import Mapping
+from functools import cache, lru_cache
+from math import isfinite, pi
+from typing import Any
+
+from core.errors import InvalidParameter
+from core.work import spend
+
+LONGEST_UNIT = 40
+"""Characters of a unit."""
+
+IMPORT = 1_000_000
+"""Units of work (`core.work`) that importing pint counts for: it takes about a second, once in each process."""
+
+_PLAIN = re.compile(r"[\w°%µμ·*/^()²³⁻¹. +-]+")
+_NUMBERS = re.compile(r"\d{2}|(?<![\^*(-])(?<![A-Za-z_])\d|\d\.|\.\d")
+_FACTOR = re.compile(r"([*/]?)([A-Za-z]+)(?:\^(-?\d))?")
+_DERIVED = {
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "J": {"kg": 1, "m": 2, "s": -2},
+}
+_SI = {"kg", "m", "s", "rad", "d", *_DERIVED}
+_SUPERSCRIPTS = str.maketrans({"⁻": "-", "¹": "1", "²": "2", "³": "3"})
+_ANGLES = ("radian", "degree", "turn", "revolution", "arcminute", "arcsecond", "grade", "cycle")
+
+
+def factor(given: str, unit: str) -> float:
+    """Return what one `given` is in `unit`.
+
+    Parameters
+    ----------
+    given : str
+        As it was submitted, for example ``"deg/s"``, ``"rpm"``, ``"kg*m^2"``.
+    unit : str
+        Of the reference, as `core.quantities` writes it: ``"rad s^-1"``; ``"1"`` for a pure number.
+
+    Raises
+    ------
+    InvalidParameter
+        If the unit is not known, or measures another kind of quantity.
+    """
+    if given == unit:
+        return 1.0
+    if len(given) > LONGEST_UNIT:
+        raise InvalidParameter("unit", f"have at most {LONGEST_UNIT} characters")
+    found = _factor(given, unit)
+    if isinstance(found, float):
+        return found
+    raise InvalidParameter("unit", found[0], remedy=found[1])
+
+
+@lru_cache(4096)
+def _factor(given: str, unit: str) -> float | tuple[str, str]:
+    """Return the factor, or the rule that is broken and its remedy."""
+    own = _powers(given)
+    if own is not None and own == _powers(unit):
+        return 1.0
+    if "pint" not in sys.modules:
+        spend(IMPORT)
+    return _by_pint(given, unit)
+
+
+def base_powers(unit: str) -> Mapping[str, int] | None:
+    """Return the powers of kg, m, s and d of a unit of the International System, None for any other."""
+    return _powers("1" if unit == "" else unit)
+
+
+def _powers(text: str) -> Counter[str] | None:
+    """Return the powers of base units of a product of units of the International System, None for any other text.
+
+    An angle is a pure number there, so that radians are left out.
+    """
+    found: Counter[str] = Counter()
+    plain = re.sub(r"(?<=[\w)])[ ·]+(?=\w)", "*", text.strip().replace("**", "^").translate(_SUPERSCRIPTS))
+    plain = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", plain.replace(" ", "").replace("^", ""))
+    if plain == "1":
+        return found
+    end = 0
+    for part in _FACTOR.finditer(plain.removeprefix("1") if plain.startswith("1/") else plain):
+        sign, name, power = part.groups()
+        if part.start() != end or name not in _SI:
+            return None
+        end = part.end()
+        exponent = int(power or 1) * (-1 if sign == "/" else 1)
+        for base, times in _DERIVED.get(name, {name: 1}).items():
+            found[base] += times * exponent
+    if end != len(plain.removeprefix("1")) or not end:
+        return None
+    return Counter({name: power for name, power in found.items() if power and name != "rad"})
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    registry: Any = pint.UnitRegistry()
+    registry.define("rev = turn")
+    return registry
+
+
+def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
+    registry, remedy = _registry(), "the quantity is a pure number" if unit == "1" else f"the quantity is in {unit}"
+    # A text that is none of a unit's is not given to the parser, and no power may be large.
+    if not _PLAIN.fullmatch(given) or _NUMBERS.search(given):
+        return "be a product of powers of units", remedy
+    try:
+        parsed = registry.parse_units(given)
+        quantity = registry.Quantity(1.0, parsed)
+        reference = registry.parse_units("" if unit == "1" else unit)
+    except Exception:
+        # The parser has no error of its own for everything that is no unit.
+        return "be a known unit", remedy
+    powers = dict(quantity.unit_items())
+    angular = any(name.endswith(_ANGLES) for name in powers)
+    if parsed.dimensionality != reference.dimensionality or (unit == "1" and angular):
+        return "measure the same kind of quantity", remedy
+    try:
+        value = float(quantity.to(reference).magnitude)
+    except Exception:
+        return "be a unit of which multiples can be added", remedy
+    if "rad" in unit.split():
+        value *= (2.0 * pi) ** sum(power for name, power in powers.items() if name.endswith("hertz"))
+    return value if isfinite(value) and value > 0.0 else ("be of moderate size", remedy)

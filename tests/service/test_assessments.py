@@ -1,0 +1,544 @@
+"""Assessments over HTTP: verdicts, units, errors that point into the submission, and what is not revealed."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.assessment.units import base_powers
+from core.systems.budget import Budget
+from core.work import work_limit
+from service.execution.request_handler import RequestHandler
+from service.requests.request_reader import Limits
+from service.responses.json_rows import written
+from service.routes import questions
+from tests.service.conftest import client_of, inline_service
+
+PATH = "/v1/assessments"
+SERVICE = inline_service()
+ROUTES = {route.path: route for route in questions()}
+HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
+Body = dict[str, Any]
+
+MOMENTS = [795.7921810699588, 713.5092592592592, 395.7829218106996]
+FLIP = {
+    "path": "/v1/rotation/precession",
+    "request": {"body": {"kind": "principal-moments", "moments": MOMENTS}, "angular_velocity": [1, 10, 1]},
+}
+INTERVAL = 2.453763073790956
+COIN = {
+    "path": "/v1/rotation/precession",
+    "request": {"body": {"kind": "principal-moments", "moments": [1, 1, 2]}, "angular_velocity": [1, 1, 1]},
+}
+ROD = {
+    "path": "/v1/scenes/rod-in-hole",
+    "request": {"hole_radius": 1.0, "length": 1.0, "mass": 1.0, "gravity": 9.81},
+}
+HORIZONTAL = "/angular_velocity_at_horizontal"
+STABILITY = {
+    "path": "/v1/rotation/stability",
+    "request": {"body": {"kind": "principal-moments", "moments": [2, 1, 0.5]}, "rate": 1},
+}
+MOTION = {
+    "path": "/v1/rotation/trajectory",
+    "request": {
+        "body": {"kind": "principal-moments", "moments": [1, 2, 3]},
+        "angular_velocity": [0.1, 2, 0.1],
+        "times": [0, 1],
+    },
+}
+
+pytestmark = pytest.mark.anyio
+
+
+def handled(question: Any, *submissions: Any, **more: Any) -> Any:
+    route = ROUTES[PATH]
+    body = json.dumps({"question": question, "submissions": submissions, **more}).encode()
+    return json.loads(written(HANDLER.answer(route, HANDLER.read(route, body))))
+
+
+async def asked(question: Any, *submissions: Any, **more: Any) -> Any:
+    async with client_of(SERVICE) as client:
+        return await client.post(PATH, json={"question": question, "submissions": submissions, **more})
+
+
+async def graded(question: Any, *submissions: Any, **more: Any) -> Any:
+    response = await asked(question, *submissions, **more)
+    assert response.status_code == 200, response.text
+    return response.json()
+
+
+async def verdict(question: Any, pointer: str, claim: Any, **more: Any) -> str:
+    (result,) = (await graded(question, {pointer: claim}, **more))["results"]
+    assert result["format_errors"] == []
+    return str(result["tests"][0]["verdict"])
+
+
+async def test_the_reference_is_the_answer_with_its_error_and_its_unit() -> None:
+    answer = await graded(FLIP, {"/flip_interval": {"value": 2.45, "unit": "s"}})
+    (reference,) = answer["reference"]
+    assert reference["value"] == INTERVAL
+    assert reference["unit"] == "s"
+    assert 0.0 < reference["error"] < 1e-13
+    assert 0.0 < reference["inherited"] < reference["error"]
+    (result,) = answer["results"]
+    assert result["score"] == 1.0
+    assert result["correct"]
+    (test,) = result["tests"]
+    assert test["error"]["absolute"] == pytest.approx(INTERVAL - 2.45)
+    assert test["error"]["relative"] == pytest.approx((INTERVAL - 2.45) / INTERVAL)
+    assert test["error"]["in_tolerances"] == pytest.approx(test["error"]["absolute"] / test["error"]["tolerance"])
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "expected"),
+    [
+        (INTERVAL, "s", "correct"),
+        (INTERVAL / 60, "min", "correct"),
+        (INTERVAL / 3600, "hours", "correct"),
+        (INTERVAL * 1e3, "ms", "correct"),
+        (INTERVAL, "ms", "incorrect"),
+        (INTERVAL, None, "missing-unit"),
+        (INTERVAL, "m", "wrong-unit"),
+        (INTERVAL, "parsec per fortnight", "wrong-unit"),
+    ],
+)
+async def test_units_are_converted_and_missing_or_wrong_ones_are_verdicts(
+    value: float, unit: str | None, expected: str
+) -> None:
+    claim = {"value": value} | ({} if unit is None else {"unit": unit})
+    assert await verdict(FLIP, "/flip_interval", claim) == expected
+
+
+async def test_rates_may_be_in_turns_and_angles_without_a_unit() -> None:
+    rate = math.sqrt(6.0)
+    for value, unit in ((rate, "rad/s"), (rate * 30 / math.pi, "rpm"), (rate / (2 * math.pi), "Hz")):
+        assert await verdict(COIN, "/space_rate", {"value": value, "unit": unit}) == "correct"
+    angle = math.atan2(math.sqrt(2.0), 2.0)
+    assert await verdict(COIN, "/axis_to_angular_momentum", {"value": angle}) == "correct"
+    assert await verdict(COIN, "/axis_to_angular_momentum", {"value": math.degrees(angle), "unit": "deg"}) == "correct"
+    (result,) = (await graded(COIN, {"/axis_to_angular_momentum": {"value": math.degrees(angle)}}))["results"]
+    assert result["matches"] == ["degrees"]
+
+
+@pytest.mark.parametrize(
+    ("comparison", "value", "expected"),
+    [
+        ({"kind": "relabs", "rtol": 1e-3}, 3.195, "correct"),
+        ({"kind": "relabs", "rtol": 1e-4}, 3.195, "incorrect"),
+        ({"kind": "relabs", "rtol": 0.0, "atol": 0.01}, 3.2, "correct"),
+        ({"kind": "sigfig", "digits": 3}, 3.19, "correct"),
+        ({"kind": "sigfig", "digits": 4}, 3.19, "incorrect"),
+        ({"kind": "decdig", "digits": 1}, 3.2, "correct"),
+        ({"kind": "decdig", "digits": 2}, 3.2, "incorrect"),
+        ({"kind": "interval", "lower": 3.0, "upper": 3.5}, 3.4, "correct"),
+        ({"kind": "interval", "lower": 3.0, "upper": 3.5}, 3.6, "incorrect"),
+        ({"kind": "interval", "lower": 3.3, "upper": 3.5}, 3.4, "not-gradable"),
+        ({"kind": "relabs", "rtol": 1e-17, "atol": 0.0}, 3.1929376839127963, "not-gradable"),
+        ({"kind": "sigfig", "digits": 15}, 3.19293768391280, "correct"),
+    ],
+)
+async def test_comparisons_decide(comparison: Body, value: float, expected: str) -> None:
+    assert await verdict(ROD, HORIZONTAL, {"value": value, "unit": "rad/s"}, comparison=comparison) == expected
+
+
+async def test_the_data_justify_what_follows_from_their_uncertainty() -> None:
+    # omega is proportional to the root of g: 9.8 for 9.81 changes it by half of 0.1 %.
+    more = {"comparison": {"kind": "data"}, "input_uncertainties": {"/gravity": 0.01 / 9.81}}
+    value = 3.1929376839127963 * math.sqrt(9.8 / 9.81)
+    assert await verdict(ROD, HORIZONTAL, {"value": value * 1.00001, "unit": "rad/s"}, **more) == "correct"
+    assert await verdict(ROD, HORIZONTAL, {"value": value * 0.9999, "unit": "rad/s"}, **more) == "incorrect"
+    fine = {"comparison": {"kind": "sigfig", "digits": 6}, "input_uncertainty": 1e-3}
+    assert await verdict(ROD, HORIZONTAL, {"value": 3.19294, "unit": "rad/s"}, **fine) == "not-gradable"
+
+
+async def test_zero_is_accepted_for_zero_and_not_for_something_small() -> None:
+    small = {"path": "/v1/bodies/mass-properties", "request": {"body": {"kind": "ball", "mass": 1e-5, "radius": 1e-2}}}
+    moments = [4e-10, 4e-10, 4e-10]
+    assert await verdict(small, "/principal/moments", {"value": moments, "unit": "kg m^2"}) == "correct"
+    assert await verdict(small, "/principal/moments", {"value": [0, 0, 0], "unit": "kg m^2"}) == "incorrect"
+    level = {
+        "path": "/v1/scenes/unwinding-shafts",
+        "request": {"masses": [1, 1], "radii": [1, 1], "slopes": [0.5, 0.5], "gravity": 9.81},
+    }
+    assert await verdict(level, "/string_acceleration", {"value": 1e-12, "unit": "m/s^2"}) == "correct"
+    assert await verdict(level, "/string_acceleration", {"value": 1e-3, "unit": "m/s^2"}) == "incorrect"
+
+
+async def test_choices_sets_and_figures_that_do_not_exist() -> None:
+    assert await verdict(STABILITY, "/equilibria/1/stable", {"value": False}) == "correct"
+    assert await verdict(STABILITY, "/equilibria/1/stable", {"value": True}) == "incorrect"
+    assert await verdict(STABILITY, "/equilibria/1/kind", {"value": "saddle"}) == "correct"
+    values = [[0.0, 0.0], [-math.sqrt(0.5), 0.0], [math.sqrt(0.5), 0.0]]
+    assert await verdict(STABILITY, "/equilibria/1/eigenvalues", {"value": values, "unit": "1/s"}) == "correct"
+    assert await verdict(COIN, "/flip_interval", {"value": None}) == "correct"
+    assert await verdict(COIN, "/flip_interval", {"value": 3.0, "unit": "s"}) == "incorrect"
+    assert await verdict(FLIP, "/flip_interval", {"value": None}) == "incorrect"
+
+
+async def test_principal_axes_are_right_up_to_sign_and_rotation_among_equal_moments() -> None:
+    body = {
+        "path": "/v1/bodies/mass-properties",
+        "request": {"body": {"kind": "cylinder", "mass": 1, "radius": 1, "height": 5}},
+    }
+    c, s = math.cos(0.3), math.sin(0.3)
+    # The axis of the cylinder is the one of smallest moment.
+    axes = [[0, -c, s], [0, s, c], [-1, 0, 0]]
+    assert await verdict(body, "/principal/axes", {"value": axes}) == "correct"
+    assert await verdict(body, "/principal/axes", {"value": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}) == "incorrect"
+
+
+async def test_samples_are_judged_at_the_times_of_the_student() -> None:
+    times = [0.0, 0.7, -3.2, 11.0]
+    async with client_of(SERVICE) as client:
+        request = {**MOTION["request"], "times": times}
+        rows = (await client.post(MOTION["path"], json=request)).json()["angular_velocity"]
+    claim = {"times": times, "value": rows, "unit": "rad/s"}
+    assert await verdict(MOTION, "/angular_velocity", claim) == "correct"
+    rows[2][1] += 0.1
+    assert await verdict(MOTION, "/angular_velocity", claim) == "incorrect"
+
+
+GOOD = {"/flip_interval": {"value": 2.4538, "unit": "s"}}
+
+
+@pytest.mark.parametrize(
+    ("submission", "pointer"),
+    [
+        (None, ""),
+        (3, ""),
+        ([], ""),
+        ({}, ""),
+        ({"flip_interval": {"value": 1.0}}, "/flip_interval"),
+        ({"/nothing": {"value": 1.0}}, "/~1nothing"),
+        ({"/flip_interval/3": {"value": 1.0}}, "/~1flip_interval~13"),
+        ({"/absent": {"value": 1.0}}, "/~1absent"),
+        ({"/__class__": {"value": 1.0}}, "/~1__class__"),
+        ({"/flip_interval": 2.45}, "/~1flip_interval"),
+        ({"/flip_interval": {"unit": "s"}}, "/~1flip_interval/value"),
+        ({"/flip_interval": {"value": 2.45, "units": "s"}}, "/~1flip_interval/units"),
+        ({"/flip_interval": {"value": "2.45", "unit": "s"}}, "/~1flip_interval/value"),
+        ({"/flip_interval": {"value": True, "unit": "s"}}, "/~1flip_interval/value"),
+        ({"/flip_interval": {"value": [2.45], "unit": "s"}}, "/~1flip_interval/value"),
+        ({"/flip_interval": {"value": {"x": 1}, "unit": "s"}}, "/~1flip_interval/value"),
+        ({"/flip_interval": {"value": 10**400, "unit": "s"}}, "/~1flip_interval/value"),
+        ({"/flip_interval": {"value": 2.45, "unit": 3}}, "/~1flip_interval/unit"),
+        ({"/axis": {"value": [1, 2]}}, "/~1axis/value"),
+        ({"/axis": {"value": [1, "2", 3]}}, "/~1axis/value/1"),
+        ({"/axis": {"value": [[1, 2], [3]]}}, "/~1axis/value/1"),
+        ({"/axis": {"value": [0, 0, 0]}}, "/~1axis/value"),
+        ({"/flip_interval": {"value": [1, 2], "times": [1, 2], "unit": "s"}}, "/~1flip_interval/times"),
+        ({"/flip_interval": {"value": [1], "times": [1, 2], "unit": "s"}}, "/~1flip_interval/value"),
+        ({"/flip_interval": {"value": 1e308, "unit": "d"}}, "/~1flip_interval/value"),
+    ],
+    ids=str,
+)
+async def test_a_bad_submission_has_its_errors_and_spoils_no_other(submission: Any, pointer: str) -> None:
+    bad, good = (await graded(FLIP, submission, GOOD))["results"]
+    assert good["correct"]
+    assert [fault["pointer"] for fault in bad["format_errors"]] == [f"/submissions/0{pointer}"]
+    assert (bad["score"], bad["correct"], bad["gradable"]) == (None, None, False)
+    assert bad["format_errors"][0]["detail"].startswith(("must", "is"))
+
+
+@pytest.mark.parametrize("text", ["NaN", "Infinity", "-Infinity", "1e999"])
+async def test_what_is_not_finite_is_no_number(text: str) -> None:
+    body = json.dumps({"question": FLIP, "submissions": [{"/flip_interval": {"value": 0, "unit": "s"}}, GOOD]})
+    async with client_of(SERVICE) as client:
+        headers = {"content-type": "application/json"}
+        response = await client.post(PATH, content=body.replace('"value": 0', f'"value": {text}'), headers=headers)
+    if response.status_code == 200:
+        bad, good = response.json()["results"]
+        assert bad["format_errors"][0]["detail"] == "must be finite"
+        assert good["correct"]
+    else:
+        assert response.json()["code"] == "invalid-json"
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer"),
+    [
+        ({"question": {"path": "/v1/rotation/precesion", "request": {}}}, "/question/path"),
+        ({"question": {"path": PATH, "request": {}}}, "/question/path"),
+        ({"question": {"path": FLIP["path"], "request": {}}}, "/question/request/body"),
+        (
+            {"question": {**FLIP, "request": {**FLIP["request"], "angular_velocity": [1, 2]}}},
+            "/question/request/angular_velocity",
+        ),
+        ({"comparison": {"kind": "relabs", "rtol": -1.0}}, "/comparison/rtol"),
+        ({"comparison": {"kind": "interval", "lower": 2.0, "upper": 1.0}}, "/comparison/upper"),
+        ({"comparison": {"kind": "exactly"}}, "/comparison/kind"),
+        ({"comparisons": {"/flip_interval": {"kind": "sigfig", "digits": 0}}}, "/comparisons/~1flip_interval/digits"),
+        ({"credits": {"factor-2": 2.0}}, "/credits/factor-2"),
+        ({"credits": {"unknown": 0.5}}, "/credits/unknown"),
+        ({"input_uncertainties": {"/gravity": 0.1}}, "/input_uncertainties/~1gravity"),
+        ({"submissions": []}, "/submissions"),
+        ({"reveal": "no"}, "/reveal"),
+    ],
+    ids=str,
+)
+async def test_faults_of_the_assessment_itself_are_refused(change: Body, pointer: str) -> None:
+    body = {"question": FLIP, "submissions": [GOOD]} | change
+    async with client_of(SERVICE) as client:
+        response = await client.post(PATH, json=body)
+    assert response.status_code == 422, response.text
+    assert response.json()["errors"][0]["pointer"] == pointer
+
+
+async def test_a_course_may_change_credits_and_compare_figures_differently() -> None:
+    twice = {"/flip_interval": {"value": 2 * INTERVAL, "unit": "s"}}
+    (result,) = (await graded(FLIP, twice, credits={"period-for-flip-interval": 0.8}))["results"]
+    assert result["score"] == 0.8
+    claims = {"/flip_interval": {"value": 2.46, "unit": "s"}, "/period": {"value": 4.92, "unit": "s"}}
+    (result,) = (await graded(FLIP, claims, comparisons={"/period": {"kind": "sigfig", "digits": 4}}))["results"]
+    assert [test["verdict"] for test in result["tests"]] == ["correct", "incorrect"]
+    assert result["score"] == 0.5
+    assert not result["correct"]
+
+
+def numbers_in(node: Any) -> list[float]:
+    if isinstance(node, dict):
+        return [number for entry in node.values() for number in numbers_in(entry)]
+    if isinstance(node, list):
+        return [number for entry in node for number in numbers_in(entry)]
+    return [float(node)] if type(node) in (int, float) else []
+
+
+@settings(max_examples=40)
+@given(scale=st.floats(1.2, 50.0), seed=st.integers(0, 10**6))
+def test_without_reveal_equal_verdicts_are_equal_bytes(scale: float, seed: int) -> None:
+    """Of two questions with different references, the answers to what has the same verdict are the same."""
+    chance = random.Random(seed)
+    slow = [chance.uniform(0.1, 3.0) for _ in range(3)]
+    moments = [1.0, chance.uniform(1.2, 2.0), chance.uniform(2.1, 2.9)]
+
+    def question(rates: list[float]) -> Body:
+        body = {"kind": "principal-moments", "moments": moments}
+        return {"path": "/v1/rotation/precession", "request": {"body": body, "angular_velocity": rates}}
+
+    first, second = question(slow), question([scale * rate for rate in slow])
+    pointers = ("/flip_interval", "/period", "/mean_precession_rate")
+    right = [handled(one, {pointer: {"value": None} for pointer in pointers})["reference"] for one in (first, second)]
+    units = {"/mean_precession_rate": "rad/s"}
+
+    def hidden(which: int, factor: float) -> Any:
+        claims = {
+            entry["pointer"]: {"value": factor * entry["value"], "unit": units.get(entry["pointer"], "s")}
+            for entry in right[which]
+        }
+        found = handled((first, second)[which], claims, {"/period": {"value": 1.0}}, [], reveal=False)
+        assert "reference" not in found
+        assert set(numbers_in(found)) <= {0.0, 1.0}
+        return found
+
+    # Wrong by anything, a factor that is recognised and would give the reference away, and right.
+    for factor in (chance.uniform(3.0, 6.0), 2.0, 0.5, -1.0, 1000.0, 1.0):
+        assert hidden(0, factor) == hidden(1, factor)
+    assert hidden(0, 1.0)["results"][0]["correct"]
+
+
+async def test_without_reveal_nothing_is_told_by_warnings_or_errors_either() -> None:
+    rod = {"path": ROD["path"], "request": {**ROD["request"], "hole_radius": 1.0, "angular_velocity": 0.0}}
+    claim = {"times": [-1e9, 1.0], "value": [1.0, 2.0], "unit": "rad"}
+    text = json.dumps(await graded(rod, {"/trajectory/angle": claim}, reveal=False))
+    assert '"reference"' not in text
+    shafts = {
+        "path": "/v1/scenes/unwinding-shafts",
+        "request": {
+            "masses": [1, 2], "radii": [0.1, 0.1], "slopes": [0.5, 0.7], "gravity": 9.81,
+            "positions": [1, 1], "velocities": [3, 3], "wound": [1, 1], "times": [0.1],
+        },
+    }  # fmt: skip
+    claim = {"times": [-50.0], "value": [1.0], "unit": "N"}
+    (result,) = (await graded(shafts, {"/trajectory/tension": claim}, reveal=False))["results"]
+    assert result["format_errors"][0]["detail"] == "must be times that can be answered"
+
+
+async def test_the_reference_is_computed_once_whatever_is_submitted() -> None:
+    def work(count: int) -> float:
+        with work_limit(1e9) as meter:
+            handled(ROD, *[{HORIZONTAL: {"value": 3.0 + 0.01 * i, "unit": "rad/s"}} for i in range(count)])
+        return meter.spent
+
+    # Each further claim costs what judging it costs, and no further question.
+    assert work(101) - work(1) == pytest.approx(100 * 4)
+
+
+async def test_right_in_every_order_of_magnitude() -> None:
+    for exponent in range(-60, 61, 20):
+        size = 10.0**exponent
+        body = {"kind": "principal-moments", "moments": [size, 2 * size, 2.5 * size]}
+        question = {"path": "/v1/rotation/precession", "request": {"body": body, "angular_velocity": [1, 2, 3]}}
+        (reference,) = handled(question, {"/period": {"value": None}})["reference"]
+        assert await verdict(question, "/period", {"value": reference["value"], "unit": "s"}) == "correct"
+        assert np.isfinite(reference["error"])
+
+
+async def test_the_catalogue_lists_every_mistake() -> None:
+    async with client_of(SERVICE) as client:
+        listed = (await client.get("/v1/mistakes")).json()["mistakes"]
+    assert {"rod-inertia-about-end", "factor-2", "rate-over-axial-moment"} <= {entry["tag"] for entry in listed}
+    assert all(0.0 <= entry["credit"] < 1.0 for entry in listed)
+
+
+def euler_rows(step: float, count: int) -> list[list[float]]:
+    a, b, c = MOTION["request"]["body"]["moments"]
+    rows = [list(map(float, MOTION["request"]["angular_velocity"]))]
+    for _ in range(count):
+        x, y, z = rows[-1]
+        slope = ((b - c) / a * y * z, (c - a) / b * z * x, (a - b) / c * x * y)
+        rows.append([w + step * rate for w, rate in zip(rows[-1], slope, strict=True)])
+    return rows
+
+
+async def test_wrong_samples_are_judged_like_a_method() -> None:
+    step = 1 / 120
+    times = [4 * i * step for i in range(300)]
+    claim = {"times": times, "value": euler_rows(step, 1196)[::4], "unit": "rad/s"}
+    more = {"comparison": {"kind": "relabs", "rtol": 1e-3}}
+    (result,) = (await graded(MOTION, {"/angular_velocity": claim}, **more))["results"]
+    samples = result["tests"][0]["samples"]
+    assert samples["consistent_with"]["method"] == "explicit-euler"
+    assert samples["consistent_with"]["step"] == pytest.approx(step)
+    assert 0.0 < samples["within_until"] < times[-1]
+    assert samples["energy_drift"] > 0.0
+    assert "explicit-euler with a step of 0.00833333 s" in result["feedback"]
+    (hidden,) = (await graded(MOTION, {"/angular_velocity": claim}, reveal=False, **more))["results"]
+    assert "samples" not in hidden["tests"][0]
+
+
+async def test_a_hundred_trajectories_are_judged_by_one_reference() -> None:
+    times = [0.01 * i for i in range(100)]
+    column = handled(
+        MOTION | {"request": {**MOTION["request"], "times": times}}, {"/angular_velocity": {"value": None}}
+    )
+    rows = column["reference"][0]["value"]
+
+    def work(count: int) -> float:
+        claim = {"times": times, "value": rows, "unit": "rad/s"}
+        with work_limit(1e9) as meter:
+            results = handled(MOTION, *[{"/angular_velocity": claim}] * count)["results"]
+        assert all(result["correct"] for result in results)
+        return meter.spent
+
+    assert work(101) - work(1) == pytest.approx(100 * 4)
+
+
+SHAFTS = {
+    "path": "/v1/scenes/unwinding-shafts",
+    "request": {"masses": [2, 1], "radii": [0.1, 0.2], "slopes": [0.5, 0.9], "gravity": 9.81},
+}
+NAMED = {"M_1": "/masses/0", "M_2": "/masses/1", "alpha": "/slopes/0", "beta": "/slopes/1", "g": "/gravity"}
+TENSION = "g*(sin(alpha)+sin(beta))*M_1*M_2/(3*(M_1+M_2))"
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected", "tags"),
+    [
+        (TENSION, "correct", []),
+        ("g*(sin(alpha)+sin(beta))/(3/M_1+3/M_2)", "correct", []),
+        (TENSION.replace("3*", ""), "incorrect", ["shafts-do-not-turn"]),
+        ("-" + TENSION, "incorrect", ["sign"]),
+        (TENSION.replace("M_1*M_2", "M_1"), "incorrect", []),
+        ("2.7528003371450764", "incorrect", []),
+        ("sqrt(-g)", "incorrect", []),
+    ],
+)
+async def test_formulas_are_right_if_they_agree_everywhere(formula: str, expected: str, tags: list[str]) -> None:
+    (result,) = (await graded(SHAFTS, {"/tension": {"formula": formula}}, names=NAMED))["results"]
+    assert result["format_errors"] == []
+    assert result["tests"][0]["verdict"] == expected
+    assert result["matches"] == tags
+
+
+async def test_the_formulas_of_the_homework() -> None:
+    names = {"a": "/hole_radius", "l": "/length", "g": "/gravity", "M": "/mass"}
+    right = "sqrt(2*g*sqrt(a^2-l^2/4)*(1-l/(2*a))/(a^2-l^2/6))"
+    # Energy at the bottom as M g a (1 - sqrt(a^2 - l^2/4)): a length is subtracted from a number.
+    source = "sqrt((g*a*l/sqrt(a^2-l^2/4) - 2*g*a*(1-sqrt(a^2-l^2/4)))/(l^2/3+a^2-l^2/4))"
+    claims = [{HORIZONTAL: {"formula": formula}} for formula in (right, source)]
+    first, second = (await graded(ROD, *claims, names=names))["results"]
+    assert first["correct"]
+    assert not second["correct"]
+    assert second["feedback"].startswith("Check the dimensions")
+
+
+async def test_formulas_name_the_fields_of_the_question_unless_names_are_given() -> None:
+    formula = "gravity*(sin(slopes_1)+sin(slopes_2))*masses_1*masses_2/(3*(masses_1+masses_2))"
+    assert (await graded(SHAFTS, {"/tension": {"formula": formula}}))["results"][0]["correct"]
+
+
+@pytest.mark.parametrize(
+    "formula", ["", "M_3", "(" * 200, "__import__('os').system('x')", "9" * 301, "M_1 M_2", 3, "sin(sin)", "1e9999"]
+)
+async def test_what_is_no_formula_is_a_format_error(formula: Any) -> None:
+    bad, good = (
+        await graded(SHAFTS, {"/tension": {"formula": formula}}, {"/tension": {"formula": TENSION}}, names=NAMED)
+    )["results"]
+    assert [fault["pointer"] for fault in bad["format_errors"]] == ["/submissions/0/~1tension/formula"]
+    assert good["correct"]
+
+
+@pytest.mark.parametrize(
+    ("names", "pointer"),
+    [
+        ({"g": "/nothing"}, "/names/g"),
+        ({"2g": "/gravity"}, "/names"),
+        ({"sin": "/gravity"}, "/names/sin"),
+        ({"g": ""}, "/names/g"),
+    ],
+)
+async def test_names_lead_to_numbers(names: dict[str, str], pointer: str) -> None:
+    response = await asked(SHAFTS, {"/tension": {"formula": "1"}}, names=names)
+    assert response.status_code == 422
+    assert response.json()["errors"][0]["pointer"] in (pointer, "/names/sin")
+
+
+def units_in(node: Any) -> list[str]:
+    if isinstance(node, dict):
+        own = [node["unit"]] if isinstance(node.get("unit"), str) else []
+        return own + [unit for entry in node.values() for unit in units_in(entry)]
+    return [unit for entry in node for unit in units_in(entry)] if isinstance(node, list) else []
+
+
+def test_no_example_imports_the_library_of_units_while_the_service_warms_up() -> None:
+    examples = [dict(example.question) for example in ROUTES[PATH].examples.values()]
+    assert units_in(examples)
+    assert all(base_powers(unit) is not None for unit in units_in(examples))
+
+
+def test_every_comparison_and_every_form_of_claim_has_an_example() -> None:
+    examples = ROUTES[PATH].examples
+    assert {"relabs", "sigfig", "decdig", "interval", "data", "formulas", "samples", "choices-and-sets"} <= set(
+        examples
+    )
+
+
+async def test_methods_are_looked_for_in_a_limited_number_of_samples() -> None:
+    times = [0.1 * i for i in range(10)]
+    claim = {"times": times, "value": [[0.1 * i, 1.0, 0.3 * i] for i in range(10)], "unit": "rad/s"}
+    few = handled(MOTION, *[{"/angular_velocity": claim}] * 3)
+    many = handled(MOTION, *[{"/angular_velocity": claim}] * 101)
+    assert few["warnings"] == []
+    assert [warning["code"] for warning in many["warnings"]] == ["methods-not-looked-for"]
+
+
+async def test_samples_at_times_of_their_own_cost_a_question_each() -> None:
+    route = ROUTES[PATH]
+
+    def price(count: int, shift: float) -> float:
+        claims = [
+            {"/angular_velocity": {"times": [shift * i, 1.0], "value": [[0.0] * 3] * 2, "unit": "rad/s"}}
+            for i in range(count)
+        ]
+        body = json.dumps({"question": MOTION, "submissions": claims}).encode()
+        return float(route.price(HANDLER.read(route, body), Budget()))
+
+    assert price(200, 0.1) > 3 * price(2, 0.1)
