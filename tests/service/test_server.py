@@ -196,10 +196,9 @@ def scratch() -> Iterator[Path]:
         yield Path(name)
 
 
-@pytest.mark.parametrize("workers", ["1", "2"])
-@pytest.mark.parametrize("told", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(("workers", "stopped_by"), [("1", signal.SIGTERM), ("2", signal.SIGINT)])
 def test_logs_are_json_and_the_server_stops_cleanly(
-    start_server: Callable[..., Server], scratch: Path, workers: str, told: signal.Signals
+    start_server: Callable[..., Server], scratch: Path, workers: str, stopped_by: signal.Signals
 ) -> None:
     server = start_server(
         POLHODE_LOG_REQUESTS="all", POLHODE_COMPUTE_WORKERS="1", POLHODE_WORKERS=workers, TMPDIR=str(scratch)
@@ -207,7 +206,7 @@ def test_logs_are_json_and_the_server_stops_cleanly(
     server.wait_until_ready()
     assert post(server, hostile.text(), JSON | {"x-request-id": "abc-1"})[0] == 200
     assert "server" not in httpx.get(server.url + "/healthz").headers
-    lines = [json.loads(line) for line in server.stop(told).splitlines() if line.strip()]
+    lines = [json.loads(line) for line in server.stop(stopped_by).splitlines() if line.strip()]
     request = next(line for line in lines if line.get("request_id") == "abc-1")
     assert (request["operation"], request["status"], request["method"]) == ("rotation_trajectory", 200, "POST")
     assert server.process.returncode == 0
@@ -215,8 +214,8 @@ def test_logs_are_json_and_the_server_stops_cleanly(
     assert not [line for line in lines if line["level"] in ("error", "critical")]
 
 
-def until_told(server: Server, *lines: str) -> None:
-    """Wait until the metrics have lines: what other processes count is told a second later."""
+def until_metrics_have(server: Server, *lines: str) -> None:
+    """Wait until the metrics have lines: what other processes count is known a second later."""
     until = time.monotonic() + 60
     while not all(line in httpx.get(server.url + "/metrics").text for line in lines):
         assert time.monotonic() < until, httpx.get(server.url + "/metrics").text
@@ -234,14 +233,14 @@ def test_several_server_processes_give_the_same_bytes_and_shared_counters(start_
         answers.add(content)
         tags.add(headers["etag"])
     assert len(answers) == len(tags) == 1
-    until_told(server, 'polhode_request_seconds_count{operation="rotation_trajectory",status="200"} 24.0')
+    until_metrics_have(server, 'polhode_request_seconds_count{operation="rotation_trajectory",status="200"} 24.0')
     # Counters, gauges and histograms of large questions add up, too.
     large = json.dumps(hostile.QUESTION | {"times": {"start": 0, "stop": 1, "count": 200_000}}).encode()
     statuses = [post(server, large)[0] for _ in range(6)]
     # A connection may reach a process whose compute processes are still being started.
     assert set(statuses) <= {200, 503}
     assert 200 in statuses
-    until_told(server, f"polhode_job_seconds_count {statuses.count(200)}.0", "polhode_backlog_seconds 0.0")
+    until_metrics_have(server, f"polhode_job_seconds_count {statuses.count(200)}.0", "polhode_backlog_seconds 0.0")
 
 
 def server_processes(server: Server) -> list[int]:

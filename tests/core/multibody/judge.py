@@ -114,7 +114,7 @@ def main(count: int) -> None:
         "stated_over_true": {"least": min(ratios), "median": statistics.median(ratios)},
     }
     TARGET.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
-    print(result)
+    sys.stdout.write(f"{result}\n")
 
 
 if __name__ == "__main__":
