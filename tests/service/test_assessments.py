@@ -542,3 +542,16 @@ async def test_samples_at_times_of_their_own_cost_a_question_each() -> None:
         return float(route.price(HANDLER.read(route, body), Budget()))
 
     assert price(200, 0.1) > 3 * price(2, 0.1)
+
+
+async def test_a_measurement_is_run_once() -> None:
+    measure = {"method": {"kind": "closed-form"}, "duration": 15.0, "samples": 2000, "tolerance": 0.035}
+    measured = {**COIN, "request": {**COIN["request"], "measure": measure}}
+
+    def work(question: Body) -> float:
+        with work_limit(1e9) as meter:
+            assert handled(question, {"/space_rate": {"value": 2.0, "unit": "rad/s"}})["results"][0]["gradable"]
+        return meter.spent
+
+    assert work(measured) - work(COIN) < 2 * measure["samples"] + 100
+    assert await verdict(measured, "/measured/theory", {"value": 6.2832, "unit": "s"}) == "correct"

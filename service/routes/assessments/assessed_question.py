@@ -33,6 +33,9 @@ SENSITIVE: Mapping[str, tuple[str, float]] = {"ellipticity": ("a/c - 1", 1.0)}
 TIMELESS = ("/v1/rotation/trajectory",)
 """Questions of which all figures but the columns are the same whatever times are asked for."""
 
+MEASURED = "measured"
+"""What a precession is answered with beside its figures if a measurement is requested."""
+
 COLUMNS = ("angular_velocity", "attitude")
 
 CONDITIONING, ROUNDING = 8.0, 2e-15
@@ -171,6 +174,9 @@ class AssessedQuestion:
             changes["outputs"] = [output]
         if self.path in TIMELESS and output not in (*COLUMNS, "time"):
             changes["times"] = [0.0]
+        if request.get("measure") is not None and output != MEASURED:
+            # No other figure depends on the measurement, which runs an integrator.
+            changes["measure"] = None
         document = json.dumps(request | changes)
         if document not in self._answers:
             spend(ASKING)
