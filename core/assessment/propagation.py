@@ -1,4 +1,4 @@
-"""What the uncertainty of a question's numbers makes of its answer, for any question: by asking it again.
+"""Error of an answer that is propagated from the uncertainty of the question's numbers, for any question.
 
 Each number is changed by its relative uncertainty, one after the other, and the changes of a figure are added: the
 first order of the worst case. A number whose change alone leaves no such figure (two equal moments of a symmetric body,
