@@ -87,14 +87,15 @@ def require_tags(document: dict[str, Any]) -> None:
 def write_in_place(document: dict[str, Any]) -> None:
     """Write schemas that occur in one place there, but for questions, answers and members of unions."""
     schemas = document["components"]["schemas"]
-    while single := _used_once(document):
-        for node in _within(document):
-            name = str(node.get("$ref", "")).removeprefix(PREFIX)
-            if name in single:
-                own = {key: value for key, value in node.items() if key != "$ref"}
-                node.clear()
-                node.update(schemas.pop(name) | own)
-                break
+    single = _used_once(document)
+    for node in _within(document):
+        name = str(node.get("$ref", "")).removeprefix(PREFIX)
+        if name in single:
+            single.remove(name)
+            own = {key: value for key, value in node.items() if key != "$ref"}
+            node.clear()
+            # What it refers to itself is met next.
+            node.update(schemas.pop(name) | own)
 
 
 def _used_once(document: dict[str, Any]) -> set[str]:
