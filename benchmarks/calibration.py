@@ -350,13 +350,16 @@ def compare(answering: RequestHandler) -> None:
         except Exception as refused:
             print(path, "refused:", type(refused).__name__)
             continue
+        if foreseen is None:
+            # Assessments are not planned.
+            continue
         milliseconds = 1e3 * (seconds + writing)
         entry = {"path": path, "milliseconds": round(milliseconds, 3), "bytes": int(length)}
         entry["time_ratio"] = round(foreseen["milliseconds"] / milliseconds, 3)
         entry["bytes_ratio"] = round(foreseen["bytes"] / length, 3)
         result.append(entry)
         print(entry)
-    within = {name: sum(0.5 <= entry[f"{name}_ratio"] <= 2.0 for entry in result) for name in ("time", "bytes")}
+    within = {name: sum(bool(0.5 <= entry[f"{name}_ratio"] <= 2.0) for entry in result) for name in ("time", "bytes")}
     ratios = sorted(entry["time_ratio"] for entry in result)
     document = {
         "machine": described("numpy"),
