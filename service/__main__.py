@@ -81,7 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         forkserver.ensure_running()
     from core.compiled import has_compiled_code
 
-    LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: about 40 s, once")
+    LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: a minute or two, once")
     import uvicorn
 
     from service.app import app
