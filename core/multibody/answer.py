@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal
 
 from core.multibody.packed import Floats, Integers
@@ -202,22 +203,30 @@ class SceneTrajectory:
 
 @dataclass(frozen=True)
 class SceneEvent:
-    """Something that ends a scene.
+    """Something that ends a phase or a scene.
 
     Attributes
     ----------
-    kind : {"slack", "singular"}
+    kind : str
+        "touch", "lift-off", "slip", "stick", "roll", "settle" (bounces end), "taut", "slack", "stop", "release",
+        "singular", or the code of a problem.
     name : str
         The connection; "" where several make a place singular.
     time : float
     error : float
         Of the time (s).
+    impulses : mapping of str to float
+        Of an impact: "normal" and "friction" (N s).
+    energy_loss : float
+        Of an impact (J).
     """
 
     kind: str
     name: str
     time: float
     error: float
+    impulses: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    energy_loss: float = 0.0
 
 
 @dataclass(frozen=True)

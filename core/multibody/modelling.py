@@ -83,7 +83,12 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
     table = found.measures.table
     moved = assemble_places(table, found.paths)
     fitted = assemble_rates(table, found.measures.coordinates.given, found.paths)
-    small = reduced(table, pinning=True)
+    return models_of(found, moved, fitted)
+
+
+def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
+    """Return the models of a table whose start meets its rows."""
+    small = reduced(found.measures.table, pinning=True)
     pieces = [_piece(found, small.table, indices) for indices in parts(small.table)]
     gains: list[Ball] = [ZERO] * len(small.table.names)
     for piece in pieces:
@@ -134,7 +139,8 @@ def _motion(piece: Piece) -> Motion:
         return Uniform(part, gain)
     if linear and not part.gyration:
         return Modes.of(part, chosen)
-    found: Motion | None = repeating(part, gain, chosen) or precessing(part, gain, chosen)
+    rubs = any(row.drag for row in part.rows)
+    found: Motion | None = None if rubs else repeating(part, gain, chosen) or precessing(part, gain, chosen)
     if found is not None:
         return found
     free = piece.freedom

@@ -71,7 +71,7 @@ def _integrate(table: Table) -> bool:
     """Turn rates in constant proportion that stay zero into measures."""
     changed = False
     for number, row in enumerate(table.rows):
-        if row.measure is None and row.rate == 0 and row.constant:
+        if row.measure is None and row.rate == 0 and row.constant and not row.drag:
             measure: Poly = {(j,): poly[()] for j, poly in row.rates.items()}
             measure = combined((ONE, measure), (-evaluated(measure, table.q), constant(ONE)))
             table.rows[number] = Row.held(row.name, measure)
@@ -85,7 +85,7 @@ def _combine(state: Reduced) -> bool:
     rows: list[Row] = []
     changed = False
     for row in state.table.rows:
-        if row.measure is None or degree(row.measure) < 2:
+        if row.measure is None or degree(row.measure) < 2 or row.drag:
             rows.append(row)
             continue
         rest = row.measure
@@ -118,7 +118,9 @@ def _factor(state: Reduced) -> bool:
     """Replace a measure that is a product by the factor that vanishes."""
     changed = False
     for number, row in enumerate(state.table.rows):
-        if row.measure is None or degree(row.measure) < 2 or len(variables([row.measure])) > _MOST_FACTORED:
+        if row.measure is None or degree(row.measure) < 2 or row.drag:
+            continue
+        if len(variables([row.measure])) > _MOST_FACTORED:
             continue
         factors = _factors(row.measure)
         if factors is None:
@@ -174,7 +176,7 @@ def _completed(poly: Poly, index: int | None = None) -> tuple[Poly, Poly] | None
 def _linear(state: Reduced) -> bool:
     """Give one coordinate away for every measure of degree one."""
     table = state.table
-    linear = [row for row in table.rows if row.measure is not None and degree(row.measure) <= 1]
+    linear = [row for row in table.rows if _gives_away(row)]
     if not linear:
         return False
     elimination = Elimination([_readiness(table, i) for i in range(len(table.names))])
@@ -183,7 +185,7 @@ def _linear(state: Reduced) -> bool:
         line = {key[0]: value for key, value in measure.items() if key}
         if elimination.add(line, -entry(measure, ())) is not None:
             state.steps.append(f"{row.name}: follows from other measures")
-    table.rows = [row for row in table.rows if row.measure is None or degree(row.measure) > 1]
+    table.rows = [row for row in table.rows if not _gives_away(row)]
     expressions: list[Poly | None] = [None] * len(table.names)
     for i, (line, value) in elimination.pivots.items():
         expression: Poly = {(k,): -y for k, y in line.items()}
@@ -192,6 +194,11 @@ def _linear(state: Reduced) -> bool:
         expressions[i] = expression
     _substitute(state, expressions)
     return True
+
+
+def _gives_away(row: Row) -> bool:
+    """Return whether a row is a measure of degree one whose multiplier nothing else needs, as friction would."""
+    return row.measure is not None and degree(row.measure) <= 1 and not row.drag
 
 
 def _readiness(table: Table, i: int) -> int:
@@ -232,7 +239,7 @@ def _pin(state: Reduced) -> bool:
         live = [
             row
             for row in table.rows
-            if any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
+            if row.drag or any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
         ]
         leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
         if not leave:
@@ -278,8 +285,9 @@ def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
 def _stays(table: Table, i: int, pinned: set[int], coupled: list[tuple[int, ...]], live: list[Row]) -> bool:
     """Return whether the equation of a pinned coordinate vanishes, the multipliers of idle rows being zero."""
     for row in live:
-        if i in row.rates and not _vanishes(table, row.rates[i], pinned):
-            return False
+        for line in (row.rates, row.drag):
+            if i in line and not _vanishes(table, line[i], pinned):
+                return False
     push: Ball = entry(table.load, i)
     carried: dict[int, Ball] = {}
     for key in coupled:

@@ -118,16 +118,20 @@ class Whole:
         nothing = np.zeros(q.shape[:2])
         return WholeStates(q, v, nothing, nothing, None)
 
-    def in_pairs(self, times: Floats) -> tuple[Floats, Floats]:
-        """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2)."""
+    def in_pairs(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
+        """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2).
+
+        The kind is that of the runs of parts without a closed form, "fine" or the coarser "check".
+        """
         shape = (len(times), len(self.reduced.table.names), 2)
         z, w = np.zeros(shape), np.zeros(shape)
         for indices, motion in self.parts:
             if isinstance(motion, Numerical):
-                z[:, list(indices)], w[:, list(indices)] = motion.by("fine", times)
+                z[:, list(indices)], w[:, list(indices)] = motion.by(kind, times)
             else:
                 found = motion.states(times)
-                z[:, list(indices)], w[:, list(indices)] = found.q, found.v
+                own = (found.q, found.v) if kind == "fine" or found.reference is None else found.reference
+                z[:, list(indices)], w[:, list(indices)] = own
         slopes, offsets = self._affine
         return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w)
 
