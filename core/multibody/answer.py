@@ -255,6 +255,59 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
+class ScenePhase:
+    """A time in which no contact, stop or string changes its state.
+
+    Attributes
+    ----------
+    start : float
+    end : float or None
+        None where it lasts beyond the times asked for.
+    model, why : str
+    degrees_of_freedom : int
+    coordinates : int
+        Those that remain.
+    states : mapping of str to str
+        Of every contact, stop and string: open, closed, stick, slide, slide back.
+    """
+
+    start: float
+    end: float | None
+    model: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: int
+    states: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class SceneProblem:
+    """Something that mechanics does not decide.
+
+    Attributes
+    ----------
+    code : str
+        "no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "several-impacts", "no-impact",
+        "energy-gain" or "no-progress".
+    explanation : str
+    time : float
+    connections : tuple of str
+        Those between which it is undecided.
+    candidates : tuple of mapping
+        What is possible.
+    decided_by : str
+        Which further assumption would decide it.
+    """
+
+    code: str
+    explanation: str
+    time: float
+    connections: tuple[str, ...]
+    candidates: tuple[Mapping[str, str], ...]
+    decided_by: str
+
+
+@dataclass(frozen=True)
 class SceneAnswer:
     """The answer to a question about a scene; what was not asked for is None."""
 
@@ -267,3 +320,5 @@ class SceneAnswer:
     equilibria: tuple[Equilibrium, ...] | None
     events: tuple[SceneEvent, ...]
     ended: SceneEvent | None
+    phases: tuple[ScenePhase, ...] | None = None
+    problem: SceneProblem | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.balls import precision
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, NotApplicable
 from core.multibody.assembly import assemble_places, assemble_rates
 from core.multibody.description import Described, described
 from core.multibody.dynamics import accelerations, parts, restricted, singular_row
@@ -77,10 +77,18 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
     Raises
     ------
     InvalidParameter
-        For a scene that cannot be, with the path to the fault.
+        For a scene that cannot be, with the path to the fault; `SlackAtStart` where a string is too long to be taut.
+    NotApplicable
+        For a scene with contacts.
     """
     found = described(scene, numerals)
     table = found.measures.table
+    if found.measures.unilateral:
+        raise NotApplicable(
+            "contacts change the equations of motion at every event: such a scene is answered by its own phases alone",
+            path=("connections", found.paths[found.measures.unilateral[0].name][-1]),
+            remedy="leave out the method, or hold what touches by a connection of another kind",
+        )
     moved = assemble_places(table, found.paths)
     fitted = assemble_rates(table, found.measures.coordinates.given, found.paths)
     return models_of(found, moved, fitted)

@@ -25,6 +25,8 @@ SIDES: Mapping[str, tuple[int, int]] = {"left": (0, -1), "right": (0, 1), "below
 """A side of a drum: which component of the way from its centre to the tangent point, and the sign it has."""
 
 MOST_THROUGH = 50
+SLACK = 1e-9
+"""Share of its length by which a string may be longer than its way and still be meant as taut."""
 
 
 @dataclass
@@ -156,6 +158,7 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
         if measures.one_sided:
             measures.unilateral.append(_at_most(measures, part, longer, connection, path))
             return
+        _require_taut(evaluated(total, measures.table.q), held, path)
         row = measures.hold(name, longer)
     elif measures.one_sided:
         # What the string lacks to be taut is a coordinate: it follows from rates that no measure gives.
@@ -176,6 +179,17 @@ def _at_most(measures: Measures, part: str, longer: Poly, connection: Any, path:
     return Unilateral(part, gap, restitution=restitution, closes="taut", opens="slack", order=order)
 
 
+class SlackAtStart(InvalidParameter):
+    """A string is longer than its way: the scene begins with it slack."""
+
+
+def _require_taut(way: Ball, length: Ball, path: Path) -> None:
+    if length - way > SLACK * length:
+        raise SlackAtStart(
+            (*path, "length"), f"be {float(way):.10g} m here, where a string has to be taut", remedy="leave it out"
+        )
+
+
 def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, path: Path) -> None:
     """Hold two points at a distance, as long as that takes a pull."""
     length = connection.length
@@ -188,6 +202,10 @@ def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, pa
         longer = combined((half, dot(d, d)), (-half * square, constant(ONE)))
         measures.unilateral.append(_at_most(measures, part, longer, connection, path))
         return
+    if length is not None:
+        d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
+        way = measures.squared(d)
+        _require_taut(way.sqrt() if way > 0 else ZERO, _length(measures, length, path), path)
     measures.rod(part, a.point, b.point, length, path)
     rod = measures.forces.pop()
     force = measures.force(f"{part}.tension", rod.terms)
