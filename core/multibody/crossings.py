@@ -334,6 +334,8 @@ class Sampled:
         for k, watch in enumerate(self.watched):
             f = found[k]
             lost = f < -noise[k]
+            # What is zero at the start may be negative by rounding there.
+            lost[0] = lost[0] and times[0] > 0.0
             fine, g, low = times, f, noise[k]
             first = int(np.argmax(lost)) if lost.any() else len(f)
             dips = self._dips(f, first)

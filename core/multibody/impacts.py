@@ -61,9 +61,17 @@ def approaching(unilateral: Sequence[Unilateral], touching: Sequence[int], q: li
 
 
 def impact(
-    base: Table, unilateral: Sequence[Unilateral], touching: Sequence[int], q: list[Ball], v: list[Ball]
+    base: Table,
+    unilateral: Sequence[Unilateral],
+    touching: Sequence[int],
+    q: list[Ball],
+    v: list[Ball],
+    *,
+    settled: bool = False,
 ) -> Impact | Problem:
     """Return the outcome of an impact of the touching measures, or why it is undecided.
+
+    If it is `settled` that only one outcome is possible, as far as the state is known, none other is looked for.
 
     Raises
     ------
@@ -84,7 +92,7 @@ def impact(
                 f"contacts in one impact ({names})", len(group), MOST, path=("connections",),
                 remedy="hold some of them by connections of another kind",
             )
-        outcome = _group(unilateral, group, q, v, found, normal, slips)
+        outcome = _group(unilateral, group, q, v, found, normal, slips, settled=settled)
         if isinstance(outcome, Problem):
             return outcome
         for b, x in outcome.items():
@@ -94,7 +102,7 @@ def impact(
         together = together or len(taking) > 1
         impulses.update({i: (outcome[normal[i]], outcome.get(slips.get(i, -1), ZERO)) for i in taking})
     loss = before - _energy(table, after)
-    if not is_zero(loss) and loss < 0:
+    if not is_zero(loss) and loss < 0 and not settled:
         return Problem(
             "energy-gain",
             f"Newton's law of restitution with friction would add {float(-loss):.6g} J to the motion",
@@ -120,6 +128,8 @@ def _group(
     found: Responses,
     normal: dict[int, int],
     slips: dict[int, int],
+    *,
+    settled: bool,
 ) -> Impulses | Problem:
     rates = {normal[i]: gap_rate(unilateral[i], q, v) for i in group}
     rates |= {slips[i]: slip_rate(unilateral[i], q, v) for i in group if i in slips}
@@ -131,7 +141,7 @@ def _group(
         in_turn = _in_turn(unilateral, order, rates, found, normal, slips)
         return in_turn if in_turn is not None else _endless(names)
     at_once = _at_once(unilateral, group, rates, found, normal, slips)
-    if isinstance(at_once, Problem):
+    if isinstance(at_once, Problem) or settled:
         return at_once
     taking = [i for i in group if at_once.get(normal[i], ZERO) != 0]
     if len(taking) <= 1 and all(_free(at_once, rates, found, normal[i]) for i in group if i not in taking):

@@ -21,6 +21,7 @@ from core.multibody.polynomials import (
     degree,
     entry,
     evaluated,
+    gradient,
     is_zero,
     product,
     substituted,
@@ -61,6 +62,7 @@ def reduced(table: Table, *, pinning: bool) -> Reduced:
         changed = _combine(state) or changed
         changed = _factor(state) or changed
         changed = _linear(state) or changed
+        changed = _straighten(state) or changed
         if not changed and pinning:
             changed = _pin(state)
         if not changed:
@@ -194,6 +196,63 @@ def _linear(state: Reduced) -> bool:
         expressions[i] = expression
     _substitute(state, expressions)
     return True
+
+
+def _straighten(state: Reduced) -> bool:
+    """Make a coordinate of the gap of a rubbing contact, and drop its square from other measures.
+
+    Such a measure of degree one cannot give its coordinate away: the friction needs its multiplier. But the gap w stays
+    zero, so that w^2 has no part in the gradient of any other measure.
+    """
+    table = state.table
+    for row in table.rows:
+        if row.measure is None or degree(row.measure) != 1 or not row.drag:
+            continue
+        line = {key[0]: x for key, x in row.measure.items() if key}
+        if len(line) == 1 and () not in row.measure:
+            continue
+        pivot = max(line, key=lambda i: (_readiness(table, i), abs(float(line[i]))))
+        away = _across(table, line, pivot)
+        expressions = identity(len(table.names))
+        gap: Poly = {(i,): -x / line[pivot] for i, x in line.items() if i != pivot}
+        if () in row.measure:
+            gap[()] = -row.measure[()] / line[pivot]
+        for i in line:
+            if i != pivot and away[i] != 0:
+                expressions[i] = {(i,): ONE, (pivot,): away[i]}
+        expressions[pivot] = {**gap, (pivot,): away[pivot]}
+        unit = table.units[pivot]
+        changed = table.changed(expressions, range(len(table.names)))
+        changed.names[pivot], changed.units[pivot] = f"{row.name}.gap", unit
+        changed.q[pivot] = changed.v[pivot] = ZERO
+        state.table = changed
+        state.expressions = [substituted(expression, expressions) for expression in state.expressions]
+        state.steps.append(f"{row.name}: its gap is a coordinate")
+        return True
+    closed = {next(iter(row.rates)) for row in table.rows if row.drag and _is_gap(row)}
+    changed_any = False
+    for number, row in enumerate(table.rows):
+        if row.measure is None or _is_gap(row):
+            continue
+        kept = {key: x for key, x in row.measure.items() if not (len(key) == 2 and key[0] == key[1] and key[0] in closed)}
+        if len(kept) < len(row.measure):
+            table.rows[number] = Row(row.name, kept, gradient(kept), ZERO, row.drag)
+            changed_any = True
+    return changed_any
+
+
+def _across(table: Table, line: dict[int, Ball], pivot: int) -> dict[int, Ball]:
+    """Return the direction in which a gap opens by one: across its level by the masses, so that these stay apart."""
+    masses = {i: table.mass.get((i, i)) for i in line}
+    coupled = any(i != j and (i in line or j in line) for i, j in table.mass)
+    if coupled or any(mass is None for mass in masses.values()):
+        return {i: 1 / line[i] if i == pivot else ZERO for i in line}
+    total = sum((x * x / masses[i] for i, x in line.items()), ZERO)
+    return {i: x / masses[i] / total for i, x in line.items()}
+
+
+def _is_gap(row: Row) -> bool:
+    return row.measure is not None and len(row.measure) == 1 and degree(row.measure) == 1
 
 
 def _gives_away(row: Row) -> bool:

@@ -44,6 +44,8 @@ from core.multibody.table import Row, Table
 MOST_EVENTS = 2000
 TOUCHING = 1e-9
 """Gap, relative to its terms, below which something touches at the start."""
+SHORT = 2.0**-30
+"""Share of a scene's own time in which the bounces that are left are alike, where they are not exactly so."""
 LISTED = 12
 """Bounces of one contact that are listed before the rest is summed up."""
 TOLD = 16.0
@@ -52,6 +54,8 @@ FLOOR = 2.0**-96
 """Share of the largest coordinate of its unit that a state is wrong by at least, once it is not exact."""
 EXACT = 2.0**-130
 """Share up to which the width of a state in balls is nothing."""
+NOUGHT = 2.0**-180
+"""Share of the largest rate of its unit below which a rate is what is left of an exact zero."""
 _STILL = 60
 """Events at one time before no motion is seen in them."""
 
@@ -243,6 +247,15 @@ class _Run:
             found.append([largest[unit] for unit in self.table.units])
         return found[0], found[1]
 
+    def _lived(self, phase: Phase, crossing: Crossing) -> None:
+        """Take account of how large coordinates and rates were during a phase, as far as its ends tell."""
+        time, acceleration = float(crossing.time), phase.models[0].whole.acceleration
+        for i, unit in enumerate(self.table.units):
+            pull = abs(float(acceleration[i].mid()))
+            moved = abs(float((crossing.q[i] - phase.tracks[0].q[i]).mid()))
+            for largest, x in zip(self.largest, (pull * time * time, max(pull * time, moved / time)), strict=True):
+                largest[unit] = max(largest.get(unit, 0.0), x)
+
     def _late(self) -> float:
         """Return what the time of the present event is wrong by."""
         time = self.tracks[0].time
@@ -268,7 +281,9 @@ class _Run:
             if len(self.tracks) == 1:
                 self.tracks = [replace(self.tracks[0], v=outcome.v)]
             else:
-                each = [impact(self.table, self.unilateral, self.touching, t.q, t.v) for t in self.tracks]
+                each = [
+                    impact(self.table, self.unilateral, self.touching, t.q, t.v, settled=True) for t in self.tracks
+                ]
                 if any(isinstance(one, Problem) for one in each):
                     self._stop(next(one for one in each if isinstance(one, Problem)))
                     return False
@@ -321,11 +336,19 @@ class _Run:
             table = phase_table(self.table, self.unilateral, self.states, track.q, track.v)
             if len(self.tracks) > 1:
                 _projected(table.table)
+                self._settled(table.table)
             model = self._model(table)
             tracks.append(Track(track.time, table.table.q, table.table.v))
             models.append(model)
             tables.append(table)
         return Phase(tracks, models, tables, list(self.states))
+
+    def _settled(self, table: Table) -> None:
+        """Make exact zeros of what the projection leaves of rates that the rows hold at zero."""
+        for largest, vector in zip(self.largest, (table.q, table.v), strict=True):
+            for i, (unit, x) in enumerate(zip(table.units, vector, strict=True)):
+                if abs(float(x)) <= NOUGHT * largest.get(unit, 0.0):
+                    vector[i] = ZERO
 
     def _model(self, phase: PhaseTable) -> Modelled:
         measures = copy.copy(self.base.measures)
@@ -354,6 +377,7 @@ class _Run:
         watch = crossings[0].watch
         assert watch is not None
         exact = len(crossings) == 1
+        self._lived(phase, crossings[0])
         self.tracks = [
             Track(track.time + x.time, x.q, x.v) for track, x in zip([phase.tracks[0]] * len(crossings) if len(phase.tracks) < len(crossings) else phase.tracks, crossings, strict=True)
         ]
@@ -393,14 +417,19 @@ class _Run:
             default=0.0,
         )
 
-    def _apart(self, first: Track, second: Track) -> Track:
-        """Return the second track, moved to where rounding may be seen to grow."""
+    def _own_time(self) -> float:
+        """Return the time in which the scene moves by its own size."""
+        place, rate = (largest.get("m", 0.0) for largest in self.largest)
+        return place / rate if rate > 0.0 else 1.0
+
+    def _apart(self, first: Track, second: Track, share: float = FLOOR) -> Track:
+        """Return the second track, moved by a share of the largest, so that the growth of errors may be seen."""
         scales = self._scales(first)
         vectors = []
         for k, (a, b) in enumerate(((first.q, second.q), (first.v, second.v))):
             moved = []
             for i, (x, y) in enumerate(zip(a, b, strict=True)):
-                least = FLOOR * scales[k][i]
+                least = share * scales[k][i]
                 moved.append(y if abs(float(x - y)) >= least else arb((x + (least if i % 2 else -least)).mid()))
             vectors.append(moved)
         return Track(second.time, *vectors)
@@ -466,7 +495,7 @@ class _Run:
                 continue
             found = [tail for tail in tails if tail is not None]
             length = found[0].length
-            if not exact and not length * 2**50 < max(float(abs(phase.start)), float(length)):
+            if not exact and not length < SHORT * self._own_time():
                 continue
             if phase.start + length > self.end or not self._alone(i, phase, found[0]):
                 continue
@@ -479,7 +508,9 @@ class _Run:
                 self.tracks.append(Track(track.time + tail.length, q, v))
             if len(self.tracks) > 1:
                 self.tracks = [_bare(track) for track in self.tracks]
-                self.tracks[1] = self._apart(*self.tracks)
+                # Over the bounces the acceleration changes in proportion to their length.
+                share = float(length) / self._own_time()
+                self.tracks[1] = self._apart(*self.tracks, max(FLOOR, 0.0 if exact else share * share))
             self.touching = sorted({*(j for j, s in enumerate(phase.states) if s is not State.OPEN), i})
             self.motion.events.append(SceneEvent("settle", one.name, float(phase.end), self._late()))
             self.bounced = {}
