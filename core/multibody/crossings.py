@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 from flint import arb
 
-from core.errors import BudgetExceeded
+from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.contact_states import PhaseTable, State
 from core.multibody.expansion import Expansion, Series, expansion, slope, value
 from core.multibody.measures import Force, Unilateral
@@ -33,6 +33,12 @@ ORDER = 8
 _NOISE = 2.0**-44
 """Share of its terms below which the sign of something sampled in doubles is noise."""
 _CLOSER = 33
+_EXACT = 2.0**-112
+"""Share of a series' terms by which its last one may count where an event is located by it."""
+_UNKNOWN = 2.0**-90
+"""Share of its terms below which the value of something at the start of a phase is zero."""
+_SOONEST = 1e-6
+"""Share of the first interval in which a return to zero is looked for; sooner ones are told by the Taylor series."""
 _MOST_NODES = 200_000
 _ROUNDS = 12
 
@@ -304,28 +310,26 @@ class Sampled:
             before, reach = float(times[-3]) if len(times) > 3 else 0.0, min(end, 2.0 * reach)
 
     def _near_start(self) -> tuple[float, Watch] | None:
-        """Return the first root of what is zero at the start and comes back to zero soon, as its Taylor series says."""
+        """Return the first root that comes so soon that the start of its Taylor series tells it."""
         motion = expansion(self.phase.table, ORDER)
+        noise = self.curves(np.zeros(1))[1][:, 0] * (_UNKNOWN / _NOISE)
         best: tuple[float, Watch] | None = None
-        for watch in self.watched:
-            series = [ZERO if is_zero(x) else x for x in watch.series(motion)]
-            if not series or series[0] != 0:
-                continue
-            while series and series[0] == 0:
+        for watch, unknown in zip(self.watched, noise, strict=True):
+            series = [0.0 if is_zero(x) else float(x.mid()) for x in watch.series(motion)]
+            if abs(series[0]) <= unknown:
+                series[0] = 0.0
+            while series and series[0] == 0.0:
                 series.pop(0)
-            if len(series) < 3 or not series[0] > 0 or series[1] == 0:
+            if len(series) < 3 or not series[0] > 0.0:
                 continue
-            guess = -float(series[0] / series[1])
-            if guess <= 0.0:
+            guess = _first_of_quadratic(*series[:3])
+            if guess is None or guess > 1e30 or guess < 1e-30:
                 continue
-            coefficients = [float(x) * guess**k for k, x in enumerate(series)]
-            # The Taylor series decides only where its terms fall off.
-            if max(abs(x) for x in coefficients[2:]) > 0.1 * abs(coefficients[0]):
+            terms = [abs(x) * guess**k for k, x in enumerate(series)]
+            if sum(terms[3:]) > 0.05 * max(terms[:3]):
                 continue
-            roots = np.roots(coefficients[::-1])
-            real = sorted(x.real for x in roots if abs(x.imag) < 1e-9 and x.real > 0)
-            if real and (best is None or guess * real[0] < best[0]):
-                best = guess * real[0], watch
+            if best is None or guess < best[0]:
+                best = guess, watch
         return best
 
     def _look(self, times: Floats) -> tuple[float, Watch] | None:
@@ -349,7 +353,16 @@ class Sampled:
             if first == len(g) or first == 0:
                 continue
             above = np.flatnonzero(g[:first] > low[:first])
-            start = int(above[-1]) if len(above) else 0
+            if not len(above):
+                # It rises from zero and returns between two times, or was noise all the time.
+                fine = times[0] + (fine[first] - times[0]) * np.geomspace(_SOONEST, 1.0, 4 * _CLOSER)
+                g, low = (x[0] for x in Sampled(self.phase, self.model, [watch]).curves(fine))
+                above = np.flatnonzero(g > low)
+                if not len(above):
+                    continue
+                first = int(above[0]) + int(np.argmax(g[above[0] :] < -low[above[0] :]))
+                above = above[above < first]
+            start = int(above[-1])
             a, b = g[start], g[first]
             guess = fine[start] + (fine[first] - fine[start]) * (a / (a - b) if a > 0 else 0.5)
             if best is None or guess < best[0]:
@@ -381,12 +394,13 @@ class Sampled:
             moved = float(step)
             if not math.isfinite(moved):
                 break
-            if abs(moved) <= 4e-12 * max(abs(time), abs(float(series[0] / series[1]))) or abs(moved) < 1e-290:
+            if _cut_off(motion, moved) < _EXACT:
                 q, v = state_of(motion, step)
                 return Crossing(arb(time) + step, watch, q, v)
             time = max(time + moved, 0.5 * time)
-        q, v = state_of(motion, ZERO)
-        return Crossing(arb(time), watch, q, v)
+        raise AccuracyUnreachable(
+            None, 1.0, f'the event of "{watch.one.name}" near {time:.6g} s of its phase cannot be located', path=("times",)
+        )
 
     def expanded(self, time: float, kind: str) -> Expansion:
         """Return the Taylor series about a time of the phase."""
@@ -399,6 +413,27 @@ class Sampled:
             return expansion(table, ORDER)
         finally:
             table.q, table.v = old
+
+
+def _cut_off(motion: Expansion, step: float) -> float:
+    """Return the last term of every series at a step relative to the largest."""
+    worst = 0.0
+    for series in motion.places:
+        terms = [abs(float(x.mid())) * abs(step) ** k for k, x in enumerate(series)]
+        largest = max(terms)
+        if largest > 0.0:
+            worst = max(worst, terms[-1] / largest)
+    return worst
+
+
+def _first_of_quadratic(c: float, b: float, a: float) -> float | None:
+    """Return the first positive root of c + b t + a t^2 with c > 0, None without one."""
+    discriminant = b * b - 4.0 * a * c
+    if discriminant < 0.0 or (a == 0.0 and b >= 0.0):
+        return None
+    s = -(b + math.copysign(math.sqrt(discriminant), b)) / 2.0
+    roots = [x for x in ((s / a if a != 0.0 else 0.0), (c / s if s != 0.0 else 0.0)) if x > 0.0]
+    return min(roots, default=None)
 
 
 class SingularPlace(Exception):

@@ -19,6 +19,7 @@ from core.multibody.passes import reduced
 from core.multibody.periods import repeating
 from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
 from core.multibody.table import Table
+from core.multibody.turning import turning
 from core.multibody.uniform import Uniform
 from core.multibody.vertical_symmetry import precessing
 from core.multibody.whole import Whole
@@ -147,6 +148,9 @@ def _motion(piece: Piece) -> Motion:
         return Uniform(part, gain)
     if linear and not part.gyration:
         return Modes.of(part, chosen)
+    free_turn = turning(part, chosen)
+    if free_turn is not None:
+        return free_turn
     rubs = any(row.drag for row in part.rows)
     found: Motion | None = None if rubs else repeating(part, gain, chosen) or precessing(part, gain, chosen)
     if found is not None:

@@ -205,14 +205,19 @@ def _straighten(state: Reduced) -> bool:
     zero, so that w^2 has no part in the gradient of any other measure.
     """
     table = state.table
+    closed = {next(iter(row.rates)) for row in table.rows if row.drag and _is_gap(row)}
     for row in table.rows:
         if row.measure is None or degree(row.measure) != 1 or not row.drag:
             continue
         line = {key[0]: x for key, x in row.measure.items() if key}
-        if len(line) == 1 and () not in row.measure:
+        free = [i for i in line if i not in closed]
+        if (len(line) == 1 and () not in row.measure) or not free:
             continue
-        pivot = max(line, key=lambda i: (_readiness(table, i), abs(float(line[i]))))
+        pivot = max(free, key=lambda i: (_readiness(table, i), abs(float(line[i]))))
         away = _across(table, line, pivot)
+        if len(free) < len(line):
+            # The gaps of others stay what they are.
+            away = {i: 1 / line[i] if i == pivot else ZERO for i in line}
         expressions = identity(len(table.names))
         gap: Poly = {(i,): -x / line[pivot] for i, x in line.items() if i != pivot}
         if () in row.measure:
@@ -229,7 +234,6 @@ def _straighten(state: Reduced) -> bool:
         state.expressions = [substituted(expression, expressions) for expression in state.expressions]
         state.steps.append(f"{row.name}: its gap is a coordinate")
         return True
-    closed = {next(iter(row.rates)) for row in table.rows if row.drag and _is_gap(row)}
     changed_any = False
     for number, row in enumerate(table.rows):
         if row.measure is None or _is_gap(row):

@@ -15,6 +15,7 @@ from typing import Any
 
 from flint import arb
 
+from core.balls import precision
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
 from core.multibody.accumulation import Accumulation
 from core.multibody.answer import SceneEvent
@@ -37,7 +38,7 @@ from core.multibody.language import Scene
 from core.multibody.measures import Unilateral
 from core.multibody.modelling import Modelled, models_of
 from core.multibody.numerical import Numerical
-from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
+from core.multibody.polynomials import BITS, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.rank import independent
 from core.multibody.table import Row, Table
 
@@ -46,8 +47,11 @@ TOUCHING = 1e-9
 """Gap, relative to its terms, below which something touches at the start."""
 SHORT = 2.0**-30
 """Share of a scene's own time in which the bounces that are left are alike, where they are not exactly so."""
+SLOW = 2.0**-42
+"""Share of the largest rate below which several contacts that bounce in turn come to rest."""
 LISTED = 12
 """Bounces of one contact that are listed before the rest is summed up."""
+FINER_BITS = (1280, 2560)
 TOLD = 16.0
 """The difference of the two tracks, times this, is what a state is taken to be wrong by."""
 FLOOR = 2.0**-96
@@ -139,16 +143,25 @@ def motion_in_phases(scene: Scene, end: float) -> PhaseMotion:
     BudgetExceeded
         For more events than one question may have.
     """
-    base = described(scene, one_sided=True)
-    run = _Run(base, end)
-    run.assemble()
-    run.go()
-    return run.motion
+    for bits in (BITS, *FINER_BITS):
+        with precision(bits):
+            run = _Run(described(scene, one_sided=True), end, last=bits == FINER_BITS[-1])
+            run.assemble()
+            try:
+                run.go()
+            except _TooWide:
+                continue
+            return run.motion
+    raise AssertionError("the last precision goes on without exact balls")
+
+
+class _TooWide(Exception):
+    """The balls of a motion in closed form have become wide: more bits keep them exact for longer."""
 
 
 class _Run:
-    def __init__(self, base: Described, end: float) -> None:
-        self.base, self.end = base, end
+    def __init__(self, base: Described, end: float, *, last: bool) -> None:
+        self.base, self.end, self.last = base, end, last
         self.table: Table = base.measures.table
         self.unilateral = base.measures.unilateral
         self.motion = PhaseMotion(base, self.unilateral)
@@ -273,7 +286,13 @@ class _Run:
             hit = approaching(self.unilateral, self.touching, q, v)
             if not hit:
                 return True
-            outcome = impact(self.table, self.unilateral, self.touching, q, v)
+            unilateral, share = self.unilateral, self._share(hit)
+            if share > 0.0:
+                # What still bounces so little comes to rest in no time; the tracks are moved apart by what that leaves out.
+                unilateral = [replace(one, restitution=ZERO) for one in self.unilateral]
+                self.tracks = [_bare(self.tracks[0]), self._apart(*(_bare(t) for t in (self.tracks * 2)[:2]), share)]
+                q, v = self.wide()
+            outcome = impact(self.table, unilateral, self.touching, q, v)
             if isinstance(outcome, Problem):
                 self._stop(outcome)
                 return False
@@ -282,7 +301,7 @@ class _Run:
                 self.tracks = [replace(self.tracks[0], v=outcome.v)]
             else:
                 each = [
-                    impact(self.table, self.unilateral, self.touching, t.q, t.v, settled=True) for t in self.tracks
+                    impact(self.table, unilateral, self.touching, t.q, t.v, settled=True) for t in self.tracks
                 ]
                 if any(isinstance(one, Problem) for one in each):
                     self._stop(next(one for one in each if isinstance(one, Problem)))
@@ -293,6 +312,20 @@ class _Run:
             q, v = self.wide()
         self._stop(Problem("no-progress", "impacts follow one another without end", ()))
         return False
+
+    def _share(self, hit: Sequence[int]) -> float:
+        """Return how slowly what hits does so, as a share of the largest rate, if it has done so often; else 0."""
+        if len(self.motion.events) < LISTED or all(is_zero(self.unilateral[i].restitution) for i in hit):
+            return 0.0
+        q, v = self.tracks[0].q, self.tracks[0].v
+        largest = self.largest[1]
+        share = 0.0
+        for i in hit:
+            fastest = largest.get("rad" if self.unilateral[i].unit == "N m" else "m", 0.0)
+            if not fastest > 0.0:
+                return 0.0
+            share = max(share, abs(float(gap_rate(self.unilateral[i], q, v))) / fastest)
+        return share if share < SLOW else 0.0
 
     def _record(self, hit: Sequence[int], outcome: Impact) -> None:
         first = True
@@ -382,11 +415,14 @@ class _Run:
             Track(track.time + x.time, x.q, x.v) for track, x in zip([phase.tracks[0]] * len(crossings) if len(phase.tracks) < len(crossings) else phase.tracks, crossings, strict=True)
         ]
         if exact and self._width() > EXACT:
+            if not self.last:
+                raise _TooWide
             self.tracks = [self.tracks[0], self.tracks[0]]
             exact = False
         if not exact:
             self.tracks = [_bare(track) for track in self.tracks]
-            self.tracks[1] = self._apart(*self.tracks)
+            still = [not any(expression) for expression in phase.models[0].whole.reduced.expressions]
+            self.tracks[1] = self._apart(*self.tracks, still=still)
         phase.end = self.tracks[0].time
         q, _ = self.wide()
         closed = [i for i, state in enumerate(phase.states) if state is not State.OPEN]
@@ -422,13 +458,21 @@ class _Run:
         place, rate = (largest.get("m", 0.0) for largest in self.largest)
         return place / rate if rate > 0.0 else 1.0
 
-    def _apart(self, first: Track, second: Track, share: float = FLOOR) -> Track:
-        """Return the second track, moved by a share of the largest, so that the growth of errors may be seen."""
+    def _apart(
+        self, first: Track, second: Track, share: float = FLOOR, still: Sequence[bool] | None = None
+    ) -> Track:
+        """Return the second track, moved by a share of the largest, so that the growth of errors may be seen.
+
+        Coordinates that are `still` were constants of the phase before.
+        """
         scales = self._scales(first)
         vectors = []
         for k, (a, b) in enumerate(((first.q, second.q), (first.v, second.v))):
             moved = []
             for i, (x, y) in enumerate(zip(a, b, strict=True)):
+                if still is not None and still[i] and x == y:
+                    moved.append(y)
+                    continue
                 least = share * scales[k][i]
                 moved.append(y if abs(float(x - y)) >= least else arb((x + (least if i % 2 else -least)).mid()))
             vectors.append(moved)
@@ -524,33 +568,34 @@ class _Run:
         acceleration = list(phase.models[k].whole.acceleration)
         found = responses(table, rows)
         push, yields = list(found.columns[0]), found.matrix[0][0]
+        opening = gap_rate(one, track.q, track.v)
+        row = Row.held(one.name, one.gap)
+        at = replace(table, q=track.q, v=track.v)
+        closing = at.convective(row) - sum((x * acceleration[j] for j, x in row.line(track.q).items()), ZERO)
+        if not opening > 0 or not closing > 0:
+            return None
+        e = one.restitution
         if one.slip is not None:
             b, slip = slips[i], slip_rate(one, track.q, track.v)
-            gain = sum((evaluated(p, track.q) * acceleration[j] for j, p in one.slip.items()), ZERO)
-            if not is_zero(gain):
-                return None
+            along = Row(one.name, None, one.slip)
+            gain = sum((x * acceleration[j] for j, x in along.line(track.q).items()), ZERO) - at.convective(along)
+            (nn, nt), (tn, tt) = found.matrix
             if is_zero(slip):
-                ratio = -found.matrix[b][0] / found.matrix[b][b]
-                if abs(ratio) > one.static:
+                # It slips during an arc, and stops at its end: by as much less, every time, as the arc is shorter.
+                share = 2 * gain / (closing * (1 + e))
+                ratio = -(tn + share * nn) / (tt + share * nt)
+                if not abs(ratio) < one.static:
                     return None
             else:
                 ratio = -one.kinetic if slip > 0 else one.kinetic
             push = [x + ratio * y for x, y in zip(push, found.columns[b], strict=True)]
-            yields = found.matrix[0][0] + ratio * found.matrix[0][b]
+            yields = nn + ratio * nt
             if not is_zero(slip):
-                unit = one.restitution * gap_rate(one, track.q, track.v) * (1 + one.restitution)
-                final = slip + (found.matrix[b][0] + ratio * found.matrix[b][b]) * unit / (
-                    one.restitution * yields * (1 - one.restitution)
-                )
-                if not final * slip > 0:
+                total = (1 + e) * opening / (yields * (1 - e))
+                length = 2 * opening / (closing * (1 - e))
+                if not abs(slip) > abs(gain) * length + abs((tn + ratio * tt) * total):
                     return None
-        opening = gap_rate(one, track.q, track.v)
-        row = Row.held(one.name, one.gap)
-        at = replace(table, q=track.q, v=track.v)
-        closing = at.convective(row) - sum(
-            (x * acceleration[j] for j, x in row.line(track.q).items()), ZERO
-        )
-        if not opening > 0 or not closing > 0 or not yields > 0:
+        if not yields > 0:
             return None
         return Accumulation(
             track.q, track.v, acceleration, push, yields, opening, closing, one.restitution
@@ -573,15 +618,18 @@ class _Run:
                 if not evaluated(one.gap, around) > 0:
                     return False
                 continue
-            # A closed contact that the impulses do not press, nor rub.
-            lines = [Row.held(one.name, one.gap)] + ([Row(one.name, None, one.slip)] if one.slip else [])
-            for row in lines:
-                if not is_zero(sum((x * tail.push[k] for k, x in row.line(here).items()), ZERO)):
-                    return False
-            if state.sense and not is_zero(
-                sum((evaluated(p, here) * tail.a[k] for k, p in (one.slip or {}).items()), ZERO)
-            ):
+            # A closed contact that the impulses do not press, and whose slip they do not stop nor begin.
+            normal = sum((x * tail.push[k] for k, x in Row.held(one.name, one.gap).line(here).items()), ZERO)
+            if not is_zero(normal):
                 return False
+            along = Row(one.name, None, one.slip or {}).line(here)
+            jerk = sum((x * tail.push[k] for k, x in along.items()), ZERO)
+            if state is State.STICK and not is_zero(jerk):
+                return False
+            if state.sense:
+                change = sum((x * tail.a[k] for k, x in along.items()), ZERO)
+                if not abs(slip_rate(one, here, tail.v)) > abs(change) * length + abs(jerk) * unit:
+                    return False
         return True
 
 
