@@ -1,7 +1,8 @@
 """Which of the touching contacts stay closed, stick, slide or open: all combinations are tried.
 
-A closed contact has N >= 0, an open one a gap that does not shrink, a sticking one |F| <= mu N, one that begins to slide
-a rate of slip that grows against its friction. A sign is that of the first Taylor coefficient that is not zero, in balls.
+A closed contact has N >= 0, an open one a gap that does not shrink, a sticking one |F| <= mu N, one that begins to
+slide a rate of slip that grows against its friction. A sign is that of the first Taylor coefficient that is not zero,
+in balls.
 Contacts that do not push one another are decided apart.
 
 References
@@ -23,7 +24,7 @@ from core.multibody.contact_states import Problem, State, phase_table
 from core.multibody.dynamics import weightless
 from core.multibody.expansion import expansion, leading_sign, saddle
 from core.multibody.measures import Unilateral
-from core.multibody.polynomials import ZERO, Ball, evaluated, gradient, is_zero
+from core.multibody.polynomials import ZERO, Ball, entry, evaluated, gradient, is_zero
 from core.multibody.rank import Elimination, independent
 from core.multibody.table import Row, Table
 
@@ -153,7 +154,10 @@ def decided(
         if len(group) > MOST:
             names = ", ".join(unilateral[i].name for i in group)
             raise BudgetExceeded(
-                f"undecided contacts at once ({names})", len(group), MOST, path=("connections",),
+                f"undecided contacts at once ({names})",
+                len(group),
+                MOST,
+                path=("connections",),
                 remedy="hold some of them by connections of another kind",
             )
         chosen = _one_group(base, unilateral, group, states, open_to, q, v, found, normal, slips)
@@ -237,9 +241,7 @@ def _one_group(
                 "several-motions",
                 f"several motions are possible: {'; '.join(_told(one.states) for one in sticking)}",
                 names,
-                tuple(
-                    {name: state.value for name, state in zip(names, one.states, strict=True)} for one in sticking
-                ),
+                tuple({name: state.value for name, state in zip(names, one.states, strict=True)} for one in sticking),
                 "a compliance of the contact and how it came to this state",
             )
     return max(sticking, key=lambda one: (sum(s is not State.OPEN for s in one.states), _stuck(one.states))).states
@@ -302,12 +304,14 @@ def _balanced(
             return None
     free = [j for j in range(size) if j not in elimination.pivots]
     if not free:
-        return _candidate(states, _spread(elimination.solution(range(size)), unknowns, found), found, undetermined=False)
+        return _candidate(
+            states, _spread(elimination.solution(range(size)), unknowns, found), found, undetermined=False
+        )
     for f in free:
         alone = [ZERO] * size
         alone[f] = ZERO + 1
-        for j, (line, _) in elimination.pivots.items():
-            alone[j] = -line.get(f, ZERO)
+        for j, (rest, _) in elimination.pivots.items():
+            alone[j] = -entry(rest, f)
         pushed = _accelerations(_spread(alone, unknowns, found), found, from_rest=True)
         if not all(is_zero(x) for x in pushed):
             if not any(state.sense for state in states):
@@ -355,8 +359,8 @@ def _feasible(
 ) -> list[Ball] | None:
     """Return a share of the load with which everything pushes and sticks, None without one.
 
-    What is allowed is a polyhedron without a line in it: if it is not empty it has a corner, where as many conditions as
-    there are free shares hold with equality.
+    What is allowed is a polyhedron without a line in it: if it is not empty it has a corner, where as many conditions
+    as there are free shares hold with equality.
     """
     conditions: list[dict[int, Ball]] = []
     j = 0
@@ -371,17 +375,20 @@ def _feasible(
         j += 1
     if len(free) > _MOST_FREE:
         raise BudgetExceeded(
-            "undetermined forces at once", len(free), _MOST_FREE, path=("connections",),
+            "undetermined forces at once",
+            len(free),
+            _MOST_FREE,
+            path=("connections",),
             remedy="let fewer places stick at once",
         )
     for equal in combinations(conditions, len(free)):
         corner = Elimination()
-        for k, (line, x) in elimination.pivots.items():
-            corner.add({k: ZERO + 1, **line}, x)
-        if any(corner.add(line, ZERO) is not None for line in equal):
+        for k, (rest, x) in elimination.pivots.items():
+            corner.add({k: ZERO + 1, **rest}, x)
+        if any(corner.add(condition, ZERO) is not None for condition in equal):
             continue
         shares = corner.solution(range(size))
-        if all(_at_least_zero(rate_along(line, shares)) for line in conditions):
+        if all(_at_least_zero(rate_along(condition, shares)) for condition in conditions):
             return shares
     return None
 
@@ -431,10 +438,7 @@ def _lasts(
     full = list(settled)
     for i, state in zip(group, candidate.states, strict=True):
         full[i] = state
-    return all(
-        leading_sign(series) >= 0
-        for series in _conditions(base, unilateral, group, full, open_to, q, v)
-    )
+    return all(leading_sign(series) >= 0 for series in _conditions(base, unilateral, group, full, open_to, q, v))
 
 
 def _conditions(

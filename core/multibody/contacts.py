@@ -37,9 +37,7 @@ def contact(measures: Measures, name: str, connection: Any, path: Path) -> None:
         if rubs:
             raise InvalidParameter((*path, "friction"), "be left out of a stop that limits a turn")
         gap = _turn(measures, connection, path)
-        stop = Unilateral(
-            name, gap, restitution=restitution, closes="stop", opens="release", unit="N m", order=order
-        )
+        stop = Unilateral(name, gap, restitution=restitution, closes="stop", opens="release", unit="N m", order=order)
         measures.unilateral.append(stop)
         return
     if connection.measure != "gap":

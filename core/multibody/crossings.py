@@ -1,7 +1,7 @@
 """When a phase ends: the first time at which a gap, a force or a rate of slip changes its sign.
 
-With constant accelerations everything watched is a polynomial in time, and its roots are found in balls. Otherwise it is
-sampled along the motion, more closely where it comes near zero, and the root found by Taylor series in balls about a
+With constant accelerations everything watched is a polynomial in time, and its roots are found in balls. Otherwise it
+is sampled along the motion, more closely where it comes near zero, and the root found by Taylor series in balls about a
 time next to it.
 """
 
@@ -69,7 +69,7 @@ class Watch:
         if self.what == "slip":
             return [self.sense * x for x in motion.of_rates(self.one.slip or {})]
         total: Series = [ZERO] * (motion.order - 1)
-        for row, factor in (self.force.terms if self.force is not None else ()):
+        for row, factor in self.force.terms if self.force is not None else ():
             total = [a + factor[()] * b for a, b in zip(total, motion.multipliers[row], strict=True)]
         return total
 
@@ -122,9 +122,7 @@ def is_uniform(model: Modelled) -> bool:
 def uniform_motion(table: Table, model: Modelled) -> Expansion:
     """Return a motion with constant accelerations as an exact expansion, its multipliers constant."""
     start = expansion(table, 2)
-    places = [
-        [q, v, a / 2, ZERO, ZERO] for q, v, a in zip(table.q, table.v, model.whole.acceleration, strict=True)
-    ]
+    places = [[q, v, a / 2, ZERO, ZERO] for q, v, a in zip(table.q, table.v, model.whole.acceleration, strict=True)]
     return Expansion(places, [[x[0], ZERO, ZERO] for x in start.multipliers])
 
 
@@ -259,7 +257,10 @@ class Sampled:
                     count = math.ceil(end / own[-1])
                     if count * len(own) > _MOST_NODES:
                         raise BudgetExceeded(
-                            "looks for events", count * len(own), _MOST_NODES, path=("times",),
+                            "looks for events",
+                            count * len(own),
+                            _MOST_NODES,
+                            path=("times",),
                             remedy="ask for a shorter time",
                         )
                     own = (np.arange(count)[:, None] * own[-1] + own[None, :]).ravel()
@@ -399,7 +400,10 @@ class Sampled:
                 return Crossing(arb(time) + step, watch, q, v)
             time = max(time + moved, 0.5 * time)
         raise AccuracyUnreachable(
-            None, 1.0, f'the event of "{watch.one.name}" near {time:.6g} s of its phase cannot be located', path=("times",)
+            None,
+            1.0,
+            f'the event of "{watch.one.name}" near {time:.6g} s of its phase cannot be located',
+            path=("times",),
         )
 
     def expanded(self, time: float, kind: str) -> Expansion:

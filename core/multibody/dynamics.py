@@ -79,7 +79,9 @@ def restricted(table: Table, indices: Sequence[int]) -> Table:
         rates = {
             number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.rates.items()
         }
-        drag = {number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.drag.items()}
+        drag = {
+            number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.drag.items()
+        }
         new.rows.append(Row(row.name, renamed, rates, row.rate, drag))
     return new
 

@@ -1,4 +1,4 @@
-"""The motion of a table about one state as a Taylor polynomial in balls: what decides signs, and what locates events."""
+"""The motion of a table about one state as a Taylor polynomial in balls: it decides signs and locates events."""
 
 from __future__ import annotations
 

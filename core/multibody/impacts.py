@@ -1,19 +1,20 @@
 """Impacts: Newton's law of restitution, with impulses of friction, by trying all combinations.
 
-With p the impulses along gaps, pi along slips: p >= 0 and the gap opens at e times the rate at which it closed, or p = 0 and
-it opens faster; where p > 0, either the slip stops and |pi| <= mu p, or pi = -sigma mu p and the slip keeps the sign sigma.
+With p the impulses along gaps, s along slips: p >= 0 and the gap opens at e times the rate at which it closed, or p = 0
+and it opens faster; where p > 0, either the slip stops and |s| <= mu p, or s = -sigma mu p and the slip has the sign
+sigma.
 Where more than one contact takes an impulse, rigid bodies do not say whether they do so together or one after another:
 all orders are tried, and if they disagree the outcome is undecided unless the client orders them.
 
 References
 ----------
-F. Pfeiffer, C. Glocker, "Multibody Dynamics with Unilateral Contacts" (1996), chapter 8. T. R. Kane, "A dynamics puzzle"
-(1984): with friction, Newton's law may add energy; such an outcome is refused.
+F. Pfeiffer, C. Glocker, "Multibody Dynamics with Unilateral Contacts" (1996), chapter 8. T. R. Kane, "A dynamics
+puzzle" (1984): with friction, Newton's law may add energy; such an outcome is refused.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
@@ -89,7 +90,10 @@ def impact(
         if len(group) > MOST:
             names = ", ".join(unilateral[i].name for i in group)
             raise BudgetExceeded(
-                f"contacts in one impact ({names})", len(group), MOST, path=("connections",),
+                f"contacts in one impact ({names})",
+                len(group),
+                MOST,
+                path=("connections",),
                 remedy="hold some of them by connections of another kind",
             )
         outcome = _group(unilateral, group, q, v, found, normal, slips, settled=settled)
@@ -137,8 +141,8 @@ def _group(
     names = tuple(unilateral[i].name for i in group)
     given = [i for i in group if unilateral[i].order is not None]
     if len(given) == len(group) > 1:
-        order = sorted(group, key=lambda i: (float(unilateral[i].order), i))
-        in_turn = _in_turn(unilateral, order, rates, found, normal, slips)
+        ordered = sorted(given, key=lambda i: (float(unilateral[i].order or ZERO), i))
+        in_turn = _in_turn(unilateral, ordered, rates, found, normal, slips)
         return in_turn if in_turn is not None else _endless(names)
     at_once = _at_once(unilateral, group, rates, found, normal, slips)
     if isinstance(at_once, Problem) or settled:
@@ -173,9 +177,7 @@ def _group(
 
 
 def _endless(names: tuple[str, ...]) -> Problem:
-    return Problem(
-        "simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order"
-    )
+    return Problem("simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order")
 
 
 def _free(impulses: Impulses, rates: dict[int, Ball], found: Responses, line: int) -> bool:
@@ -236,12 +238,17 @@ def _at_once(
         if impulses is None:
             continue
         after = _after(impulses, rates, found)
-        if all(_holds(*one, after, impulses, rates, normal, slips) for one in zip(_of(unilateral, group), group, states, strict=True)):
+        if all(
+            _holds(unilateral[i], i, state, after, impulses, rates, normal, slips)
+            for i, state in zip(group, states, strict=True)
+        ):
             consistent.append((states, impulses))
     names = tuple(unilateral[i].name for i in group)
     if not consistent:
         return Problem(
-            "no-impact", "no impulses of friction and restitution go with this impact", names,
+            "no-impact",
+            "no impulses of friction and restitution go with this impact",
+            names,
             decided_by="another law of impact",
         )
     least = [one for one in consistent if not any(_sticks_more(other[0], one[0]) for other in consistent)]
@@ -249,15 +256,13 @@ def _at_once(
     for _, other in least[1:]:
         if not _alike(first, _after(other, rates, found)):
             return Problem(
-                "several-impacts", "several outcomes of the impact are possible", names,
+                "several-impacts",
+                "several outcomes of the impact are possible",
+                names,
                 tuple({name: s.value for name, s in zip(names, states, strict=True)} for states, _ in least),
                 "another law of impact",
             )
     return min(least, key=lambda one: sum(state is not State.OPEN for state in one[0]))[1]
-
-
-def _of(unilateral: Sequence[Unilateral], group: Sequence[int]) -> Iterator[Unilateral]:
-    return (unilateral[i] for i in group)
 
 
 def _sticks_more(other: Sequence[State], one: Sequence[State]) -> bool:

@@ -238,7 +238,9 @@ def _straighten(state: Reduced) -> bool:
     for number, row in enumerate(table.rows):
         if row.measure is None or _is_gap(row):
             continue
-        kept = {key: x for key, x in row.measure.items() if not (len(key) == 2 and key[0] == key[1] and key[0] in closed)}
+        kept = {
+            key: x for key, x in row.measure.items() if not (len(key) == 2 and key[0] == key[1] and key[0] in closed)
+        }
         if len(kept) < len(row.measure):
             table.rows[number] = Row(row.name, kept, gradient(kept), ZERO, row.drag)
             changed_any = True

@@ -1,4 +1,4 @@
-"""What is answered about a scene with unilateral measures: its start, its phases and events, its motion through them."""
+"""What is answered about a scene with unilateral measures: its start, phases and events, its motion through them."""
 
 from __future__ import annotations
 
@@ -113,7 +113,10 @@ def _told(phase: Phase, motion: PhaseMotion) -> ScenePhase:
     model = phase.models[0]
     names = list(dict.fromkeys(part.name for _, part in model.whole.parts))
     if phase.bounces is not None:
-        name, why = "accumulating bounces", "every bounce is the one before it on a smaller scale: their sums are geometric"
+        name, why = (
+            "accumulating bounces",
+            "every bounce is the one before it on a smaller scale: their sums are geometric",
+        )
     elif not names:
         name, why = "rest", "the connections and contacts hold everything where it is"
     elif len(names) == 1:
@@ -147,8 +150,11 @@ def _problem(motion: PhaseMotion) -> SceneProblem | None:
 
 
 def _trajectory(motion: PhaseMotion, asked: AskedMotion) -> SceneTrajectory:
-    ends = None if motion.ended is None else arb(motion.phases[-1].end if motion.phases and motion.phases[-1].end is not None else motion.ended.time)
-    reached = [k for k, t in enumerate(asked.times) if ends is None or not arb(float(t)) > ends]
+    reached = list(range(len(asked.times)))
+    if motion.ended is not None and motion.phases:
+        ends = motion.phases[-1].end
+        ends = arb(motion.ended.time) if ends is None else ends
+        reached = [k for k, t in enumerate(asked.times) if not arb(float(t)) > ends]
     if not motion.phases:
         reached = []
     rows = np.array(reached, dtype=np.int64)
@@ -157,14 +163,12 @@ def _trajectory(motion: PhaseMotion, asked: AskedMotion) -> SceneTrajectory:
     exact = all(_closed(motion.phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if motion.phases else True
     how: How = "closed form" if exact else "measured against pairs"
     pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
-    largest: dict[str, float] = {}
     for k in sorted(set(which.tolist())) or ([0] if motion.phases else []):
         mine = np.flatnonzero(which == k)
         phase = motion.phases[k]
         states = _states(phase, times[mine], motion)
         pieces.append((mine, _columns(phase.models[0], times[mine], states, how, asked.outputs)))
     columns = _merged(pieces, len(times))
-    del largest
     bad = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
     if bad:
         raise NotApplicable(
@@ -228,20 +232,15 @@ def _of_track(phase: Phase, k: int, times: Floats) -> WholeStates:
     states = whole.states(late)
     if not np.any(rest):
         return states
-    shifted = []
-    for q, v in ((states.q, states.v), states.reference or (None, None)):
-        if q is None or v is None:
-            shifted.append((q, v))
-            continue
-        # The tail of the time is so small that one term of the Taylor series is right to pairs.
-        gain = whole.accelerations(q, v)
-        shifted.append((_added(q, rest[:, None] * v[..., 0]), _added(v, rest[:, None] * gain)))
-    (q, v), reference = shifted
-    assert q is not None
-    assert v is not None
-    return WholeStates(
-        q, v, states.q_error, states.v_error, None if reference[0] is None else (reference[0], reference[1])
-    )
+    q, v = _later(phase, k, states.q, states.v, rest)
+    reference = None if states.reference is None else _later(phase, k, *states.reference, rest)
+    return WholeStates(q, v, states.q_error, states.v_error, reference)
+
+
+def _later(phase: Phase, k: int, q: Floats, v: Floats, rest: Floats) -> tuple[Floats, Floats]:
+    """Return states later by the tails of times: so small that one term of the Taylor series is right to pairs."""
+    gain = phase.models[k].whole.accelerations(q, v)
+    return _added(q, rest[:, None] * v[..., 0]), _added(v, rest[:, None] * gain)
 
 
 def _added(pairs: Floats, more: Floats) -> Floats:
@@ -279,7 +278,9 @@ def _columns(
         measures = model.described.measures
         multipliers = multipliers_at_start(measures, model.whole.acceleration)
         known: list[ForceAtStart] = forces_at_start(measures, multipliers)
-        found.update(columns.forces([f for f, one in zip(measures.forces, known, strict=True) if one.value is not None]))
+        found.update(
+            columns.forces([f for f, one in zip(measures.forces, known, strict=True) if one.value is not None])
+        )
     if "energy-in-time" in outputs:
         found.update(columns.energy())
     return found

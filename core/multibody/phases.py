@@ -1,17 +1,16 @@
 """A scene with unilateral measures: phases of one motion each, and the events between them.
 
-In a phase every contact is closed, sticks, slides or is open, and the scene is a table like any other, with the smallest
-model that suffices. The state is exact, in balls, as long as phases have closed forms. From the first one that has none
-on there are two tracks, run by series of different order and tolerance in pairs of doubles: their difference says how
-right the state is, and every sign at an event is decided in balls of that width.
+In a phase every contact is closed, sticks, slides or is open, and the scene is a table like any other, with the
+smallest model that suffices. The state is exact, in balls, as long as phases have closed forms. From the first one that has
+none on there are two tracks, run by series of different order and tolerance in pairs of doubles: their difference says
+how right the state is, and every sign at an event is decided in balls of that width.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from flint import arb
 
@@ -288,9 +287,9 @@ class _Run:
                 return True
             unilateral, share = self.unilateral, self._share(hit)
             if share > 0.0:
-                # What still bounces so little comes to rest in no time; the tracks are moved apart by what that leaves out.
+                # What still bounces so little comes to rest in no time; the tracks are moved apart by what that omits.
                 unilateral = [replace(one, restitution=ZERO) for one in self.unilateral]
-                self.tracks = [_bare(self.tracks[0]), self._apart(*(_bare(t) for t in (self.tracks * 2)[:2]), share)]
+                self.tracks = self._apart(self.tracks, share)
                 q, v = self.wide()
             outcome = impact(self.table, unilateral, self.touching, q, v)
             if isinstance(outcome, Problem):
@@ -300,9 +299,7 @@ class _Run:
             if len(self.tracks) == 1:
                 self.tracks = [replace(self.tracks[0], v=outcome.v)]
             else:
-                each = [
-                    impact(self.table, unilateral, self.touching, t.q, t.v, settled=True) for t in self.tracks
-                ]
+                each = [impact(self.table, unilateral, self.touching, t.q, t.v, settled=True) for t in self.tracks]
                 if any(isinstance(one, Problem) for one in each):
                     self._stop(next(one for one in each if isinstance(one, Problem)))
                     return False
@@ -411,18 +408,15 @@ class _Run:
         assert watch is not None
         exact = len(crossings) == 1
         self._lived(phase, crossings[0])
-        self.tracks = [
-            Track(track.time + x.time, x.q, x.v) for track, x in zip([phase.tracks[0]] * len(crossings) if len(phase.tracks) < len(crossings) else phase.tracks, crossings, strict=True)
-        ]
+        before = phase.tracks if len(phase.tracks) == len(crossings) else phase.tracks * len(crossings)
+        self.tracks = [Track(t.time + x.time, x.q, x.v) for t, x in zip(before, crossings, strict=True)]
         if exact and self._width() > EXACT:
             if not self.last:
                 raise _TooWide
-            self.tracks = [self.tracks[0], self.tracks[0]]
             exact = False
         if not exact:
-            self.tracks = [_bare(track) for track in self.tracks]
             still = [not any(expression) for expression in phase.models[0].whole.reduced.expressions]
-            self.tracks[1] = self._apart(*self.tracks, still=still)
+            self.tracks = self._apart(self.tracks, still=still)
         phase.end = self.tracks[0].time
         q, _ = self.wide()
         closed = [i for i, state in enumerate(phase.states) if state is not State.OPEN]
@@ -458,13 +452,12 @@ class _Run:
         place, rate = (largest.get("m", 0.0) for largest in self.largest)
         return place / rate if rate > 0.0 else 1.0
 
-    def _apart(
-        self, first: Track, second: Track, share: float = FLOOR, still: Sequence[bool] | None = None
-    ) -> Track:
-        """Return the second track, moved by a share of the largest, so that the growth of errors may be seen.
+    def _apart(self, tracks: Sequence[Track], share: float = FLOOR, still: Sequence[bool] | None = None) -> list[Track]:
+        """Return two tracks, the second moved by a share of the largest, so that the growth of errors may be seen.
 
         Coordinates that are `still` were constants of the phase before.
         """
+        first, second = _bare(tracks[0]), _bare(tracks[-1])
         scales = self._scales(first)
         vectors = []
         for k, (a, b) in enumerate(((first.q, second.q), (first.v, second.v))):
@@ -476,7 +469,7 @@ class _Run:
                 least = share * scales[k][i]
                 moved.append(y if abs(float(x - y)) >= least else arb((x + (least if i % 2 else -least)).mid()))
             vectors.append(moved)
-        return Track(second.time, *vectors)
+        return [first, Track(second.time, *vectors)]
 
     def _closed(self, phase: Phase, watched: Sequence[Watch], left: Ball) -> list[Crossing]:
         found: list[Crossing] = []
@@ -551,10 +544,9 @@ class _Run:
                 q, v = tail.limit()
                 self.tracks.append(Track(track.time + tail.length, q, v))
             if len(self.tracks) > 1:
-                self.tracks = [_bare(track) for track in self.tracks]
                 # Over the bounces the acceleration changes in proportion to their length.
                 share = float(length) / self._own_time()
-                self.tracks[1] = self._apart(*self.tracks, max(FLOOR, 0.0 if exact else share * share))
+                self.tracks = self._apart(self.tracks, max(FLOOR, 0.0 if exact else share * share))
             self.touching = sorted({*(j for j, s in enumerate(phase.states) if s is not State.OPEN), i})
             self.motion.events.append(SceneEvent("settle", one.name, float(phase.end), self._late()))
             self.bounced = {}
@@ -564,7 +556,7 @@ class _Run:
 
     def _tail(self, i: int, phase: Phase, k: int) -> Accumulation | None:
         one, track, table = self.unilateral[i], phase.tracks[k], phase.tables[k].table
-        rows, normal, slips = lines_of(self.unilateral, [i])
+        rows, _, slips = lines_of(self.unilateral, [i])
         acceleration = list(phase.models[k].whole.acceleration)
         found = responses(table, rows)
         push, yields = list(found.columns[0]), found.matrix[0][0]
@@ -597,9 +589,7 @@ class _Run:
                     return None
         if not yields > 0:
             return None
-        return Accumulation(
-            track.q, track.v, acceleration, push, yields, opening, closing, one.restitution
-        )
+        return Accumulation(track.q, track.v, acceleration, push, yields, opening, closing, one.restitution)
 
     def _alone(self, i: int, phase: Phase, tail: Accumulation) -> bool:
         """Return whether nothing else can happen until the bounces end: all else is too far away, or not touched."""
@@ -650,9 +640,7 @@ def _projected(table: Table) -> None:
     lines = [row.line(table.q) for row in table.rows]
     chosen = independent(lines)
     for _ in range(2):
-        residuals = [
-            sum((x * table.v[j] for j, x in lines[i].items()), ZERO) - table.rows[i].rate for i in chosen
-        ]
+        residuals = [sum((x * table.v[j] for j, x in lines[i].items()), ZERO) - table.rows[i].rate for i in chosen]
         step = least_change(table, [lines[i] for i in chosen], residuals)
         table.v = [arb((v - d).mid()) for v, d in zip(table.v, step, strict=True)]
 

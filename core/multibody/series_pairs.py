@@ -38,9 +38,7 @@ def saddle_inverse_pairs(table: Packed, lines: Floats, work: Floats, inverse: Fl
         r, j = table.lines_at[e, 0], table.lines_at[e, 1]
         if table.binds[e] == 1:
             work[n + r, j, 0], work[n + r, j, 1] = lines[e, 0], lines[e, 1]
-        work[j, n + r, 0], work[j, n + r, 1] = dd_add(
-            work[j, n + r, 0], work[j, n + r, 1], -lines[e, 0], -lines[e, 1]
-        )
+        work[j, n + r, 0], work[j, n + r, 1] = dd_add(work[j, n + r, 0], work[j, n + r, 1], -lines[e, 0], -lines[e, 1])
     return invert_pairs(work, inverse)
 
 

@@ -13,8 +13,8 @@ from itertools import pairwise, product
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.coordinates import Point, Rate
 from core.multibody.contacts import bounciness
+from core.multibody.coordinates import Point, Rate
 from core.multibody.measures import Limit, Measures, Unilateral
 from core.multibody.numerals import member
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, coordinate, difference, dot, evaluated

@@ -2,8 +2,8 @@
 
     M q'' = b - K q - D q' + B(q, q') + (W(q) + X(q))^T lambda,     W(q) q' = r,
 
-with constant M, b, K, D, B and with W and X affine in q; X is friction. A row is either a measure that stays zero, a polynomial of
-degree two at most whose gradient is its line of W, or a rate row that is the derivative of nothing.
+with constant M, b, K, D, B and with W and X affine in q; X is friction. A row is either a measure that stays zero, a
+polynomial of degree two at most whose gradient is its line of W, or a rate row that is the derivative of nothing.
 """
 
 from __future__ import annotations

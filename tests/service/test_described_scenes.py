@@ -200,21 +200,21 @@ async def test_undetermined_forces_are_null_and_say_with_whom_they_are_shared() 
     assert "trajectory" not in answer
 
 
-async def test_a_string_that_becomes_slack_ends_the_motion() -> None:
+async def test_a_string_becomes_slack() -> None:
     """Thrown up from the side of a circle: v^2 = v0^2 - 2 g l sin a, slack where v^2 = g l sin a."""
     scene = {
         "gravity": [0, -10],
         "bodies": {"p": {"mass": 1, "at": [1, 0], "velocity": [0, "sqrt(15)"]}},
         "connections": [{"kind": "string", "through": [[0, 0], "p"]}],
-        "times": [0, 0.1, 5, 0.15, 6],
+        "times": [0, 0.1, 0.5, 0.15],
         "outputs": ["trajectory"],
     }
     answer = (await asked(scene)).json()
-    assert answer["ended"] == "slack"
+    assert answer["ended"] == "horizon"
     (event,) = answer["events"]
-    assert event["name"] == "string-1"
-    assert answer["trajectory"]["rows"] == [0, 1, 3]
-    assert answer["trajectory"]["time"] == [0.0, 0.1, 0.15]
+    assert (event["kind"], event["name"]) == ("slack", "string-1")
+    assert [phase["states"]["string-1"] for phase in answer["phases"]] == ["closed", "open"]
+    assert answer["trajectory"]["rows"] == [0, 1, 2, 3]
     end = (await asked(scene | {"times": [event["time"] * (1 - 1e-12)]})).json()
     (place,) = end["trajectory"]["columns"]["p.position"]["values"]
     assert place == pytest.approx([-np.sqrt(3) / 2, 0.5] if place[0] < 0 else [np.sqrt(3) / 2, 0.5], abs=1e-9)
