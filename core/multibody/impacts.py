@@ -148,7 +148,9 @@ def _group(
     if isinstance(at_once, Problem) or settled:
         return at_once
     taking = [i for i in group if at_once.get(normal[i], ZERO) != 0]
-    if len(taking) <= 1 and all(_free(at_once, rates, found, normal[i]) for i in group if i not in taking):
+    # A taut string passes on what pulls it at once.
+    apart = [i for i in taking if rates[normal[i]] != 0 or unilateral[i].closes != "taut"]
+    if len(apart) <= 1 and sum(rates[normal[i]] < 0 for i in group) <= 1:
         return at_once
     outcomes: list[tuple[str, Impulses]] = [("together", at_once)]
     if len(group) <= _MOST_ORDERED:
@@ -178,12 +180,6 @@ def _group(
 
 def _endless(names: tuple[str, ...]) -> Problem:
     return Problem("simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order")
-
-
-def _free(impulses: Impulses, rates: dict[int, Ball], found: Responses, line: int) -> bool:
-    """Return whether a contact that takes no impulse is not pressed either: it opens, or does not notice."""
-    changed = sum((found.matrix[line][b] * x for b, x in impulses.items()), ZERO)
-    return is_zero(changed) or bool(changed > 0)
 
 
 def _after(impulses: Impulses, rates: dict[int, Ball], found: Responses) -> dict[int, Ball]:

@@ -109,6 +109,12 @@ def pair(ball: Ball, power: int) -> tuple[float, float]:
     return high, float((scaled - high).mid())
 
 
+def nearest(ball: Ball) -> float:
+    """Return the double nearest to the middle of a ball."""
+    high, low = pair(ball, 0)
+    return high + low
+
+
 def _two(power: int) -> Ball:
     return (ZERO + 2) ** power
 

@@ -23,7 +23,7 @@ from core.multibody.columns import Columns, worst
 from core.multibody.dynamics import ForceAtStart, forces_at_start, multipliers_at_start
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
-from core.multibody.packed import Floats, pair
+from core.multibody.packed import Floats, nearest, pair
 from core.multibody.phases import FLOOR, TOLD, Phase, PhaseMotion, motion_in_phases
 from core.multibody.polynomials import Ball
 from core.multibody.shortened import shortened
@@ -124,8 +124,8 @@ def _told(phase: Phase, motion: PhaseMotion) -> ScenePhase:
     else:
         name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
     return ScenePhase(
-        float(phase.start),
-        None if phase.end is None else float(phase.end),
+        nearest(phase.start),
+        None if phase.end is None else nearest(phase.end),
         name,
         why,
         sum(piece.freedom for piece in model.pieces),

@@ -1,9 +1,9 @@
 """A scene with unilateral measures: phases of one motion each, and the events between them.
 
 In a phase every contact is closed, sticks, slides or is open, and the scene is a table like any other, with the
-smallest model that suffices. The state is exact, in balls, as long as phases have closed forms. From the first one that has
-none on there are two tracks, run by series of different order and tolerance in pairs of doubles: their difference says
-how right the state is, and every sign at an event is decided in balls of that width.
+smallest model that suffices. The state is exact, in balls, as long as phases have closed forms. From the first one
+that has none on there are two tracks, run by series of different order and tolerance in pairs of doubles: their
+difference says how right the state is, and every sign at an event is decided in balls of that width.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ from core.multibody.language import Scene
 from core.multibody.measures import Unilateral
 from core.multibody.modelling import Modelled, models_of
 from core.multibody.numerical import Numerical
+from core.multibody.packed import nearest
 from core.multibody.polynomials import BITS, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.rank import independent
 from core.multibody.table import Row, Table
@@ -57,6 +58,8 @@ FLOOR = 2.0**-96
 """Share of the largest coordinate of its unit that a state is wrong by at least, once it is not exact."""
 EXACT = 2.0**-130
 """Share up to which the width of a state in balls is nothing."""
+HELD = 2.0**-240
+"""Share of the largest coordinate to which a state is put onto its rows."""
 NOUGHT = 2.0**-180
 """Share of the largest rate of its unit below which a rate is what is left of an exact zero."""
 _STILL = 60
@@ -196,8 +199,27 @@ class _Run:
         table.q = whole.q
         # Rates that are left out are such that what touches stays, if it can, and rolls or rests, if it can.
         self.fitted = assemble_rates(table, self.base.measures.coordinates.given, paths, rows)
+        self._as_written()
         self.tracks = [Track(ZERO, list(table.q), list(table.v))]
         self._scales(self.tracks[0])
+
+    def _as_written(self) -> None:
+        """Take gaps to be at rest, and contacts to roll, if that is what rounded velocities say."""
+        table, rows = self.table, []
+        for i in self.touching:
+            one = self.unilateral[i]
+            for row in (Row.held(one.name, one.gap), *([Row(one.name, None, one.slip)] if one.slip else [])):
+                line = row.line(table.q)
+                rate = sum((x * table.v[j] for j, x in line.items()), ZERO)
+                terms = sum((abs(x * table.v[j]) for j, x in line.items()), ZERO)
+                if is_zero(rate) or bool(abs(rate) < TOUCHING * terms):
+                    rows.append(row)
+                    if not is_zero(rate) and one.name not in self.fitted:
+                        self.fitted.append(one.name)
+        if self.fitted:
+            start = replace(table, rows=[*table.rows, *rows])
+            _projected(start)
+            table.q, table.v = start.q, start.v
 
     # From event to event.
 
@@ -230,7 +252,7 @@ class _Run:
     def _stop(self, problem: Problem) -> None:
         self.motion.problem = problem
         time = self.tracks[0].time
-        self.motion.ended = SceneEvent(problem.code, ", ".join(problem.contacts), float(time), self._late())
+        self.motion.ended = SceneEvent(problem.code, ", ".join(problem.contacts), nearest(time), self._late())
         self.motion.events.append(self.motion.ended)
 
     def wide(self) -> tuple[Vector, Vector]:
@@ -328,12 +350,12 @@ class _Run:
         first = True
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, (push, rub) = self.unilateral[i], outcome.impulses[i]
-            impulses = {"normal": float(push)}
+            impulses = {"normal": nearest(push)}
             if one.slip is not None:
-                impulses["friction"] = float(rub)
-            loss = float(outcome.loss) if first else 0.0
+                impulses["friction"] = nearest(rub)
+            loss = nearest(outcome.loss) if first else 0.0
             self.motion.events.append(
-                SceneEvent(one.closes, one.name, float(self.tracks[0].time), self._late(), impulses, loss)
+                SceneEvent(one.closes, one.name, nearest(self.tracks[0].time), self._late(), impulses, loss)
             )
             first = False
             key = i if i in hit and len(outcome.impulses) == 1 else -1
@@ -352,7 +374,7 @@ class _Run:
         for i, (one, old, new) in enumerate(zip(self.unilateral, self.states, states, strict=True)):
             kind = _change(one, old, new)
             if kind and self.motion.phases:
-                self.motion.events.append(SceneEvent(kind, one.name, float(self.tracks[0].time), self._late()))
+                self.motion.events.append(SceneEvent(kind, one.name, nearest(self.tracks[0].time), self._late()))
             if old is not State.OPEN and new is State.OPEN:
                 self.bounced.pop(i, None)
         self.states = states
@@ -548,7 +570,7 @@ class _Run:
                 share = float(length) / self._own_time()
                 self.tracks = self._apart(self.tracks, max(FLOOR, 0.0 if exact else share * share))
             self.touching = sorted({*(j for j, s in enumerate(phase.states) if s is not State.OPEN), i})
-            self.motion.events.append(SceneEvent("settle", one.name, float(phase.end), self._late()))
+            self.motion.events.append(SceneEvent("settle", one.name, nearest(phase.end), self._late()))
             self.bounced = {}
             # The rate of the gap is zero by construction.
             return True
@@ -639,10 +661,14 @@ def _projected(table: Table) -> None:
         table.q = [arb((q - d).mid()) for q, d in zip(table.q, step, strict=True)]
     lines = [row.line(table.q) for row in table.rows]
     chosen = independent(lines)
-    for _ in range(2):
+    for _ in range(3):
         residuals = [sum((x * table.v[j] for j, x in lines[i].items()), ZERO) - table.rows[i].rate for i in chosen]
         step = least_change(table, [lines[i] for i in chosen], residuals)
         table.v = [arb((v - d).mid()) for v, d in zip(table.v, step, strict=True)]
+    # What is left over is far below this: rows hold, and squares complete, as they would in exact numbers.
+    for vector in (table.q, table.v):
+        scale = max((abs(float(x)) for x in vector), default=0.0)
+        vector[:] = [arb(x.mid(), HELD * scale) for x in vector]
 
 
 def _change(one: Unilateral, old: State, new: State) -> str:

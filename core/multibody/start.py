@@ -61,10 +61,10 @@ def accelerations_of(found: Described, full: Sequence[Ball]) -> Mapping[str, Bod
     for name, frame in found.measures.coordinates.frames.items():
         angular: float | tuple[float, ...] | None = None
         if frame.turn is not None:
-            angular = float(full[frame.turn])
+            angular = _double(full[frame.turn])
         elif frame.direction is not None:
             c, s = frame.direction
-            angular = float(table.q[c] * full[s] - table.q[s] * full[c])
+            angular = _double(table.q[c] * full[s] - table.q[s] * full[c])
         elif frame.axes is not None:
             # Half the sum of e x e'' is the rate of the angular velocity in space.
             space = [ZERO] * 3
@@ -73,9 +73,9 @@ def accelerations_of(found: Described, full: Sequence[Ball]) -> Mapping[str, Bod
                     j, k = axis[(i + 1) % 3], axis[(i + 2) % 3]
                     space[i] = space[i] + (table.q[j] * full[k] - table.q[k] * full[j]) / 2
             angular = tuple(
-                float(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
+                _double(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
             )
-        answer[name] = BodyAcceleration(tuple(float(full[i]) for i in frame.position), angular)
+        answer[name] = BodyAcceleration(tuple(_double(full[i]) for i in frame.position), angular)
     return answer
 
 

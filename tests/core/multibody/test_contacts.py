@@ -36,8 +36,8 @@ def states(answer: SceneAnswer) -> list[dict[str, str]]:
 def ladder_time(start: Any, length: Any, mass_ratio: Any) -> Any:
     """Return when a ladder leaves the wall: the angle with the vertical by energy, the time by quadrature.
 
-    With I = m_r m l^2 about the centre and half length l: (1 + m_r) l phi'^2 = 2 g (cos phi_0 - cos phi), and the wall's
-    force vanishes where cos phi = 2/3 cos phi_0.
+    With I = m_r m l^2 about the centre and half length l: (1 + m_r) l phi'^2 = 2 g (cos phi_0 - cos phi), and the
+    wall's force vanishes where cos phi = 2/3 cos phi_0.
     """
     end = mpmath.acos(2 * mpmath.cos(start) / 3)
 
@@ -137,7 +137,7 @@ def test_string_that_is_slack_at_the_start_becomes_taut() -> None:
 
 
 def test_weight_on_a_drum_lands_and_its_string_becomes_slack() -> None:
-    """Massive pulley: the weight b falls 0.5 m with a = (2 - 1) g/(1 + 2 + I/R^2), and rests; a flies on and returns."""
+    """The weight b falls 0.5 m with (2 - 1) g/(1 + 2 + I/R^2) and rests; a flies on and returns."""
     scene = {
         "gravity": [0, -9.81],
         "bodies": {
