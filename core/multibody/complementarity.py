@@ -64,12 +64,15 @@ class Responses:
         Accelerations of all coordinates by a force one along each line.
     start : list of ball
         Accelerations of all coordinates without contact forces.
+    reactions : list of dict
+        Multipliers of the table's own rows, by their numbers, that answer a force one along each line.
     """
 
     free: list[Ball]
     matrix: list[list[Ball]]
     columns: list[list[Ball]]
     start: list[Ball]
+    reactions: list[dict[int, Ball]]
 
 
 def responses(table: Table, rows: Sequence[Row]) -> Responses:
@@ -101,7 +104,8 @@ def responses(table: Table, rows: Sequence[Row]) -> Responses:
     columns = [[solved[i][1 + b] for i in range(count)] for b in range(len(rows))]
     free = [rate_along(line, start) - table.convective(row) for line, row in zip(extra, rows, strict=True)]
     matrix = [[_nought(rate_along(line, column)) for column in columns] for line in extra]
-    return Responses(free, matrix, columns, start)
+    reactions = [{r: solved[count + k][1 + b] for k, r in enumerate(chosen)} for b in range(len(rows))]
+    return Responses(free, matrix, columns, start, reactions)
 
 
 def _nought(x: Ball) -> Ball:

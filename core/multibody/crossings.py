@@ -395,7 +395,7 @@ class Sampled:
             moved = float(step)
             if not math.isfinite(moved):
                 break
-            if _cut_off(motion, moved) < _EXACT:
+            if _cut_off(motion, self.phase.table.units, moved) < _EXACT:
                 q, v = state_of(motion, step)
                 return Crossing(arb(time) + step, watch, q, v)
             time = max(time + moved, 0.5 * time)
@@ -419,15 +419,15 @@ class Sampled:
             table.q, table.v = old
 
 
-def _cut_off(motion: Expansion, step: float) -> float:
-    """Return the last term of every series at a step relative to the largest."""
-    worst = 0.0
-    for series in motion.places:
+def _cut_off(motion: Expansion, units: Sequence[str], step: float) -> float:
+    """Return the last term of every series at a step, relative to the largest term of its unit."""
+    last: dict[str, float] = {}
+    largest: dict[str, float] = {}
+    for unit, series in zip(units, motion.places, strict=True):
         terms = [abs(float(x.mid())) * abs(step) ** k for k, x in enumerate(series)]
-        largest = max(terms)
-        if largest > 0.0:
-            worst = max(worst, terms[-1] / largest)
-    return worst
+        last[unit] = max(last.get(unit, 0.0), terms[-1])
+        largest[unit] = max(largest.get(unit, 0.0), *terms)
+    return max((last[unit] / x for unit, x in largest.items() if x > 0.0), default=0.0)
 
 
 def _first_of_quadratic(c: float, b: float, a: float) -> float | None:

@@ -19,7 +19,7 @@ from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
 from core.multibody.accumulation import Accumulation
 from core.multibody.answer import SceneEvent
 from core.multibody.assembly import assemble_places, assemble_rates, least_change
-from core.multibody.complementarity import decided, gap_rate, lines_of, responses, slip_rate
+from core.multibody.complementarity import Responses, decided, gap_rate, lines_of, responses, slip_rate
 from core.multibody.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.crossings import (
     Crossing,
@@ -171,6 +171,7 @@ class _Run:
         self.tracks: list[Track] = []
         self.states = [State.OPEN] * len(self.unilateral)
         self.bounced: dict[int, int] = {}
+        self.floor = FLOOR
         self.largest: tuple[dict[str, float], dict[str, float]] = ({}, {})
         self.moved: list[str] = []
         self.fitted: list[str] = []
@@ -266,7 +267,7 @@ class _Run:
         for k, (a, b) in enumerate(((first.q, second.q), (first.v, second.v))):
             found.append(
                 [
-                    arb(x.mid(), TOLD * float(abs(x - y).mid()) + FLOOR * scales[k][i])
+                    arb(x.mid(), TOLD * float(abs(x - y).mid()) + self.floor * scales[k][i])
                     for i, (x, y) in enumerate(zip(a, b, strict=True))
                 ]
             )
@@ -311,6 +312,7 @@ class _Run:
             if share > 0.0:
                 # What still bounces so little comes to rest in no time; the tracks are moved apart by what that omits.
                 unilateral = [replace(one, restitution=ZERO) for one in self.unilateral]
+                self.floor = max(self.floor, share)
                 self.tracks = self._apart(self.tracks, share)
                 q, v = self.wide()
             outcome = impact(self.table, unilateral, self.touching, q, v)
@@ -348,6 +350,7 @@ class _Run:
 
     def _record(self, hit: Sequence[int], outcome: Impact) -> None:
         first = True
+        self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, (push, rub) = self.unilateral[i], outcome.impulses[i]
             impulses = {"normal": nearest(push)}
@@ -358,11 +361,6 @@ class _Run:
                 SceneEvent(one.closes, one.name, nearest(self.tracks[0].time), self._late(), impulses, loss)
             )
             first = False
-            key = i if i in hit and len(outcome.impulses) == 1 else -1
-            if key >= 0:
-                self.bounced = {key: self.bounced.get(key, 0) + 1}
-            else:
-                self.bounced = {}
 
     # States.
 
@@ -371,12 +369,12 @@ class _Run:
         states = decided(self.table, self.unilateral, self.touching, q, v)
         if isinstance(states, Problem):
             return states
-        for i, (one, old, new) in enumerate(zip(self.unilateral, self.states, states, strict=True)):
+        for one, old, new in zip(self.unilateral, self.states, states, strict=True):
             kind = _change(one, old, new)
             if kind and self.motion.phases:
                 self.motion.events.append(SceneEvent(kind, one.name, nearest(self.tracks[0].time), self._late()))
-            if old is not State.OPEN and new is State.OPEN:
-                self.bounced.pop(i, None)
+            if old is not new:
+                self.bounced = {}
         self.states = states
         return None
 
@@ -437,8 +435,7 @@ class _Run:
                 raise _TooWide
             exact = False
         if not exact:
-            still = [not any(expression) for expression in phase.models[0].whole.reduced.expressions]
-            self.tracks = self._apart(self.tracks, still=still)
+            self.tracks = self._apart(self.tracks)
         phase.end = self.tracks[0].time
         q, _ = self.wide()
         closed = [i for i, state in enumerate(phase.states) if state is not State.OPEN]
@@ -474,18 +471,20 @@ class _Run:
         place, rate = (largest.get("m", 0.0) for largest in self.largest)
         return place / rate if rate > 0.0 else 1.0
 
-    def _apart(self, tracks: Sequence[Track], share: float = FLOOR, still: Sequence[bool] | None = None) -> list[Track]:
+    def _apart(self, tracks: Sequence[Track], share: float = FLOOR) -> list[Track]:
         """Return two tracks, the second moved by a share of the largest, so that the growth of errors may be seen.
 
-        Coordinates that are `still` were constants of the phase before.
+        Coordinates that were constants of the last phase on both are still the same.
         """
+        expressions = self.motion.phases[-1].models[0].whole.reduced.expressions if self.motion.phases else []
+        still = [not any(expression) for expression in expressions]
         first, second = _bare(tracks[0]), _bare(tracks[-1])
         scales = self._scales(first)
         vectors = []
         for k, (a, b) in enumerate(((first.q, second.q), (first.v, second.v))):
             moved = []
             for i, (x, y) in enumerate(zip(a, b, strict=True)):
-                if still is not None and still[i] and x == y:
+                if still and still[i] and x == y:
                     moved.append(y)
                     continue
                 least = share * scales[k][i]
@@ -581,7 +580,7 @@ class _Run:
         rows, _, slips = lines_of(self.unilateral, [i])
         acceleration = list(phase.models[k].whole.acceleration)
         found = responses(table, rows)
-        push, yields = list(found.columns[0]), found.matrix[0][0]
+        push, yields, ratio = list(found.columns[0]), found.matrix[0][0], ZERO
         opening = gap_rate(one, track.q, track.v)
         row = Row.held(one.name, one.gap)
         at = replace(table, q=track.q, v=track.v)
@@ -609,9 +608,25 @@ class _Run:
                 length = 2 * opening / (closing * (1 - e))
                 if not abs(slip) > abs(gain) * length + abs((tn + ratio * tt) * total):
                     return None
-        if not yields > 0:
+        if not yields > 0 or not self._pressed(phase, k, found, ratio):
             return None
         return Accumulation(track.q, track.v, acceleration, push, yields, opening, closing, one.restitution)
+
+    def _pressed(self, phase: Phase, k: int, found: Responses, ratio: Ball) -> bool:
+        """Return whether what is closed takes its share of every impulse as it is: it is pressed, and sticks."""
+        reactions = dict(found.reactions[0])
+        if len(found.reactions) > 1:
+            for r, x in found.reactions[1].items():
+                reactions[r] = reactions[r] + ratio * x
+        # The row's multiplier answers an acceleration; an impulse is answered alike.
+        for j, (row, slip) in enumerate(zip(phase.tables[k].normal, phase.tables[k].slip, strict=True)):
+            push = ZERO if row is None else reactions.get(row, ZERO)
+            if not is_zero(push) and push < 0:
+                return False
+            rub = ZERO if slip is None else reactions.get(slip, ZERO)
+            if not is_zero(rub) and not abs(rub) < self.unilateral[j].static * push:
+                return False
+        return True
 
     def _alone(self, i: int, phase: Phase, tail: Accumulation) -> bool:
         """Return whether nothing else can happen until the bounces end: all else is too far away, or not touched."""
@@ -630,14 +645,9 @@ class _Run:
                 if not evaluated(one.gap, around) > 0:
                     return False
                 continue
-            # A closed contact that the impulses do not press, and whose slip they do not stop nor begin.
-            normal = sum((x * tail.push[k] for k, x in Row.held(one.name, one.gap).line(here).items()), ZERO)
-            if not is_zero(normal):
-                return False
+            # A contact whose slip the impulses do not stop.
             along = Row(one.name, None, one.slip or {}).line(here)
             jerk = sum((x * tail.push[k] for k, x in along.items()), ZERO)
-            if state is State.STICK and not is_zero(jerk):
-                return False
             if state.sense:
                 change = sum((x * tail.a[k] for k, x in along.items()), ZERO)
                 if not abs(slip_rate(one, here, tail.v)) > abs(change) * length + abs(jerk) * unit:
