@@ -80,7 +80,7 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         problem = motion.problem
         assert problem is not None, "a motion without phases has a problem"
         model = SceneModel("undecided", problem.explanation, 0, 0, count, 0, (count, 0), (), tuple(noticed))
-        accelerations, forces = None, None
+        accelerations, forces = {}, {}
     else:
         found = started.models[0]
         multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)

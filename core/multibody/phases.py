@@ -35,7 +35,8 @@ from core.multibody.description import Described, described
 from core.multibody.impacts import Impact, approaching, impact
 from core.multibody.language import Scene
 from core.multibody.measures import Unilateral
-from core.multibody.modelling import Modelled, models_of
+from core.multibody.modelling import Modelled, Piece, models_of
+from core.multibody.motion import Motion
 from core.multibody.numerical import Numerical
 from core.multibody.packed import nearest
 from core.multibody.polynomials import BITS, ZERO, Ball, evaluated, is_zero, size
@@ -405,11 +406,15 @@ class _Run:
         measures.table = phase.table
         measures.forces = [*self.base.measures.forces, *forces_of(self.unilateral, self.states, phase)]
         found = models_of(replace(self.base, measures=measures), self.moved, self.fitted)
-        for _, motion in found.whole.parts:
+        parts: list[tuple[Sequence[int], Motion]] = []
+        for (indices, motion), piece in zip(found.whole.parts, found.pieces, strict=True):
+            own = motion
             if isinstance(motion, Numerical):
+                own = Numerical.of(piece.table, _pulls(piece), piece.chosen, motion.why)
                 # The answer is a run in pairs, judged by a coarser one.
-                motion.lost_to_doubles = True
-        return found
+                own.lost_to_doubles = True
+            parts.append((indices, own))
+        return replace(found, whole=replace(found.whole, parts=parts))
 
     def _advance(self, phase: Phase) -> bool:
         """Go to the end of a phase; return whether anything comes after it."""
@@ -653,6 +658,16 @@ class _Run:
                 if not abs(slip_rate(one, here, tail.v)) > abs(change) * length + abs(jerk) * unit:
                     return False
         return True
+
+
+def _pulls(piece: Piece) -> Vector:
+    """Return how fast a part may come to move: beside an equilibrium its accelerations say nothing of that."""
+    found = []
+    for i, x in enumerate(piece.acceleration):
+        load, mass = piece.table.load.get(i), piece.table.mass.get((i, i))
+        free = ZERO if load is None or mass is None else abs(load / mass)
+        found.append(free if free > abs(x) else x)
+    return found
 
 
 def _bare(track: Track) -> Track:
