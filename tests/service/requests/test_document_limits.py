@@ -45,8 +45,7 @@ def refused(text: str) -> bool:
     body = f'{{"filling": "{"x" * 2000}", "document": {text}}}'.encode()
     try:
         require_distinct_keys(body)
-    except Refusal as refusal:
-        assert refusal.problem.type.code == "duplicate-key"
+    except Refusal:
         return True
     return False
 
