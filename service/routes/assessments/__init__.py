@@ -27,6 +27,7 @@ from service.requests.suggestions import nearest_path
 from service.routes.assessments.route_source import Refused, asked_question
 from service.routes.assessments.submissions import SubmissionList
 from service.routes.assessments.views import AssessmentAnswer, reference_views, submission_view
+from service.routes.certified.answers import ROOT
 from service.routing import Answer, PostRoute
 from service.schemas import Request
 
@@ -39,6 +40,9 @@ SECONDS_OF_A_SUBMISSION = 5e-5
 
 SECONDS_OF_A_SEARCH = 1e-2
 """For the method that samples come from."""
+
+SECONDS_OF_PROOF = 5e-3
+"""For proven digits."""
 
 SECONDS_OF_SOLVERS = 0.2
 """For solvers that choose their steps, at the times of samples."""
@@ -98,14 +102,16 @@ With `reveal: false` no mistakes are named and none gives credit: who knows that
 reference."""
 
 
-def assessing(routes: Sequence[PostRoute]) -> PostRoute:
-    """Return the route that assesses answers to questions to `routes`."""
+def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> PostRoute:
+    """Return the route that assesses answers to questions to `routes`, some of which have proven digits, too."""
     table: Mapping[str, PostRoute] = {route.path: route for route in routes}
+    proven = {route.path: route for route in certified}
 
     @cache
     def reader(path: str) -> Reader[Any]:
+        route = table[path] if path in table else proven[path]
         # The document that holds the request has been held against the service's own limits.
-        return Reader(table[path].question, Limits(10**4, 10**9, 10**9, 10**9), table[path].elsewhere)
+        return Reader(route.question, Limits(10**4, 10**9, 10**9, 10**9), route.elsewhere)
 
     def routed(question: AssessmentRequest) -> PostRoute:
         path = question.question.path
@@ -119,7 +125,11 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         route = routed(question)
         uncertainty = _uncertainty(question)
         with _within_question():
-            asked = asked_question(route, reader(route.path).read, question.question.request, budget, uncertainty)
+            twin = proven.get(ROOT + route.path.removeprefix("/v1"))
+            certified = None if twin is None else (twin, reader(twin.path).read)
+            asked = asked_question(
+                route, reader(route.path).read, question.question.request, budget, uncertainty, certified
+            )
             warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
         credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
@@ -145,7 +155,7 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
         timed = _claims_with("times", question.submissions)
         methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED) + SECONDS_OF_SOLVERS * min(timed, MOST_SOLVED)
-        return (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
+        return SECONDS_OF_PROOF + (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
 
     def small(question: AssessmentRequest) -> bool:
         route = table.get(question.question.path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -105,9 +105,13 @@ class ReferenceFigure(View):
     unit: str = Field(description="1 for pure numbers.")
     form: Form = Field(description="How submitted values are compared with it.")
     error: Annotated[float, OwnUnit] = Field(description="Numerical error; how says what it rests on.")
-    how: str = Field(description="closed form and measured ...: a bound; estimate ...: none.")
+    how: str = Field(description="closed form, ball arithmetic and measured ...: a bound; estimate ...: none.")
     inherited: Annotated[float, OwnUnit] | None = Field(
         description="Error propagated from the uncertainty of the question's numbers, to first order; null if unknown."
+    )
+    body_axis: Literal[1, 2, 3] | None = Field(
+        description="Body axis that the figure belongs to, by its order in the request and not by its moment; null if "
+        "it belongs to none."
     )
     sensitive: str | None = Field(description="Figure in which errors show, where this one is near a constant.")
 
@@ -167,7 +171,7 @@ def _claim_view(judged: JudgedClaim, *, reveal: bool) -> Answer:
 
 def reference_views(grader: Grader) -> list[Answer]:
     """Return the references that were needed, in the order in which they were, each a `ReferenceFigure`."""
-    shown = ("value", "unit", "form", "error", "how", "inherited", "sensitive")
+    shown = ("value", "unit", "form", "error", "how", "inherited", "body_axis", "sensitive")
     return [
         {"pointer": pointer} | {name: getattr(reference, name) for name in shown}
         for pointer, reference in grader.references.items()
