@@ -26,7 +26,7 @@ SEEN = 1e-7
 """Relative change in place of a smaller one, whose effect rounding would hide; the effect is scaled."""
 
 SETTINGS = frozenset(
-    {"times", "accuracy", "method", "measure", "input_uncertainty", "outputs", "round", "resolution", "seed", "count"}
+    "times accuracy method measure input_uncertainty outputs round resolution points seed count".split()
 )
 """Fields of questions that are no data."""
 
