@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from functools import cache
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field
 
 from core.assessment.asked_question import VARIATIONS
@@ -36,16 +37,19 @@ WITHIN: Path = ("question", "request")
 FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
 
-SECONDS_OF_A_SUBMISSION = 5e-5
+SECONDS_OF_A_CLAIM, SECONDS_OF_SAMPLES = 2.5e-5, 1e-3
 
-SECONDS_OF_A_SEARCH = 1e-2
-"""For the method that samples come from."""
+SECONDS_OF_A_SEARCH, SECONDS_OF_SOLVERS = 5e-3, 0.15
+"""For the method that wrong samples come from, and for solvers that choose their steps at times of their own."""
 
-SECONDS_OF_PROOF = 5e-3
+SECONDS_OF_A_COLUMN = 2e-2
+"""For the mistakes at some times."""
+
+SECONDS_OF_PROOF = 1e-3
 """For proven digits."""
 
-SECONDS_OF_SOLVERS = 0.2
-"""For solvers that choose their steps, at the times of samples."""
+CHANGED_BY_MISTAKES = 10
+"""Changed questions that the mistakes of a figure are computed from, about."""
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
@@ -151,18 +155,27 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         with _within_question():
             once = route.price(reader(route.path).read(json.dumps(question.question.request).encode()), budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
-        again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
-        again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
-        timed = _claims_with("times", question.submissions)
-        methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED) + SECONDS_OF_SOLVERS * min(timed, MOST_SOLVED)
-        return SECONDS_OF_PROOF + (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
+        again = 1 + min(inputs, MOST_INPUTS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
+        again += VARIATIONS * min(1, len(_claims_with("formula", question.submissions)))
+        # What is right is judged in a hundredth of the time; before it is judged nobody knows.
+        timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
+        columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
+        samples = SECONDS_OF_SAMPLES * len(timed) + SECONDS_OF_A_SEARCH * min(len(timed), MOST_IDENTIFIED)
+        samples += SECONDS_OF_SOLVERS * min(columns, MOST_SOLVED) + SECONDS_OF_A_COLUMN * columns
+        claims = sum(len(one) for one in question.submissions if isinstance(one, dict))
+        return (
+            SECONDS_OF_PROOF
+            + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
+            + samples
+            + SECONDS_OF_A_CLAIM * claims
+        )
 
     def small(question: AssessmentRequest) -> bool:
         route = table.get(question.question.path)
         if route is None or len(question.submissions) > FEW_SUBMISSIONS:
             return route is None
-        if _claims_with("formula", question.submissions):
-            # The question is then asked in many variations.
+        if _claims_with("formula", question.submissions) or _claims_with("times", question.submissions):
+            # The question is then asked in many variations, or methods are run.
             return False
         try:
             return route.small(reader(route.path).read(json.dumps(question.question.request).encode()))
@@ -183,10 +196,10 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
     )
 
 
-def _claims_with(key: str, submissions: Sequence[Any]) -> int:
-    """Return how many claims have a key, such as times of their own."""
+def _claims_with(key: str, submissions: Sequence[Any]) -> list[dict[str, Any]]:
+    """Return the claims that have a key, such as times of their own."""
     claims = (claim for one in submissions if isinstance(one, dict) for claim in one.values())
-    return sum(isinstance(claim, dict) and key in claim for claim in claims)
+    return [claim for claim in claims if isinstance(claim, dict) and key in claim]
 
 
 def _uncertainty(question: AssessmentRequest) -> float | dict[Path, float] | None:
