@@ -143,7 +143,7 @@ async def test_what_does_not_end_is_refused(opening: bytes, more: bytes) -> None
         assert statuses(await heard(port, LAST)) == [200]
 
 
-async def test_whoever_pipelines_without_reading_is_not_read_for_ever() -> None:
+async def test_a_client_that_pipelines_without_reading_is_not_read_for_ever() -> None:
     loop, flood, sent = asyncio.get_running_loop(), ask(LARGE) * 20, 0
     async with serving() as port:
         # uvicorn cannot say in the middle of an answer that it refuses what follows; the loop closes the connection.
