@@ -25,7 +25,7 @@ from service.routing import Answer, PostRoute
 DIGITS = 20
 """In which figures are proven: more than doubles have."""
 
-PROVING = 600
+PROVING = 100
 """Work (`core.work`) of an answer in proven digits."""
 
 
