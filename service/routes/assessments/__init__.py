@@ -3,34 +3,34 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cache
 from typing import Annotated, Any
 
 from pydantic import Field
 
+from core.assessment.asked_question import VARIATIONS
 from core.assessment.catalogue import MISTAKES
-from core.assessment.compare import Form, Verdict
 from core.assessment.comparisons import Comparison
+from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
+from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.notices import Notice
-from core.quantities import Quantity, Uncertainty, Unit
+from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
-from service.routes.assessments.assessed_question import VARIATIONS, AssessedQuestion, steps_of
-from service.routes.assessments.grading import MOST_IDENTIFIED, Grader
-from service.routes.assessments.submissions import LONGEST_POINTER, SubmissionList
+from service.routes.assessments.route_source import Refused, asked_question
+from service.routes.assessments.submissions import SubmissionList
+from service.routes.assessments.views import AssessmentAnswer, reference_views, submission_view
 from service.routing import Answer, PostRoute
-from service.schemas import Envelope, RadiansPerSecond, Ratio, Request, Seconds, View
-from service.schemas import Fault as FaultView
+from service.schemas import Request
 
 WITHIN: Path = ("question", "request")
-
-OwnUnit = Unit("as in the field unit")
 
 FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
@@ -86,99 +86,6 @@ class AssessmentRequest(Request):
     )
 
 
-class RecognisedMistake(View):
-    """A mistake by which the submitted value comes out."""
-
-    tag: str = Field(description="Of an entry of GET /v1/mistakes.")
-    credit: Ratio[float] = Field(description="Share of the score.")
-    feedback: str = Field(description="For who made it; it gives no number.")
-
-
-class ClaimError(View):
-    """How far a claim is from the reference."""
-
-    absolute: Annotated[float, OwnUnit] | None = Field(description="null where the error has no size.")
-    relative: Ratio[float] | None = Field(description="To the largest magnitude of the reference; null if that is 0.")
-    in_tolerances: Ratio[float] | None = Field(description="Over the tolerance; null without one.")
-    tolerance: Annotated[float, OwnUnit] | None = Field(description="Largest error that is accepted.")
-    sensitive: Ratio[float] | None = Field(description="Relative error of the reference's sensitive figure.")
-    unit: str = Field(description="Of the absolute error and of the tolerance.")
-
-
-class ConsistentMethod(View):
-    """A method by which the samples come out, confirmed by running it."""
-
-    method: str = Field(description="Kind, as in GET /v1/methods; exact for samples as right as their digits.")
-    step: Seconds[float] | None = Field(description="Length of the steps; null for exact.")
-    unexplained: RadiansPerSecond[float] = Field(description="Largest norm of the difference that is left.")
-
-
-class SamplesError(View):
-    """How wrong samples of the angular velocity are."""
-
-    largest: RadiansPerSecond[float] = Field(description="Largest norm of the error of any sample.")
-    final: RadiansPerSecond[float] = Field(description="At the time farthest from the start.")
-    within_until: Seconds[float] | None = Field(
-        description="First time, outwards from the start, at which the error is beyond the tolerance."
-    )
-    energy_drift: Ratio[float] | None = Field(description="Largest relative change of the energy; null at rest.")
-    angular_momentum_drift: Ratio[float] | None = Field(description="The same of the angular momentum's magnitude.")
-    consistent_with: ConsistentMethod | None = Field(
-        description="null if no method explains the error, or a recognised mistake does."
-    )
-
-
-class ClaimResult(View):
-    """What becomes of one claim."""
-
-    pointer: str = Field(description="Of the figure in the answer.")
-    verdict: Verdict
-    correct: bool | None = Field(description="null if that cannot be said.")
-    score: Ratio[float] | None = Field(description="From 0 to 1.")
-    matches: list[RecognisedMistake] = Field(description="Mistakes by which the value comes out.")
-    feedback: str = Field(description="For who submitted it.")
-    error: ClaimError | None = Field(default=None, description="Left out unless the reference is revealed.")
-    samples: SamplesError | None = Field(
-        default=None, description="Of samples of the angular velocity that are not right; left out likewise."
-    )
-
-
-class SubmissionResult(View):
-    """What becomes of one submission."""
-
-    score: Ratio[float] | None = Field(description="Mean of its claims, from 0 to 1; null if it is not gradable.")
-    correct: bool | None = Field(description="Whether every claim is right; null if it is not gradable.")
-    gradable: bool = Field(description="Whether every claim could be read and judged.")
-    format_errors: list[FaultView] = Field(description="What cannot be read, by pointer into the document sent.")
-    tests: list[ClaimResult] = Field(description="Of the claims that can be read.")
-    matches: list[str] = Field(description="Tags of all recognised mistakes.")
-    feedback: str = Field(description="For who submitted it.")
-
-
-class ReferenceFigure(View):
-    """What is right, and how well it is known."""
-
-    pointer: str = Field(description="Into the answer of the question.")
-    value: Any = Field(description="As in the answer; null where there is no such figure.")
-    unit: str = Field(description="1 for pure numbers.")
-    form: Form = Field(description="How submitted values are compared with it.")
-    error: Annotated[float, OwnUnit] = Field(description="Numerical error; how says what it rests on.")
-    how: str = Field(description="closed form and measured ...: a bound; estimate ...: none.")
-    inherited: Annotated[float, OwnUnit] | None = Field(
-        description="Error propagated from the uncertainty of the question's numbers, to first order; null if unknown."
-    )
-    sensitive: str | None = Field(description="Figure in which errors show, where this one is near a constant.")
-
-
-class AssessmentAnswer(Envelope):
-    """Verdicts, in the order of the submissions."""
-
-    results: list[SubmissionResult] = Field(description="One for each submission.")
-    reference: list[ReferenceFigure] | None = Field(
-        default=None, description="Of every figure that was claimed; left out unless revealed."
-    )
-
-
 DESCRIPTION = """A claim is judged by the form of the figure: angles modulo whole turns, attitudes up to the sign of the
 quaternion, principal axes up to sign and, where moments are equal, up to rotation, eigenvalues as a set, samples at the
 times of the claim. Arrays count as wrong as their worst entry. Units are converted; for an angular rate 1 Hz is 2 pi
@@ -207,22 +114,19 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
         route = routed(question)
-        request = question.question.request
         uncertainty = _uncertainty(question)
-        try:
-            asked = AssessedQuestion(route, reader(route.path).read, request, budget, uncertainty)
+        with _within_question():
+            asked = asked_question(route, reader(route.path).read, question.question.request, budget, uncertainty)
             warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
-        except Refusal as refusal:
-            raise _moved(refusal.problem) from None
-        except MechanicsError as error:
-            error.path = (*WITHIN, *error.path)
-            raise
-        credits = question.credits or {}
+        credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
-        comparisons = question.comparisons or {}
-        grader = Grader(asked, question.comparison, comparisons, question.reveal, MISTAKES, credits, _names(question))
-        results = [grader.result(i, submission) for i, submission in enumerate(question.submissions)]
-        shown = {"reference": grader.references()} if question.reveal else {}
+        catalogue = credited(MISTAKES, credits)
+        grader = Grader(asked, question.comparison, comparisons, question.reveal, catalogue, _names(question))
+        results = [
+            submission_view(i, grader.judged(submission), reveal=question.reveal)
+            for i, submission in enumerate(question.submissions)
+        ]
+        shown = {"reference": reference_views(grader)} if question.reveal else {}
         warnings = warnings if question.reveal else []
         if grader.looked_for > MOST_IDENTIFIED:
             detail = f"the method is looked for in the first {MOST_IDENTIFIED} wrong samples of a request"
@@ -231,13 +135,8 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
 
     def price(question: AssessmentRequest, budget: Budget) -> float:
         route = routed(question)
-        try:
+        with _within_question():
             once = route.price(reader(route.path).read(json.dumps(question.question.request).encode()), budget)
-        except Refusal as refusal:
-            raise _moved(refusal.problem) from None
-        except MechanicsError as error:
-            error.path = (*WITHIN, *error.path)
-            raise
         inputs = sum(1 for _ in numbers_of(question.question.request))
         again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
         again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
@@ -315,6 +214,20 @@ def _check_tags(credits: Mapping[str, float]) -> None:
         if tag not in known:
             path = ("credits", tag) if len(tag) <= 40 else ("credits",)
             raise InvalidParameter(path, "be the tag of a recognised mistake", remedy="GET /v1/mistakes lists them")
+
+
+@contextmanager
+def _within_question() -> Iterator[None]:
+    """Have refusals of the question point into the document that holds it."""
+    try:
+        yield
+    except Refusal as refusal:
+        raise _moved(refusal.problem) from None
+    except Refused as refused:
+        raise _moved(refused.refusal.problem) from None
+    except MechanicsError as error:
+        error.path = (*WITHIN, *error.path)
+        raise
 
 
 def _moved(problem: Problem) -> Refusal:
