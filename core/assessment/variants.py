@@ -18,7 +18,7 @@ from core.assessment.asked_question import AssessedQuestion
 from core.assessment.compare import Reference
 from core.assessment.figures import value_at
 from core.assessment.propagation import HALF_ULP, at, changed
-from core.assessment.variation import Digits, End, Variation, rounded
+from core.assessment.varied_input import Digits, End, VariedInput, rounded
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.quantities import Quantity, check
 
@@ -104,7 +104,7 @@ class Variants:
     ----------
     request : Any
         The question that is varied.
-    vary : mapping of path to Variation
+    vary : mapping of path to VariedInput
         By place in the request.
     together : mapping of path to sequence of path
         Places that are given the same value.
@@ -122,6 +122,8 @@ class Variants:
         Relative, of the question's numbers, by which the references are propagated; half an ulp if None.
     most_draws : int
         For one member.
+    required : bool
+        Whether draws are rejected for which a figure that is wanted does not exist; otherwise it is left out.
 
     Attributes
     ----------
@@ -130,7 +132,7 @@ class Variants:
     """
 
     request: Any
-    vary: Mapping[Path, Variation]
+    vary: Mapping[Path, VariedInput]
     together: Mapping[Path, Sequence[Path]]
     ask: Callable[[Any], AssessedQuestion]
     figures: Mapping[str, Path]
@@ -139,6 +141,7 @@ class Variants:
     max_condition: float | None
     uncertainty: float | None
     most_draws: int
+    required: bool = True
     rejected: Counter[str] = field(default_factory=Counter, init=False)
 
     def members(self, seed: int, count: int) -> list[Member]:
@@ -157,9 +160,7 @@ class Variants:
             seen.append(found[-1].request)
         return found
 
-    def _member(
-        self, chance: np.random.Generator, seen: Sequence[Any], values: Mapping[str, list[Any]]
-    ) -> Member:
+    def _member(self, chance: np.random.Generator, seen: Sequence[Any], values: Mapping[str, list[Any]]) -> Member:
         reasons = Counter[str]()
         for draw in range(1, self.most_draws + 1):
             request = self.drawn(chance)
@@ -197,9 +198,10 @@ class Variants:
         references: dict[str, Reference] = {}
         for pointer, path in self.figures.items():
             reference = asked.reference(path)
-            if reference is None or reference.form == "none":
+            if reference is not None and reference.form != "none":
+                references[pointer] = reference
+            elif self.required:
                 return ABSENT
-            references[pointer] = reference
         conditions = {pointer: self._condition(reference) for pointer, reference in references.items()}
         if self.max_condition is not None:
             for pointer, condition in conditions.items():

@@ -397,6 +397,37 @@ def assessments() -> Named:
             yield f"{path}, {name}", {"question": {"path": path, "request": question}, "submissions": submissions}
 
 
+def variants() -> Named:
+    ranges: tuple[dict[str, Any], ...] = (
+        {"min": SUBNORMAL, "max": LARGEST, "distribution": "log-uniform"},
+        {"min": -LARGEST, "max": LARGEST},
+        {"min": 1e-300, "max": 1e300, "digits": 1},
+        {"values": [0.0, SUBNORMAL, LARGEST]},
+    )
+    for path, (asked, share, _) in CLAIMED.items():
+        for name, question in list(asked())[::share]:
+            pointer = _first_number(question)
+            for vary in ranges if pointer else ():
+                yield (
+                    f"{path}, {name}, {vary}",
+                    {
+                        "question": {"path": path, "request": question},
+                        "vary": {pointer: vary},
+                        "seed": 0,
+                        "count": 2,
+                        "draws": 5,
+                    },
+                )
+
+
+def _first_number(value: Any, pointer: str = "") -> str | None:
+    """Return the pointer of the first number of a request."""
+    if isinstance(value, dict | list):
+        entries = value.items() if isinstance(value, dict) else enumerate(value)
+        return next((found for key, one in entries if (found := _first_number(one, f"{pointer}/{key}"))), None)
+    return pointer if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
 QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/bodies/mass-properties": bodies,
     "/v1/rotation/trajectory": trajectories,
@@ -420,4 +451,5 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/scenes": described,
     "/v1/plan": plans,
     "/v1/assessments": assessments,
+    "/v1/variants": variants,
 }

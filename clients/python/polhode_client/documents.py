@@ -2217,6 +2217,77 @@ class ReferenceFigure(TypedDict):
     sensitive: str | None
 
 
+class VariantsRequest(TypedDict):
+    """A question, and what varies in it."""
+
+    question: AskedQuestion
+    vary: Mapping[str, VariedInput]
+    seed: int
+    count: NotRequired[int]
+    quantities: NotRequired[Sequence[str] | None]
+    constraints: NotRequired[Mapping[str, Constraint] | None]
+    max_condition: NotRequired[float | None]
+    input_uncertainty: NotRequired[float | None]
+    draws: NotRequired[int]
+
+
+class VariedInput(TypedDict):
+    """A range from `min` to `max`, or a choice from `values`."""
+
+    min: NotRequired[float | None]
+    max: NotRequired[float | None]
+    distribution: NotRequired[Literal["uniform", "log-uniform"]]
+    step: NotRequired[float | None]
+    digits: NotRequired[int | None]
+    values: NotRequired[Sequence[Any] | None]
+    also: NotRequired[Sequence[str]]
+
+
+class Constraint(TypedDict):
+    """What is required of a figure of the answer; of an array, of each of its entries."""
+
+    min: NotRequired[float | None]
+    max: NotRequired[float | None]
+    digits: NotRequired[int | None]
+    within: NotRequired[float]
+    apart: NotRequired[float | None]
+
+
+class VariantsAnswer(TypedDict):
+    """Variants of a question."""
+
+    signature: Signature
+    warnings: list[Notice]
+    path: str
+    seed: int
+    variants: list[Variant]
+    rejected: dict[str, int]
+
+
+class Variant(TypedDict):
+    """A question with other numbers, and its figures."""
+
+    request: dict[str, Any]
+    figures: list[VariantFigure]
+    draws: int
+
+
+class VariantFigure(TypedDict):
+    """A figure of a variant, how well it is known and how sensitive it is."""
+
+    pointer: str
+    value: Any
+    unit: str
+    form: Literal[
+        "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "none"
+    ]
+    error: float
+    how: str
+    inherited: float | None
+    sensitive: str | None
+    condition: float | None
+
+
 class ProblemRegistry(TypedDict):
     """The registry of problems."""
 

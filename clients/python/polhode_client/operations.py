@@ -146,6 +146,12 @@ OPERATIONS: Mapping[str, Operation] = {
         "Submitted answers to any other question, graded: verdict, error, recognised mistakes",
         False,
     ),
+    "vary": Operation(
+        "POST",
+        "/v1/variants",
+        "Well-conditioned variants of any other question from a seed, each with its figures, their error and condition",
+        False,
+    ),
     "list_errors": Operation("GET", "/v1/errors", "Every problem that can be answered", False),
     "list_methods": Operation("GET", "/v1/methods", "Every method that can be chosen, and when to use it", False),
     "list_mistakes": Operation("GET", "/v1/mistakes", "Every mistake that is recognised in submitted answers", False),
@@ -319,6 +325,11 @@ class Operations(ABC):
     def assess(self, **question: Unpack[documents.AssessmentRequest]) -> documents.AssessmentAnswer:
         """Submitted answers to any other question, graded: verdict, error, recognised mistakes."""
         found: documents.AssessmentAnswer = self._ask("assess", question, None)
+        return found
+
+    def vary(self, **question: Unpack[documents.VariantsRequest]) -> documents.VariantsAnswer:
+        """Well-conditioned variants of any other question from a seed, each with its figures, their error and condition."""
+        found: documents.VariantsAnswer = self._ask("vary", question, None)
         return found
 
     def list_errors(self) -> documents.ProblemRegistry:
@@ -546,6 +557,11 @@ class AsyncOperations(ABC):
     async def assess(self, **question: Unpack[documents.AssessmentRequest]) -> documents.AssessmentAnswer:
         """Submitted answers to any other question, graded: verdict, error, recognised mistakes."""
         found: documents.AssessmentAnswer = await self._ask("assess", question, None)
+        return found
+
+    async def vary(self, **question: Unpack[documents.VariantsRequest]) -> documents.VariantsAnswer:
+        """Well-conditioned variants of any other question from a seed, each with its figures, their error and condition."""
+        found: documents.VariantsAnswer = await self._ask("vary", question, None)
         return found
 
     async def list_errors(self) -> documents.ProblemRegistry:

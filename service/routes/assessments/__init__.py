@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from functools import cache
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 from pydantic import Field
@@ -17,20 +14,15 @@ from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
-from core.errors import InvalidParameter, MechanicsError, Path
+from core.errors import InvalidParameter, Path
 from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
-from service.problems import Fault, Problem, Refusal, headline
-from service.requests.request_reader import Limits, Reader
-from service.requests.suggestions import nearest_path
-from service.routes.assessments.route_source import Refused, asked_question
+from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable, within_question
 from service.routes.assessments.submissions import SubmissionList
 from service.routes.assessments.views import AssessmentAnswer, reference_views, submission_view
 from service.routing import Answer, PostRoute
 from service.schemas import Request
-
-WITHIN: Path = ("question", "request")
 
 FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
@@ -41,13 +33,6 @@ SECONDS_OF_A_SEARCH = 1e-2
 """For the method that samples come from."""
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
-
-
-class AskedQuestion(Request):
-    """A request to another endpoint, whose answer is the reference."""
-
-    path: str = Field(max_length=200, description="Of the endpoint, for example /v1/rotation/precession.")
-    request: dict[str, Any] = Field(description="The body that it would be sent.")
 
 
 class AssessmentRequest(Request):
@@ -97,26 +82,12 @@ reference."""
 
 def assessing(routes: Sequence[PostRoute]) -> PostRoute:
     """Return the route that assesses answers to questions to `routes`."""
-    table: Mapping[str, PostRoute] = {route.path: route for route in routes}
-
-    @cache
-    def reader(path: str) -> Reader[Any]:
-        # The document that holds the request has been held against the service's own limits.
-        return Reader(table[path].question, Limits(10**4, 10**9, 10**9, 10**9), table[path].elsewhere)
-
-    def routed(question: AssessmentRequest) -> PostRoute:
-        path = question.question.path
-        if path not in table:
-            near = nearest_path(path, table)
-            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
-            raise _refusal(Fault("/question/path", "must be the path of a question that can be assessed", remedy))
-        return table[path]
+    table = QuestionTable(routes)
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
-        route = routed(question)
         uncertainty = _uncertainty(question)
-        with _within_question():
-            asked = asked_question(route, reader(route.path).read, question.question.request, budget, uncertainty)
+        with within_question():
+            asked = table.asked(question.question, question.question.request, budget, uncertainty)
             warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
         credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
@@ -134,9 +105,7 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         return {"results": results, **shown, "warnings": warnings}
 
     def price(question: AssessmentRequest, budget: Budget) -> float:
-        route = routed(question)
-        with _within_question():
-            once = route.price(reader(route.path).read(json.dumps(question.question.request).encode()), budget)
+        once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
         again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
         again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
@@ -145,16 +114,10 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         return (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
 
     def small(question: AssessmentRequest) -> bool:
-        route = table.get(question.question.path)
-        if route is None or len(question.submissions) > FEW_SUBMISSIONS:
-            return route is None
-        if _claims_with("formula", question.submissions):
-            # The question is then asked in many variations.
+        if len(question.submissions) > FEW_SUBMISSIONS or _claims_with("formula", question.submissions):
+            # For a formula, the question is asked in many variations.
             return False
-        try:
-            return route.small(reader(route.path).read(json.dumps(question.question.request).encode()))
-        except (Refusal, MechanicsError):
-            return True
+        return table.small(question.question)
 
     return PostRoute(
         "/v1/assessments",
@@ -214,29 +177,3 @@ def _check_tags(credits: Mapping[str, float]) -> None:
         if tag not in known:
             path = ("credits", tag) if len(tag) <= 40 else ("credits",)
             raise InvalidParameter(path, "be the tag of a recognised mistake", remedy="GET /v1/mistakes lists them")
-
-
-@contextmanager
-def _within_question() -> Iterator[None]:
-    """Have refusals of the question point into the document that holds it."""
-    try:
-        yield
-    except Refusal as refusal:
-        raise _moved(refusal.problem) from None
-    except Refused as refused:
-        raise _moved(refused.refusal.problem) from None
-    except MechanicsError as error:
-        error.path = (*WITHIN, *error.path)
-        raise
-
-
-def _moved(problem: Problem) -> Refusal:
-    """Return the refusal of the question itself, with pointers into the document that holds it."""
-    faults = problem.faults or (Fault("", problem.detail),)
-    moved = [Fault("/question/request" + fault.pointer, fault.detail, fault.remedy) for fault in faults]
-    code = problem.type.code if problem.type.status == 422 else "invalid-parameter"
-    return Refusal(code, headline(moved), faults=moved, extra=problem.extra)
-
-
-def _refusal(fault: Fault) -> Refusal:
-    return Refusal("invalid-parameter", headline([fault]), faults=[fault])

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from core.assessment.compare import Form, Verdict
+from core.assessment.compare import Form, Reference, Verdict
 from core.assessment.grader import FEEDBACK, Grader, JudgedClaim, JudgedSubmission
 from core.quantities import Unit
 from service.problems import Fault, pointer_of
@@ -156,8 +156,10 @@ def _claim_view(judged: JudgedClaim, *, reveal: bool) -> Answer:
 
 def reference_views(grader: Grader) -> list[Answer]:
     """Return the references that were needed, in the order in which they were, each a `ReferenceFigure`."""
+    return [reference_view(pointer, reference) for pointer, reference in grader.references.items()]
+
+
+def reference_view(pointer: str, reference: Reference) -> Answer:
+    """Return a reference as a `ReferenceFigure`."""
     shown = ("value", "unit", "form", "error", "how", "inherited", "sensitive")
-    return [
-        {"pointer": pointer} | {name: getattr(reference, name) for name in shown}
-        for pointer, reference in grader.references.items()
-    ]
+    return {"pointer": pointer} | {name: getattr(reference, name) for name in shown}

@@ -23,7 +23,7 @@ Digits = Annotated[int, Quantity("1", at_least=1, at_most=15)]
 
 
 @dataclass(frozen=True)
-class Variation:
+class VariedInput:
     """A range from `min` to `max`, or a choice from `values`.
 
     Attributes
