@@ -12,16 +12,16 @@ from pydantic import Field
 from core.assessment.asked_question import AssessedQuestion
 from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.propagation import MOST_INPUTS, at, numbers_of
+from core.assessment.results import reference_view
 from core.assessment.variants import Constraint, Member, Variants
 from core.assessment.varied_input import LONGEST_WORD, VariedInput
-from core.errors import InvalidParameter, Path
+from core.errors import InvalidParameter, Path, pointer_of
 from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
-from service.problems import pointer_of
 from service.responses.json_rows import written
 from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable, within_question
-from service.routes.assessments.views import ReferenceFigure, reference_view
+from service.routes.assessments.views import ReferenceFigure
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, View
 

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.assessment.propagation import numbers_of
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, pointer_of
 from core.systems.budget import Budget
 from service.execution.request_handler import RequestHandler
-from service.problems import Refusal, pointer_of
+from service.problems import Refusal
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions

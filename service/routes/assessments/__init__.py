@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from core.assessment.answer_key import Document, Terms, key_of
 from core.assessment.asked_question import VARIATIONS
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import Comparison
@@ -14,13 +15,15 @@ from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
+from core.assessment.results import reference_views, submission_view
 from core.errors import InvalidParameter, Path
 from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
+from service.requests.request_reader import Limits, Reader
 from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable, within_question
 from service.routes.assessments.submissions import SubmissionList
-from service.routes.assessments.views import AssessmentAnswer, reference_views, submission_view
+from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
 from service.schemas import Request
 
@@ -131,6 +134,28 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         small,
         description=DESCRIPTION,
     )
+
+
+def answer_key(routes: Sequence[PostRoute], body: bytes) -> Document:
+    """Return the answer key of the question of an assessment: of all its figures, and of what its submissions claim.
+
+    Raises
+    ------
+    Refusal, MechanicsError
+        For what an assessment is refused with.
+    """
+    question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
+    with within_question():
+        asked = QuestionTable(routes).asked(
+            question.question, question.question.request, Budget(), _uncertainty(question)
+        )
+        asked.answer  # noqa: B018 - asked here, so that a refusal points into the request
+    _check_tags(question.credits or {})
+    claims = [entry for one in question.submissions if isinstance(one, dict) for entry in one.items()]
+    timed = [(pointer, tuple(claim["times"])) for pointer, claim in claims if claim.get("times") is not None]
+    terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question))
+    claimed = [pointer for pointer, claim in claims if claim.get("times") is None]
+    return key_of(asked, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
 
 
 def _claims_with(key: str, submissions: Sequence[Any]) -> int:
