@@ -1,4 +1,4 @@
-"""Write answer keys, and the code that grades with them, into a folder that needs no network and no service.
+"""Write answer keys, and the code that grades with them, into a folder, or a zip archive of it, that needs no network.
 
 python -m clients.offline examples/assessments/*.json --output bundle
 
@@ -16,9 +16,13 @@ import importlib.metadata
 import json
 import re
 import shutil
+import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from core.errors import MechanicsError
+from service.problems import Refusal
 from service.routes import questions
 from service.routes.assessments import answer_key
 
@@ -63,7 +67,22 @@ def packages_from(name: str) -> Iterator[str]:
                 rest.append(required)
 
 
-def write(files: list[Path], output: Path) -> None:
+def keys_of(files: list[Path]) -> dict[str, str]:
+    """Return the key of each file, by its name, or end with the reason why there is none."""
+    # Decimal strings of certified answers are not assessed.
+    routes = [route for route in questions() if not route.path.startswith("/v1/certified")]
+    found = {}
+    for file in files:
+        try:
+            found[file.name] = json.dumps(answer_key(routes, file.read_bytes()))
+        except Refusal as refusal:
+            sys.exit(f"{file}: {refusal.problem.detail}")
+        except MechanicsError as error:
+            sys.exit(f"{file}: {error.detail}")
+    return found
+
+
+def write(keys: dict[str, str], output: Path) -> None:
     """Write keys and code.
 
     Raises
@@ -83,11 +102,8 @@ def write(files: list[Path], output: Path) -> None:
                 copy(Path(str(part.locate())), output / part)
     copy(HERE / "grade.py", output / "__main__.py")
     (output / "keys").mkdir()
-    # Decimal strings of certified answers are not assessed.
-    routes = [route for route in questions() if not route.path.startswith("/v1/certified")]
-    for file in files:
-        key = answer_key(routes, file.read_bytes())
-        (output / "keys" / file.name).write_text(json.dumps(key), encoding="utf-8")
+    for name, key in keys.items():
+        (output / "keys" / name).write_text(key, encoding="utf-8")
 
 
 def copy(source: Path, target: Path) -> None:
@@ -100,9 +116,15 @@ def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", type=Path, metavar="file.json")
-    parser.add_argument("--output", type=Path, required=True, help="a folder, which must not exist")
+    parser.add_argument("--output", type=Path, required=True, help="a folder that does not exist, or a file .zip")
     options = parser.parse_args()
-    write(options.files, options.output)
+    keys = keys_of(options.files)
+    if options.output.suffix != ".zip":
+        write(keys, options.output)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        write(keys, Path(folder) / "bundle")
+        shutil.make_archive(str(options.output.with_suffix("")), "zip", Path(folder) / "bundle")
 
 
 if __name__ == "__main__":

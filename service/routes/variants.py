@@ -20,7 +20,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.responses.json_rows import written
-from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable, within_question
+from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable
 from service.routes.assessments.views import ReferenceFigure
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, View
@@ -119,9 +119,7 @@ def varying(routes: Sequence[PostRoute]) -> PostRoute:
         def ask(request: Any) -> AssessedQuestion:
             return table.asked(asked, request, budget, question.input_uncertainty)
 
-        with within_question():
-            base = ask(asked.request)
-            answer = base.answer
+        answer = table.answered(asked, budget, question.input_uncertainty).answer
         figures, warnings = _figures(question, answer)
         constraints = question.constraints or {}
         constrained = {pointer: _path(pointer, answer, ("constraints",)) for pointer in constraints}

@@ -146,6 +146,12 @@ def test_a_trajectory_has_its_few_figures_and_says_which_are_left_out() -> None:
     assert len(answer["variants"][0]["figures"]) == 20
 
 
+def test_refusals_of_the_path_point_to_it_wherever_they_are_found() -> None:
+    with pytest.raises(Refusal) as caught:
+        handled(question={"path": "/v1/nothing", "request": {}}, vary=PERIOD)
+    assert [fault.pointer for fault in caught.value.problem.faults] == ["/question/path"]
+
+
 @pytest.mark.parametrize(
     ("change", "pointer", "rule"),
     [

@@ -21,7 +21,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.requests.request_reader import Limits, Reader
-from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable, within_question
+from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable
 from service.routes.assessments.submissions import SubmissionList
 from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
@@ -89,9 +89,8 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
         uncertainty = _uncertainty(question)
-        with within_question():
-            asked = table.asked(question.question, question.question.request, budget, uncertainty)
-            warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
+        asked = table.answered(question.question, budget, uncertainty)
+        warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
         credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
         catalogue = credited(MISTAKES, credits)
@@ -145,11 +144,7 @@ def answer_key(routes: Sequence[PostRoute], body: bytes) -> Document:
         For what an assessment is refused with.
     """
     question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
-    with within_question():
-        asked = QuestionTable(routes).asked(
-            question.question, question.question.request, Budget(), _uncertainty(question)
-        )
-        asked.answer  # noqa: B018 - asked here, so that a refusal points into the request
+    asked = QuestionTable(routes).answered(question.question, Budget(), _uncertainty(question))
     _check_tags(question.credits or {})
     claims = [entry for one in question.submissions if isinstance(one, dict) for entry in one.items()]
     timed = [(pointer, tuple(claim["times"])) for pointer, claim in claims if claim.get("times") is not None]

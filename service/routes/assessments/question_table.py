@@ -53,6 +53,15 @@ class QuestionTable:
         route = self.route(question)
         return asked_question(route, self._reader(route.path).read, request, budget, uncertainty)
 
+    def answered(
+        self, question: AskedQuestion, budget: Budget, uncertainty: float | Mapping[Path, float] | None
+    ) -> AssessedQuestion:
+        """Return the question with its answer; refusals of it point into the document that holds it."""
+        asked = self.asked(question, question.request, budget, uncertainty)
+        with within_question():
+            asked.answer  # noqa: B018
+        return asked
+
     def price(self, question: AskedQuestion, budget: Budget) -> float:
         """Return the predicted time of one answer (s), or refuse the question."""
         route = self.route(question)
