@@ -75,7 +75,8 @@ def quiz(spec: Document, variants: list[Document]) -> bytes:
     for seed in range(1, len(variants) + 1):
         fields(question, deployedseed=seed)
     xml.indent(root)
-    return xml.tostring(root, encoding="utf-8", xml_declaration=True)
+    written: bytes = xml.tostring(root, encoding="utf-8", xml_declaration=True)
+    return written
 
 
 def main() -> None:
