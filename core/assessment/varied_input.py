@@ -22,6 +22,18 @@ Step = Annotated[float, Quantity("1", above=0)]
 Digits = Annotated[int, Quantity("1", at_least=1, at_most=15)]
 
 
+class Scalar:
+    """A number as it is written, a string or a truth value; `VariedInput` checks it."""
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> dict[str, Any]:
+        return {"type": "any"}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
+        return {"anyOf": [{"type": "number", "x-unit": "1"}, {"type": "string"}, {"type": "boolean"}]}
+
+
 @dataclass(frozen=True)
 class VariedInput:
     """A range from `min` to `max`, or a choice from `values`.
@@ -48,7 +60,7 @@ class VariedInput:
     distribution: Literal["uniform", "log-uniform"] = "uniform"
     step: Step | None = None
     digits: Digits | None = None
-    values: tuple[Any, ...] | None = None
+    values: tuple[Annotated[Any, Scalar()], ...] | None = None
     also: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
