@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import chain
-from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -89,7 +89,7 @@ def _value(value: Any, name: str) -> Any:
             number = float(value)
         except OverflowError:
             number = float("inf")
-        if not isfinite(number):
+        if not math.isfinite(number):
             raise InvalidParameter(name, "be finite")
         return number
     if value is None or kind is bool:
@@ -103,23 +103,38 @@ def _value(value: Any, name: str) -> Any:
     raise InvalidParameter(name, "be a number, an array of numbers, a string, true, false or null")
 
 
-def _array(value: Any, name: str) -> Floats:
-    if type(value) is list:
-        rows = value if value and type(value[0]) is list else [value]
-        plain = {*map(type, rows)} == {list} and len({*map(len, rows)}) == 1 and rows[0] != []
-        if not plain or not {*map(type, chain.from_iterable(rows))} <= NUMBERS:
-            raise _fault(value, rows, name)
+def array_of(value: list[Any]) -> Floats | None:
+    """Return a list of numbers, or of equally long lists of them, as an array; None for any other list."""
+    if value and type(value[0]) is list:
+        if {*map(type, value)} != {list} or len({*map(len, value)}) != 1 or not {*map(type, chain(*value))} <= NUMBERS:
+            return None
+        shape: tuple[int, ...] = len(value), len(value[0])
+        numbers = chain.from_iterable(value)
+    else:
+        if not {*map(type, value)} <= NUMBERS:
+            return None
+        shape, numbers = (len(value),), iter(value)
     try:
-        array = np.array(value, dtype=np.float64)
+        return np.fromiter(numbers, np.float64, math.prod(shape)).reshape(shape)
     except OverflowError:
-        raise InvalidParameter(name, "be within the range of doubles") from None
-    if not array.size or not np.isfinite(array).all():
-        raise InvalidParameter(name, "have finite entries")
+        return np.full(shape, np.inf)
+
+
+def _array(value: Any, name: str) -> Floats:
+    # Arrays of an archive may be read-only, or by columns.
+    array = np.array(value, np.float64, order="C") if type(value) is np.ndarray else array_of(value)
+    if array is None:
+        raise _fault(value, name)
+    if not array.size:
+        raise InvalidParameter(name, "have entries")
+    if not np.isfinite(array).all():
+        raise InvalidParameter(name, "have finite entries, within the range of doubles")
     return array
 
 
-def _fault(value: list[Any], rows: list[Any], name: str) -> InvalidParameter:
+def _fault(value: list[Any], name: str) -> InvalidParameter:
     """Return the first thing that is wrong with rows of which something is."""
+    rows = value if type(value[0]) is list else [value]
     length = len(rows[0])
     for i, row in enumerate(rows):
         place = (name, i) if rows is value else (name,)

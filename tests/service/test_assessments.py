@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import random
 from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -555,3 +557,31 @@ async def test_a_measurement_is_run_once() -> None:
 
     assert work(measured) - work(COIN) < 2 * measure["samples"] + 100
     assert await verdict(measured, "/measured/theory", {"value": 6.2832, "unit": "s"}) == "correct"
+
+
+def archive(document: Any, **arrays: Any) -> bytes:
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    with ZipFile(stream, "a") as packed:
+        packed.writestr("metadata.json", json.dumps(document))
+    return stream.getvalue()
+
+
+def test_samples_may_be_arrays_of_an_archive() -> None:
+    times = np.linspace(0.0, 2.0, 40)
+    rows = np.array(euler_rows(times[1], 39))
+    route = ROUTES[PATH]
+    named = {"value": {"array": "rows"}, "times": {"array": "times"}, "unit": "rad/s"}
+    unknown = {"value": {"array": "other"}, "times": {"array": "times"}, "unit": "rad/s"}
+    body = archive(
+        {"question": MOTION, "submissions": [{"/angular_velocity": named}, {"/angular_velocity": unknown}]},
+        rows=np.asfortranarray(rows),
+        times=times,
+    )
+    answer = json.loads(written(HANDLER.answer(route, HANDLER.read(route, body, npz=True))))
+    claim = {"value": rows.tolist(), "times": times.tolist(), "unit": "rad/s"}
+    assert answer["results"][0] == handled(MOTION, {"/angular_velocity": claim})["results"][0]
+    assert answer["results"][0]["tests"][0]["samples"]["consistent_with"]["method"] == "explicit-euler"
+    assert [fault["pointer"] for fault in answer["results"][1]["format_errors"]] == [
+        "/submissions/1/~1angular_velocity/value"
+    ]

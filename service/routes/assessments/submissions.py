@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import Field, TypeAdapter
 
-from core.assessment.claims import LONGEST_TEXT, MOST_CLAIMS
+from core.assessment.claims import LONGEST_TEXT, MOST_CLAIMS, array_of
 from core.assessment.formulas import LONGEST_FORMULA
 from service.schemas import View
 
@@ -37,7 +37,13 @@ class SubmissionList:
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> dict[str, Any]:
-        return {"type": "list", "items_schema": {"type": "any"}, "min_length": 1, "max_length": 5000}
+        anything = {"type": "any", "metadata": {"arrays_within": True}}
+        entry = {
+            "type": "function-after",
+            "function": {"type": "no-info", "function": _with_arrays},
+            "schema": anything,
+        }
+        return {"type": "list", "items_schema": entry, "min_length": 1, "max_length": 5000}
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
@@ -51,3 +57,13 @@ class SubmissionList:
             "maxProperties": MOST_CLAIMS,
         }
         return {"type": "array", "items": submission, "minItems": 1, "maxItems": 5000}
+
+
+def _with_arrays(submission: Any) -> Any:
+    """Return a submission with arrays for its lists of numbers, each made while its list is still at hand."""
+    for claim in submission.values() if type(submission) is dict else ():
+        for name in ("value", "times") if type(claim) is dict else ():
+            if type(claim.get(name)) is list:
+                array = array_of(claim[name])
+                claim[name] = claim[name] if array is None else array
+    return submission
