@@ -129,21 +129,6 @@ def _within(schema: Any, components: Mapping[str, Schema]) -> Iterator[str]:
     yield from seen
 
 
-def _untyped(schema: Any, components: Mapping[str, Schema]) -> bool:
-    """Return whether a request has parts of any form, in which the service looks for no arrays of an archive."""
-    parts = [schema, *(components[name] for name in _within(schema, components))]
-    text = json.dumps(parts)
-    return (
-        '"additionalProperties": true' in text
-        or any(
-            not inner.keys() - {"description", "title"}
-            for part in parts
-            for inner in part.get("properties", {}).values()
-        )
-        or '"Submission"' in text
-    )
-
-
 def generated(document: Mapping[str, Any]) -> dict[str, str]:
     """Return the text of each generated module, by its name, before it is formatted."""
     components = document["components"]["schemas"]
@@ -164,8 +149,7 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
         asked = (
             f"**question: Unpack[documents.{types.annotation(requests[name], sent=True)}]" if name in requests else ""
         )
-        archives = name in requests and not _untyped(requests[name], components)
-        rows.append(f"{name!r}: Operation({method!r}, {path!r}, {entry['summary']!r}, {archives}),")
+        rows.append(f"{name!r}: Operation({method!r}, {path!r}, {entry['summary']!r}),")
         answers = {"": media["application/json"]["schema"]} if "application/json" in media else {}
         answers |= {"_svg" if answers else "": {"type": "string"} for kind in media if kind in TEXT}
         for suffix, schema in answers.items():
@@ -192,8 +176,8 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
         + "\nfrom abc import ABC, abstractmethod\nfrom collections.abc import Mapping\n"
         + "from typing import Any, NamedTuple, Unpack\n\n"
         + "from polhode_client import documents\n\n\n"
-        + 'class Operation(NamedTuple):\n    """Method, path, summary; whether requests may be numpy archives."""\n\n'
-        + "    method: str\n    path: str\n    summary: str\n    archives: bool\n\n\n"
+        + 'class Operation(NamedTuple):\n    """Method, path and summary."""\n\n'
+        + "    method: str\n    path: str\n    summary: str\n\n\n"
         + "OPERATIONS: Mapping[str, Operation] = {\n    "
         + "\n    ".join(rows)
         + "\n}\n\n\n"

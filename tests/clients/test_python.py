@@ -152,6 +152,20 @@ def test_arrays_inside_of_another_request_are_sent_as_json() -> None:
     assert len(json.loads(asked[0].content)["request"]["times"]) == 2000
 
 
+@pytest.mark.parametrize("count", [1, 300])
+def test_samples_are_submitted_as_archives(service: str, count: int) -> None:
+    request = {"body": BODY, "angular_velocity": [1.0, 2.0, 3.0], "times": [0.0]}
+    times = np.linspace(0.0, 9.0, 1000)
+    with Client(service) as polhode:
+        right = polhode.rotation_trajectory(body=BODY, angular_velocity=[1.0, 2.0, 3.0], times=times)[
+            "angular_velocity"
+        ]
+        claim: Any = {"/angular_velocity": {"value": right, "times": times, "unit": "rad/s"}}
+        question: Any = {"path": "/v1/rotation/trajectory", "request": request}
+        answer = polhode.assess(question=question, submissions=count * [claim])
+    assert [result["score"] for result in answer["results"]] == count * [1.0]
+
+
 @pytest.mark.parametrize("times", [np.full(3, np.nan), np.full(2000, np.inf), [float("nan")]])
 def test_what_json_has_no_number_for_is_not_sent(times: Any) -> None:
     client, asked = answering()

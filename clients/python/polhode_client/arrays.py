@@ -24,13 +24,15 @@ LARGE = 1000
 """Numbers of an array from which on a question is sent as an archive."""
 
 
-def body_of(question: Mapping[str, Any], *, archives: bool) -> tuple[bytes, str]:
-    """Return a question as it is sent, and its media type.
+MOST_ARRAYS = 500
+"""Of an archive; the service limits its members."""
 
-    Parameters
-    ----------
-    archives : bool
-        Whether large arrays may be sent as members of a numpy archive.
+REQUEST = "request"
+"""Field that holds the question to another endpoint, which the service reads as JSON."""
+
+
+def body_of(question: Mapping[str, Any]) -> tuple[bytes, str]:
+    """Return a question as it is sent, and its media type: a numpy archive if large arrays are in it, or else JSON.
 
     Raises
     ------
@@ -38,7 +40,7 @@ def body_of(question: Mapping[str, Any], *, archives: bool) -> tuple[bytes, str]
         For numbers that JSON does not have: NaN and infinities.
     """
     arrays: dict[str, NDArray[Any]] = {}
-    document = json.dumps(_plain(question, arrays if archives else None), allow_nan=False).encode()
+    document = json.dumps(_plain(question, arrays), allow_nan=False).encode()
     if not arrays:
         return document, "application/json"
     sink = io.BytesIO()
@@ -51,15 +53,21 @@ def body_of(question: Mapping[str, Any], *, archives: bool) -> tuple[bytes, str]
 
 
 def _plain(value: Any, arrays: dict[str, NDArray[Any]] | None) -> Any:
-    """Return a value as JSON has it; large arrays are put under a name and referred to, if there is where to."""
+    """Return a value as JSON has it; large arrays are put under a name and referred to, as far as there may be any."""
     if is_dataclass(value) and not isinstance(value, type):
         return _plain(asdict(value), arrays)
     if isinstance(value, Mapping):
-        return {key: _plain(entry, arrays) for key, entry in value.items()}
+        return {key: _plain(entry, None if key == REQUEST else arrays) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(entry, arrays) for entry in value]
     if isinstance(value, np.ndarray):
-        if arrays is not None and value.size >= LARGE and value.ndim in (1, 2) and value.dtype.kind in "iuf":
+        if (
+            arrays is not None
+            and len(arrays) < MOST_ARRAYS
+            and value.size >= LARGE
+            and value.ndim in (1, 2)
+            and value.dtype.kind in "iuf"
+        ):
             if not np.isfinite(value).all():
                 raise ValueError("arrays of a question are of finite numbers")
             name = f"array{len(arrays)}"

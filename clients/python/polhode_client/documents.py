@@ -2239,7 +2239,7 @@ class VariedInput(TypedDict):
     distribution: NotRequired[Literal["uniform", "log-uniform"]]
     step: NotRequired[float | None]
     digits: NotRequired[int | None]
-    values: NotRequired[Sequence[Any] | None]
+    values: NotRequired[Sequence[float | str | bool] | None]
     also: NotRequired[Sequence[str]]
 
 

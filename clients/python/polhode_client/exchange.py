@@ -59,7 +59,7 @@ def exchange(
     headers = {"accept": f"{accepted}, application/problem+json;q=0.1"}
     body = None
     if question is not None:
-        body, headers["content-type"] = body_of(question, archives=operation.archives)
+        body, headers["content-type"] = body_of(question)
     while True:
         received = yield Sent(operation.method, operation.path, headers, body)
         assert received is not None

@@ -14,12 +14,11 @@ from polhode_client import documents
 
 
 class Operation(NamedTuple):
-    """Method, path, summary; whether requests may be numpy archives."""
+    """Method, path and summary."""
 
     method: str
     path: str
     summary: str
-    archives: bool
 
 
 OPERATIONS: Mapping[str, Operation] = {
@@ -27,145 +26,120 @@ OPERATIONS: Mapping[str, Operation] = {
         "POST",
         "/v1/bodies/mass-properties",
         "Mass, centre of mass, inertia, principal axes, symmetry and validity of a body",
-        True,
     ),
     "rotation_trajectory": Operation(
         "POST",
         "/v1/rotation/trajectory",
         "The free rotation of a body: angular velocity and, if requested, attitude at given times",
-        True,
     ),
     "rotation_ensemble": Operation(
-        "POST",
-        "/v1/rotation/ensemble",
-        "Many free rotations of one body, from given starts or a sample of one energy",
-        True,
+        "POST", "/v1/rotation/ensemble", "Many free rotations of one body, from given starts or a sample of one energy"
     ),
     "precession": Operation(
-        "POST", "/v1/rotation/precession", "Rates, period, flip interval and cones of a free rotation", True
+        "POST", "/v1/rotation/precession", "Rates, period, flip interval and cones of a free rotation"
     ),
     "stability": Operation(
         "POST",
         "/v1/rotation/stability",
         "Every equilibrium of a free body: eigenvalues, kind, stability and the reason",
-        True,
     ),
     "energy_ellipsoid": Operation(
         "POST",
         "/v1/rotation/energy-ellipsoid",
         "The energy ellipsoid as a mesh or a grid, with polhodes and separatrix",
-        True,
     ),
     "initial_states": Operation(
-        "POST", "/v1/rotation/initial-states", "Starts of one energy, drawn uniformly over the scaled sphere", True
+        "POST", "/v1/rotation/initial-states", "Starts of one energy, drawn uniformly over the scaled sphere"
     ),
     "wobble": Operation(
-        "POST", "/v1/rotation/wobble", "The free wobble of a planet: asymmetry, ellipticity and period", True
+        "POST", "/v1/rotation/wobble", "The free wobble of a planet: asymmetry, ellipticity and period"
     ),
     "work_precision": Operation(
-        "POST", "/v1/work-precision", "What error each method buys for which work, on a motion of your own", False
+        "POST", "/v1/work-precision", "What error each method buys for which work, on a motion of your own"
     ),
     "scene_unwinding_shafts": Operation(
         "POST",
         "/v1/scenes/unwinding-shafts",
         "Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound",
-        True,
     ),
     "scene_rod_in_hole": Operation(
         "POST",
         "/v1/scenes/rod-in-hole",
         "A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall",
-        True,
     ),
     "scene_chain_on_wedge": Operation(
         "POST",
         "/v1/scenes/chain-on-wedge",
         "An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end",
-        True,
     ),
     "list_scenes": Operation(
-        "GET", "/v1/scenes", "Every named scene and what it answers, and examples of described ones", False
+        "GET", "/v1/scenes", "Every named scene and what it answers, and examples of described ones"
     ),
     "described_scene": Operation(
         "POST",
         "/v1/scenes",
         "A scene of your own: bodies and what connects them, answered by the smallest model that suffices",
-        False,
     ),
     "certified_rotation_trajectory": Operation(
         "POST",
         "/v1/certified/rotation/trajectory",
         "The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven",
-        True,
     ),
     "certified_precession": Operation(
         "POST",
         "/v1/certified/rotation/precession",
         "Rates, period, flip interval and cones of a free rotation; every digit proven",
-        True,
     ),
     "certified_stability": Operation(
         "POST",
         "/v1/certified/rotation/stability",
         "Every equilibrium of a free body: eigenvalues, kind, stability and the reason; every digit proven",
-        True,
     ),
     "certified_energy_ellipsoid": Operation(
         "POST",
         "/v1/certified/rotation/energy-ellipsoid",
         "The energy ellipsoid as a mesh or a grid, with polhodes and separatrix; every digit proven",
-        True,
     ),
     "certified_scene_unwinding_shafts": Operation(
         "POST",
         "/v1/certified/scenes/unwinding-shafts",
         "Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven",
-        True,
     ),
     "certified_scene_rod_in_hole": Operation(
         "POST",
         "/v1/certified/scenes/rod-in-hole",
         "A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven",
-        True,
     ),
     "certified_scene_chain_on_wedge": Operation(
         "POST",
         "/v1/certified/scenes/chain-on-wedge",
         "An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven",
-        True,
     ),
     "plan": Operation(
-        "POST",
-        "/v1/plan",
-        "Model, method, cost, error and refusals of any other question, which is not answered",
-        False,
+        "POST", "/v1/plan", "Model, method, cost, error and refusals of any other question, which is not answered"
     ),
     "assess": Operation(
         "POST",
         "/v1/assessments",
         "Submitted answers to any other question, graded: verdict, error, recognised mistakes",
-        False,
     ),
     "vary": Operation(
         "POST",
         "/v1/variants",
         "Well-conditioned variants of any other question from a seed, each with its figures, their error and condition",
-        False,
     ),
-    "list_errors": Operation("GET", "/v1/errors", "Every problem that can be answered", False),
-    "list_methods": Operation("GET", "/v1/methods", "Every method that can be chosen, and when to use it", False),
-    "list_mistakes": Operation("GET", "/v1/mistakes", "Every mistake that is recognised in submitted answers", False),
-    "get_health": Operation("GET", "/healthz", "Whether the process answers", False),
-    "get_readiness": Operation(
-        "GET", "/readyz", "Whether every kernel is compiled and the compute processes are up", False
-    ),
-    "get_metrics": Operation("GET", "/metrics", "Counters in Prometheus' text format", False),
-    "get_openapi": Operation("GET", "/openapi.json", "The OpenAPI document", False),
-    "get_start_page": Operation("GET", "/", "The energy ellipsoid and the polhode of a body, drawn", False),
-    "get_documentation": Operation("GET", "/docs", "This documentation, to read and to try", False),
-    "get_page_script": Operation("GET", "/page/polhode.js", "Script of the start page", False),
-    "get_documentation_script": Operation("GET", "/page/docs.js", "Script of the documentation", False),
-    "get_page_style": Operation("GET", "/page/style.css", "Style of the pages", False),
+    "list_errors": Operation("GET", "/v1/errors", "Every problem that can be answered"),
+    "list_methods": Operation("GET", "/v1/methods", "Every method that can be chosen, and when to use it"),
+    "list_mistakes": Operation("GET", "/v1/mistakes", "Every mistake that is recognised in submitted answers"),
+    "get_health": Operation("GET", "/healthz", "Whether the process answers"),
+    "get_readiness": Operation("GET", "/readyz", "Whether every kernel is compiled and the compute processes are up"),
+    "get_metrics": Operation("GET", "/metrics", "Counters in Prometheus' text format"),
+    "get_openapi": Operation("GET", "/openapi.json", "The OpenAPI document"),
+    "get_start_page": Operation("GET", "/", "The energy ellipsoid and the polhode of a body, drawn"),
+    "get_documentation": Operation("GET", "/docs", "This documentation, to read and to try"),
+    "get_page_script": Operation("GET", "/page/polhode.js", "Script of the start page"),
+    "get_documentation_script": Operation("GET", "/page/docs.js", "Script of the documentation"),
+    "get_page_style": Operation("GET", "/page/style.css", "Style of the pages"),
 }
 
 
