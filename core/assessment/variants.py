@@ -169,9 +169,9 @@ class Variants:
                 return found
             reasons[found] += 1
             self.rejected[found] += 1
-        told = ", ".join(f"{reason} ({count})" for reason, count in sorted(reasons.items()))
+        counts = ", ".join(f"{reason} ({count})" for reason, count in sorted(reasons.items()))
         remedy = "widen the ranges, relax the constraints or allow more draws"
-        rule = f"be met in {self.most_draws} draws; member {len(seen)} met them in none: {told}"
+        rule = f"be met in {self.most_draws} draws; member {len(seen)} met them in none: {counts}"
         raise InvalidParameter("constraints", rule, remedy=remedy)
 
     def drawn(self, chance: np.random.Generator) -> Any:
@@ -213,6 +213,8 @@ class Variants:
 
     def _condition(self, reference: Reference) -> float | None:
         share = HALF_ULP if self.uncertainty is None else self.uncertainty
+        if reference.inherited == 0.0:
+            return 0.0
         if reference.inherited is None or not reference.magnitude > 0.0 or not share > 0.0:
             return None
         condition = reference.inherited / reference.magnitude / share

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Annotated, Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from core.assessment.propagation import MOST_INPUTS, at, numbers_of
 from core.assessment.results import reference_view
 from core.assessment.variants import Constraint, Member, Variants
 from core.assessment.varied_input import LONGEST_WORD, VariedInput
-from core.errors import InvalidParameter, Path, pointer_of
+from core.errors import BudgetExceeded, InvalidParameter, Path, pointer_of
 from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
@@ -30,6 +30,9 @@ MOST_FIGURES = 20
 """Figures of a member, and numbers of the answer that are figures unless `quantities` names them."""
 LARGEST_FIGURE = 9
 """Entries of an array that is a figure unless named: a matrix."""
+
+MOST_NUMBERS = 100_000
+"""In the figures of all variants."""
 
 EXPECTED_DRAWS = 4
 """For a member, where anything is required of it: a guess, by which the work is predicted."""
@@ -121,6 +124,7 @@ def varying(routes: Sequence[PostRoute]) -> PostRoute:
 
         answer = table.answered(asked, budget, question.input_uncertainty).answer
         figures, warnings = _figures(question, answer)
+        _require_few_numbers(question, answer, figures.values())
         constraints = question.constraints or {}
         constrained = {pointer: _path(pointer, answer, ("constraints",)) for pointer in constraints}
         source = Variants(
@@ -213,6 +217,13 @@ def _figures(question: VariantsRequest, answer: Mapping[str, Any]) -> tuple[dict
         detail = f"the answer has {len(found)} figures, of which the first {MOST_FIGURES} are answered"
         warnings.append(Notice("figures-left-out", detail, ("quantities",)))
     return {pointer_of(path): path for path in found[:MOST_FIGURES]}, warnings
+
+
+def _require_few_numbers(question: VariantsRequest, answer: Mapping[str, Any], paths: Iterable[Path]) -> None:
+    numbers = question.count * sum(np.size(value_at(answer, path)) for path in paths)
+    if numbers > MOST_NUMBERS:
+        remedy = "ask for fewer variants, fewer samples or other quantities"
+        raise BudgetExceeded("numbers in figures", numbers, MOST_NUMBERS, path=("count",), remedy=remedy)
 
 
 def _numbers(fields: Answer) -> Iterator[Path]:

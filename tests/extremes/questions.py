@@ -399,7 +399,7 @@ def assessments() -> Named:
 
 def variants() -> Named:
     for path, (asked, share, _) in CLAIMED.items():
-        # Described scenes are varied within the magnitudes of bodies: beyond, a draw takes long.
+        # Described scenes are varied within the magnitudes that are promised for bodies.
         small, large = (1e-150, 1e150) if path == "/v1/scenes" else (SUBNORMAL, LARGEST)
         ranges: tuple[dict[str, Any], ...] = (
             {"min": small, "max": large, "distribution": "log-uniform"},

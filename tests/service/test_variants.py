@@ -198,6 +198,17 @@ async def test_what_cannot_be_varied_is_refused_by_pointer(change: Body, pointer
     assert rule in detail
 
 
+async def test_the_numbers_of_all_figures_are_limited() -> None:
+    request = COIN["request"] | {"times": {"start": 0.0, "stop": 1.0, "count": 1000}}
+    motion = {"path": "/v1/rotation/trajectory", "request": request}
+    columns: Body = {"question": motion, "vary": ALIKE, "quantities": ["/angular_velocity"]}
+    assert await refused(**columns, count=34) == (
+        422, "budget-exceeded", "/count", "102000 numbers in figures are needed and 100000 are allowed",
+    )  # fmt: skip
+    (variant,) = handled(**columns, count=1)["variants"]
+    assert len(variant["figures"][0]["value"]) == 1000
+
+
 @pytest.mark.parametrize(
     "text", ['{"min": NaN, "max": 1.0}', '{"min": 0.0, "max": Infinity}', '{"values": [NaN, 1.0]}']
 )
