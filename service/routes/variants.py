@@ -116,8 +116,9 @@ def varying(routes: Sequence[PostRoute]) -> PostRoute:
     table = QuestionTable(routes)
 
     def vary(question: VariantsRequest, budget: Budget) -> Answer:
-        varied, together = _places(question)
         asked = question.question
+        table.route(asked)
+        varied, together = _places(question)
 
         def ask(request: Any) -> AssessedQuestion:
             return table.asked(asked, request, budget, question.input_uncertainty)
