@@ -113,7 +113,7 @@ def array_of(value: list[Any]) -> Floats | None:
     else:
         if not {*map(type, value)} <= NUMBERS:
             return None
-        shape, numbers = (len(value),), iter(value)
+        shape, numbers = (len(value),), chain(value)
     try:
         return np.fromiter(numbers, np.float64, math.prod(shape)).reshape(shape)
     except OverflowError:

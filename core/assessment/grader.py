@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from core.assessment.claims import MOST_CLAIMS, Claim
-from core.assessment.compare import Floats, Judgement, Reference, compare
+from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
 from core.assessment.formulas import Formula
@@ -21,7 +21,8 @@ from core.errors import InvalidParameter, MechanicsError, Path
 from core.work import spend
 
 if TYPE_CHECKING:
-    from core.assessment.samples import Consistent, SampleErrors
+    from core.assessment.method_search import Consistent, MethodSearch
+    from core.assessment.samples import ExactSamples, SampleErrors
     from core.rotation.torque_free import TorqueFree
 
 CLAIM = 4
@@ -29,6 +30,9 @@ CLAIM = 4
 
 MOST_IDENTIFIED = 100
 """Samples in one request of which the method is looked for: that takes some 10 ms for each."""
+
+MOST_SOLVED = 3
+"""Sets of times in one request at which solvers that choose their steps are looked for: up to a second for each."""
 
 LONGEST_POINTER = 200
 
@@ -164,6 +168,7 @@ class Grader:
         self._catalogue = tuple(catalogue) if reveal else ()
         self.references: dict[str, Reference] = {}
         self._samples: dict[tuple[str, bytes], Reference] = {}
+        self._columns: dict[int, tuple[ExactSamples, MethodSearch]] = {}
         self._wrong: dict[int, WrongValues] = {}
         self._variations: dict[Path, Sequence[Varied]] = {}
         self.looked_for = 0
@@ -201,13 +206,20 @@ class Grader:
             judgement = compare(reference, value, comparison)
         except InvalidParameter as fault:
             raise fault.inside("value") from None
-        mistakes: tuple[Mistake, ...] = ()
-        samples = None
-        if judgement.verdict == "incorrect" and value is not None and reference.form != "none":
-            mistakes = self._wrong_values(path, reference, claim.times).matching(value, comparison)
-            if claim.times is not None and path == ("angular_velocity",):
-                samples = self._samples_judged(claim.times, value, reference, judgement, identify=not mistakes)
-        return self._result(pointer, judgement, reference, mistakes, samples=samples)
+        if judgement.verdict != "incorrect" or value is None or reference.form == "none":
+            return self._result(pointer, judgement, reference)
+        mistakes = self._wrong_values(path, reference, claim.times).matching(value, comparison)
+        if claim.times is None or path != ("angular_velocity",):
+            return self._result(pointer, judgement, reference, mistakes)
+        samples = self._samples_judged(claim.times, value, reference, judgement, identify=not mistakes)
+        why = [one.feedback for one in mistakes]
+        if any(one.tag == "permuted-axes" for one in mistakes):
+            why.append(exchanged(value, reference.value))
+        if samples is not None and not mistakes:
+            errors, found = samples
+            why = [errors.sentence] if errors.sentence else []
+            why += [] if found is None else [found.sentence]
+        return self._result(pointer, judgement, reference, mistakes, " ".join(why), samples)
 
     def _formula(self, pointer: str, path: Path, reference: Reference, text: str) -> JudgedClaim:
         if reference.form not in ("number", "angle"):
@@ -267,12 +279,17 @@ class Grader:
         if system is None:
             return None
         # Not at the top: with an answer key, nothing is imported that has to be compiled.
-        from core.assessment.samples import consistent_method, errors_of_samples
+        from core.assessment.method_search import MethodSearch
+        from core.assessment.samples import ExactSamples
 
-        errors = errors_of_samples(system, times, rows, reference.value, judgement.tolerance or 0.0)
+        if id(reference) not in self._columns:
+            column = (system, times, reference.value)
+            search = MethodSearch(*column, solvers=len(self._columns) < MOST_SOLVED)
+            self._columns[id(reference)] = ExactSamples(*column), search
+        exact, search = self._columns[id(reference)]
         self.looked_for += identify
-        identify = identify and self.looked_for <= MOST_IDENTIFIED
-        return errors, consistent_method(system, times, rows, reference.value) if identify else None
+        looked = identify and self.looked_for <= MOST_IDENTIFIED
+        return exact.errors(rows, judgement.tolerance or 0.0), search.consistent(rows) if looked else None
 
     def _wrong_values(self, path: Path, reference: Reference, times: Floats | None) -> WrongValues:
         key = id(reference)
@@ -292,11 +309,6 @@ class Grader:
         why: str = "",
         samples: tuple[SampleErrors, Consistent | None] | None = None,
     ) -> JudgedClaim:
-        found = None if samples is None else samples[1]
-        if found is not None and found.step is None:
-            why = "The samples are right to the digits that they have, which are fewer than the tolerance needs."
-        elif found is not None:
-            why = f"The samples are those of {found.method} with a step of {found.step:.6g} s."
         feedback = why or " ".join(one.feedback for one in mistakes) or FEEDBACK[judgement.verdict]
         if reference.sensitive is not None and judgement.verdict != "correct":
             feedback += f" Compare {reference.sensitive}: the figure itself is so near a constant that it shows little."

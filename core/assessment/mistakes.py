@@ -92,6 +92,10 @@ SOME = 16
 """Samples that are compared with those of every mistake before all samples are compared with the few left."""
 
 
+SHARE = 0.2
+"""Of the error of samples, that a mistake which explains them may leave."""
+
+
 class Band(NamedTuple):
     """Wrong values of every mistake, and how near to each a value has to be.
 
@@ -138,7 +142,9 @@ class WrongValues:
             for value in mistake.wrong(self.figure):
                 if value is None or (not isinstance(value, bool | str) and not np.isfinite(value).all()):
                     continue
-                wrong = replace(right, value=value, scale=right.scale, error=0.0, inherited=0.0)
+                # Of samples the scale is what the tolerance is a share of: nothing is near those that are far smaller.
+                least = min(right.scale, float(np.abs(value).max())) if right.form == "samples" else right.scale
+                wrong = replace(right, value=value, scale=least, error=0.0, inherited=0.0)
                 yield mistake, wrong
 
     def matching(self, value: Any, comparison: Comparison | None) -> tuple[Mistake, ...]:
@@ -146,13 +152,13 @@ class WrongValues:
         # Limits say nothing of how near two values are.
         near = None if isinstance(comparison, Interval) else comparison
         if self.figure.reference.form in ("number", "angle", "samples"):
-            agreeing = self._within(value, self._band(near))
+            agreeing = self._within(value, self.figure.right, self._band(near))
         else:
             agreeing = [mistake for mistake, wrong in self.entries if _agree(wrong, value, near)]
         return tuple({mistake.tag: mistake for mistake in agreeing}.values())
 
     @staticmethod
-    def _within(value: Any, band: Band) -> list[Mistake]:
+    def _within(value: Any, right: Any, band: Band) -> list[Mistake]:
         if not band.mistakes:
             return []
         if band.values.ndim == 1:
@@ -160,6 +166,10 @@ class WrongValues:
         else:
             near = np.flatnonzero(_largest(band.values[:, band.some] - value[band.some]) <= band.tolerances)
             near = near[_largest(band.values[near] - value) <= band.tolerances[near]]
+            if near.size:
+                # Samples that are hardly wrong are within the tolerance of much that is hardly wrong.
+                error = _largest((value - right)[None])[0]
+                near = near[_largest(band.values[near] - value) <= SHARE * error]
         return [band.mistakes[k] for k in near]
 
     def _band(self, comparison: Comparison | None) -> Band:

@@ -585,3 +585,27 @@ def test_samples_may_be_arrays_of_an_archive() -> None:
     assert [fault["pointer"] for fault in answer["results"][1]["format_errors"]] == [
         "/submissions/1/~1angular_velocity/value"
     ]
+
+
+def test_what_is_wrong_with_samples_is_a_sentence() -> None:
+    times = np.linspace(0.0, 8.0, 80)
+    motion = {**MOTION, "request": {**MOTION["request"], "times": times.tolist()}}
+    route = ROUTES[MOTION["path"]]
+    rows = np.array(
+        HANDLER.answer(route, HANDLER.read(route, json.dumps(motion["request"]).encode()))["angular_velocity"]
+    )
+    late = np.append(rows[:1], rows[:-1], axis=0)
+
+    def feedback(value: Any, unit: str = "rad/s") -> tuple[str, list[str]]:
+        claim = {"times": times.tolist(), "value": value.tolist(), "unit": unit}
+        (result,) = handled(MOTION, {"/angular_velocity": claim})["results"]
+        return result["feedback"], result["matches"]
+
+    assert feedback(rows[:, [0, 2, 1]])[0].endswith("Axes 2 and 3 are exchanged.")
+    assert feedback(late)[1] == ["samples-off-by-one"]
+    assert feedback(np.degrees(rows))[1] == ["degrees"]
+    assert feedback(rows[::2].repeat(2, axis=0) * 0.0)[1] == []
+    twice = HANDLER.answer(
+        route, HANDLER.read(route, json.dumps({**MOTION["request"], "times": (2.0 * times).tolist()}).encode())
+    )
+    assert feedback(np.array(twice["angular_velocity"]))[1] == ["time-scaled"]

@@ -13,7 +13,7 @@ from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
-from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, Grader, credited
+from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
 from core.errors import InvalidParameter, Path
@@ -34,6 +34,9 @@ SECONDS_OF_A_SUBMISSION = 5e-5
 
 SECONDS_OF_A_SEARCH = 1e-2
 """For the method that samples come from."""
+
+SECONDS_OF_SOLVERS = 0.2
+"""For solvers that choose their steps, at the times of samples."""
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
@@ -112,7 +115,7 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
         again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
         timed = _claims_with("times", question.submissions)
-        methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED)
+        methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED) + SECONDS_OF_SOLVERS * min(timed, MOST_SOLVED)
         return (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
 
     def small(question: AssessmentRequest) -> bool:

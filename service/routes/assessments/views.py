@@ -36,8 +36,12 @@ class ClaimError(View):
 class ConsistentMethod(View):
     """A method by which the samples come out, confirmed by running it."""
 
-    method: str = Field(description="Kind, as in GET /v1/methods; exact for samples as right as their digits.")
-    step: Seconds[float] | None = Field(description="Length of the steps; null for exact.")
+    method: str = Field(
+        description="Kind, as in GET /v1/methods, or semi-implicit-euler, explicit-midpoint, heun; RK45, DOP853 or "
+        "LSODA of scipy.integrate.solve_ivp; exact for samples as right as their digits."
+    )
+    step: Seconds[float] | None = Field(description="Length of the steps; null for exact, and where it is chosen.")
+    tolerance: Ratio[float] | None = Field(description="Relative, of a method that chooses its steps.")
     unexplained: RadiansPerSecond[float] = Field(description="Largest norm of the difference that is left.")
 
 
@@ -51,6 +55,13 @@ class SamplesError(View):
     )
     energy_drift: Ratio[float] | None = Field(description="Largest relative change of the energy; null at rest.")
     angular_momentum_drift: Ratio[float] | None = Field(description="The same of the angular momentum's magnitude.")
+    phase_lag: Seconds[float] | None = Field(
+        description="By how much the samples are late, negative if early: the shift of the motion that is nearest to "
+        "them; null if none leaves less than half of the error."
+    )
+    separatrix_crossed: Seconds[float] | None = Field(
+        description="First time, outwards from the start, at which the samples circle another axis than the motion."
+    )
     consistent_with: ConsistentMethod | None = Field(
         description="null if no method explains the error, or a recognised mistake does."
     )
