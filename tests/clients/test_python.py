@@ -202,7 +202,7 @@ def test_a_reply_of_a_proxy_is_a_refusal_without_a_code() -> None:
 
 
 @pytest.mark.parametrize("status", [429, 503])
-def test_a_busy_service_is_asked_again_after_the_time_that_it_names(status: int) -> None:
+def test_a_busy_service_is_retried_after_the_time_that_it_names(status: int) -> None:
     steps = exchange(OPERATIONS["wobble"], {"period": 430}, None, patience=10.0)
     sent = next(steps)
     assert steps.send(received(busy(status, **{"retry-after": "3"}))) == 3.0
@@ -219,7 +219,7 @@ def received(response: httpx.Response) -> Any:
     return Received(response.status_code, response.headers, response.content)
 
 
-def test_a_date_may_say_when_to_ask_again() -> None:
+def test_a_date_may_say_when_to_retry() -> None:
     steps = exchange(OPERATIONS["wobble"], {"period": 430}, None, patience=100.0)
     next(steps)
     later = email.utils.format_datetime(datetime.now(UTC) + timedelta(seconds=50), usegmt=True)
@@ -229,14 +229,14 @@ def test_a_date_may_say_when_to_ask_again() -> None:
 
 
 @pytest.mark.parametrize("headers", [{}, {"retry-after": "soon"}])
-def test_without_a_time_nothing_is_sent_again(headers: dict[str, str]) -> None:
+def test_without_a_time_nothing_is_retried(headers: dict[str, str]) -> None:
     client, asked = answering(busy(503, **headers))
     with pytest.raises(Refused):
         client.wobble(period=430.0)
     assert len(asked) == 1
 
 
-def test_both_clients_wait_and_ask_again() -> None:
+def test_both_clients_wait_and_retry() -> None:
     def replies() -> list[httpx.Response]:
         later = {"retry-after": "0"}
         return [busy(**later), busy(503, **later), httpx.Response(200, json={"a": [1.0]})]

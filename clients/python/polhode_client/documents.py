@@ -2191,6 +2191,8 @@ class SamplesError(TypedDict):
     within_until: float | None
     energy_drift: float | None
     angular_momentum_drift: float | None
+    phase_lag: float | None
+    separatrix_crossed: float | None
     consistent_with: ConsistentMethod | None
 
 
@@ -2199,6 +2201,7 @@ class ConsistentMethod(TypedDict):
 
     method: str
     step: float | None
+    tolerance: float | None
     unexplained: float
 
 
