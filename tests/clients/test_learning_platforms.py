@@ -282,6 +282,7 @@ def coderunner(tmp_path: Path, bundle: Path, program: str) -> Any:
         ("raise ValueError('\"')", 0.0),
         ("answers = 3", 0.0),
         ("answers = list(open('bundle.zip'))", 0.0),
+        ("import os\nos.mkdir('bundle')\nopen('bundle/json.py', 'w').write('1/0')\nanswers = [6.28]", 0.5),
     ],
 )
 def test_the_template_of_coderunner(tmp_path: Path, bundle: Path, program: str, fraction: float) -> None:
@@ -290,4 +291,4 @@ def test_the_template_of_coderunner(tmp_path: Path, bundle: Path, program: str, 
     header, *rows = found["testresults"]
     assert header == ["Figure", "Got", "Feedback", "iscorrect"]
     assert [row[0] for row in rows] == ["/period", "/body_rate"]
-    assert ("Traceback" in found["prologuehtml"]) == ("raise" in program or "open" in program)
+    assert ("Traceback" in found["prologuehtml"]) == ("raise" in program or "bundle.zip" in program)
