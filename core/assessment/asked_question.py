@@ -11,10 +11,10 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from core.assessment.compare import Floats, Form, Reference
+from core.assessment.compare import Floats, Form, Reference, distance
 from core.assessment.figures import equal_moments, form_of, inside, is_null, name_of, value_at
 from core.assessment.propagation import Propagation, changed, numbers_of, relative_uncertainties
-from core.errors import MechanicsError, Path
+from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.work import spend
 
@@ -32,10 +32,19 @@ MEASURED = "measured"
 
 COLUMNS = ("angular_velocity", "attitude")
 
+ULP = 2.0**-52
+
 CONDITIONING, ROUNDING = 8.0, 2e-15
 """Numerical error of figures whose answer states none: so many times the effect of half a unit in the last place of
 every input, and this share of the figure (docs/accuracy.md)."""
 
+ALONG = 1e-9
+"""By how much the component of a unit vector along a body axis may miss 1."""
+
+MOST_CERTIFIED = 20
+"""Times of a request that is answered in proven digits, too."""
+
+CERTIFIED = "ball arithmetic"
 ESTIMATE = "estimate (conditioning)"
 OF_METHOD = "estimate (rounding of the method that the question names)"
 
@@ -56,6 +65,9 @@ class Source(Protocol):
 
     def answer(self, request: str) -> Mapping[str, Any]:
         """Return the answer to a request, given as JSON; raises `MechanicsError` for what is refused."""
+
+    def certified(self, request: Any) -> Mapping[str, Any] | None:
+        """Return the answer in proven decimal strings, None where there is none."""
 
     def takes(self, field: str) -> bool:
         """Return whether a request may have a field."""
@@ -235,12 +247,36 @@ class AssessedQuestion:
         accuracy: Any = answer.get("accuracy")
         if self.subject == TRAJECTORY and path[0] in COLUMNS:
             return self._sampled(bare, path[0], size, accuracy)
-        inherited = self._propagation.of(path, bare)
+        axis = _body_axis(answer, path)
+        inherited, bare = self._propagation.of(path, bare), replace(bare, body_axis=axis)
         if accuracy is not None and self.subject != TRAJECTORY:
             how = inside(accuracy, "how")
             return replace(bare, error=inside(accuracy, "error") * size, how=how, inherited=inherited)
+        proven = self._proven(path, bare)
+        if proven is not None:
+            return replace(bare, error=proven, how=CERTIFIED, inherited=inherited)
         half = inherited if self._uncertainty is None else self._in_half_ulps.of(path, bare)
         return replace(bare, error=CONDITIONING * (half or 0.0) + ROUNDING * size, how=ESTIMATE, inherited=inherited)
+
+    @cached_property
+    def _certified(self) -> Mapping[str, Any] | None:
+        request = self.request | ({"times": [0.0]} if self.subject == TRAJECTORY else {})
+        times = request.get("times", ())
+        if (times["count"] if isinstance(times, dict) else len(times)) > MOST_CERTIFIED:
+            return None
+        return self._source.certified(request)
+
+    def _proven(self, path: Path, bare: Reference) -> float | None:
+        """Return how far the figure is from its proven digits, with what comparing them rounds; None without any."""
+        found = None if self._certified is None else value_at(self._certified, path)
+        if found is None:
+            return None
+        number = bare.form in ("number", "angle")
+        size = 1.0 if bare.form in ("direction", "axes", "attitude") else bare.magnitude
+        try:
+            return distance(bare, float(found) if number else found) + (ULP if number else ROUNDING) * size
+        except (InvalidParameter, ValueError):
+            return None
 
     def _sampled(self, bare: Reference, column: str | int, size: float, accuracy: Any) -> Reference:
         """Return a column of a trajectory, or a part of one, with the error that the answer states."""
@@ -255,3 +291,17 @@ class AssessedQuestion:
             return replace(bare, error=ROUNDING * norm, how=OF_METHOD, inherited=inherited)
         scale = max(norm, bare.scale) if bare.form == "samples" else bare.scale
         return replace(bare, scale=scale, error=error * norm, how=accuracy["how"], inherited=inherited)
+
+
+def _body_axis(answer: Mapping[str, Any], path: Path) -> int | None:
+    """Return which body axis a figure belongs to, 1, 2 or 3; None if it belongs to none of them."""
+    last = path[-1]
+    if isinstance(last, int) and len(path) > 1 and path[-2] == "moments":
+        axes = value_at(answer, (*path[:-2], "axes"))
+        axis = None if axes is None else axes[:, last]
+    else:
+        axis = value_at(answer, (*path[:-1], "axis"))
+    if not isinstance(axis, np.ndarray) or axis.shape != (3,):
+        return None
+    along = int(np.abs(axis).argmax())
+    return along + 1 if abs(axis[along]) > 1.0 - ALONG else None

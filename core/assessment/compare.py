@@ -65,6 +65,8 @@ class Reference:
         What is to be subtracted to have the figure in which errors show: 1 for an axis ratio near 1.
     sensitive : str or None
         Name of that figure.
+    body_axis : int or None
+        1, 2 or 3: the body axis that the figure belongs to.
     """
 
     value: Any
@@ -77,6 +79,7 @@ class Reference:
     groups: tuple[tuple[int, ...], ...] = ()
     offset: float = 0.0
     sensitive: str | None = None
+    body_axis: int | None = None
     magnitude: float = field(init=False)
 
     def __post_init__(self) -> None:

@@ -63,5 +63,5 @@ def reference_views(grader: Grader) -> list[Result]:
 
 def reference_view(pointer: str, reference: Reference) -> Result:
     """Return a reference as a `ReferenceFigure`."""
-    shown = ("value", "unit", "form", "error", "how", "inherited", "sensitive")
+    shown = ("value", "unit", "form", "error", "how", "inherited", "body_axis", "sensitive")
     return {"pointer": pointer} | {name: getattr(reference, name) for name in shown}

@@ -127,7 +127,7 @@ class ExactSamples:
         motion = self._system.closed_form()
         if motion.period is None:
             return None
-        lags: Floats = motion.period / SHIFTS * np.arange(-SHIFTS // 2, SHIFTS // 2 + 1)
+        lags = motion.period / SHIFTS * np.arange(-SHIFTS // 2, SHIFTS // 2 + 1, dtype=np.float64)
         try:
             rows = motion.sample((self._times[self._some] - lags[:, None]).ravel())
         except MechanicsError:

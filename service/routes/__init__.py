@@ -32,5 +32,5 @@ def questions() -> tuple[PostRoute, ...]:
     ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
     in_doubles = tuple(naming_certified(route, paths) for route in ordinary)
     answering = (*in_doubles, *certified)
-    about_others = planning(answering), assessing(in_doubles), varying(in_doubles)
+    about_others = planning(answering), assessing(in_doubles, certified), varying(in_doubles, certified)
     return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, *about_others))

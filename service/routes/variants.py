@@ -20,7 +20,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.responses.json_rows import written
-from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable
+from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, AskedQuestion, QuestionTable
 from service.routes.assessments.views import ReferenceFigure
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, View
@@ -111,9 +111,9 @@ choice; `also` gives other numbers the same value. A draw that is rejected is dr
 variant is found then, the request is refused with the reasons and their counts."""
 
 
-def varying(routes: Sequence[PostRoute]) -> PostRoute:
-    """Return the route that varies questions to `routes`."""
-    table = QuestionTable(routes)
+def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> PostRoute:
+    """Return the route that varies questions to `routes`, some of which have proven digits, too."""
+    table = QuestionTable(routes, certified)
 
     def vary(question: VariantsRequest, budget: Budget) -> Answer:
         asked = question.question
@@ -146,7 +146,7 @@ def varying(routes: Sequence[PostRoute]) -> PostRoute:
         inputs = sum(1 for _ in numbers_of(question.question.request))
         required = question.constraints or question.max_condition is not None
         each = (EXPECTED_DRAWS if required else 1) + 2 * min(inputs, MOST_INPUTS)
-        return once * (1 + question.count * each)
+        return once + question.count * (SECONDS_OF_PROOF + once * each)
 
     def small(question: VariantsRequest) -> bool:
         return question.count == 1 and table.small(question.question)

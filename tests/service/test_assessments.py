@@ -6,6 +6,7 @@ import io
 import json
 import math
 import random
+from decimal import Decimal
 from typing import Any
 from zipfile import ZipFile
 
@@ -88,8 +89,8 @@ async def test_the_reference_is_the_answer_with_its_error_and_its_unit() -> None
     (reference,) = answer["reference"]
     assert reference["value"] == INTERVAL
     assert reference["unit"] == "s"
-    assert 0.0 < reference["error"] < 1e-13
-    assert 0.0 < reference["inherited"] < reference["error"]
+    assert 0.0 < reference["error"] < 1e-15 * INTERVAL
+    assert 0.0 < reference["inherited"] < 1e-13
     (result,) = answer["results"]
     assert result["score"] == 1.0
     assert result["correct"]
@@ -609,3 +610,41 @@ def test_what_is_wrong_with_samples_is_a_sentence() -> None:
         route, HANDLER.read(route, json.dumps({**MOTION["request"], "times": (2.0 * times).tolist()}).encode())
     )
     assert feedback(np.array(twice["angular_velocity"]))[1] == ["time-scaled"]
+
+
+@pytest.mark.parametrize(
+    ("question", "pointer", "unit", "how", "axis"),
+    [
+        (FLIP, "/flip_interval", "s", "ball arithmetic", 3),
+        (COIN, "/space_rate", "rad s^-1", "ball arithmetic", 3),
+        (COIN, "/axis", "1", "ball arithmetic", 3),
+        (STABILITY, "/equilibria/0/eigenvalues", "s^-1", "ball arithmetic", 3),
+        (STABILITY, "/equilibria/1/growth_rate", "s^-1", "ball arithmetic", 2),
+        (STABILITY, "/equilibria/2/moment", "kg m^2", "ball arithmetic", 1),
+        (ROD, HORIZONTAL, "rad s^-1", "closed form", None),
+        (MOTION, "/period", "s", "ball arithmetic", None),
+        (MOTION, "/angular_velocity/1", "rad s^-1", "closed form", None),
+    ],
+)
+def test_a_reference_says_what_its_error_rests_on_and_to_which_axis_it_belongs(
+    question: Any, pointer: str, unit: str, how: str, axis: int | None
+) -> None:
+    (reference,) = handled(question, {pointer: {"value": None}})["reference"]
+    assert (reference["unit"], reference["how"], reference["body_axis"]) == (unit, how, axis)
+    size = np.abs(reference["value"]).max()
+    assert 0.0 < reference["error"] <= 1e-14 * size
+
+
+def test_proven_references_agree_with_forty_digits() -> None:
+    """The error covers the distance from digits of which more were proven than the reference was compared with."""
+    for path, request, names in (
+        (FLIP["path"], FLIP["request"], ("flip_interval", "period", "mean_precession_rate", "precession_per_period")),
+        (ROD["path"], ROD["request"], ("angular_velocity_at_horizontal", "period", "equivalent_length")),
+        (SHAFTS["path"], SHAFTS["request"], ("tension", "string_acceleration")),
+    ):
+        route = ROUTES[str(path).replace("/v1", "/v1/certified", 1)]
+        digits = HANDLER.answer(route, HANDLER.read(route, json.dumps({**request, "digits": 40}).encode()))
+        claims = {f"/{name}": {"value": None} for name in names}
+        found = handled({"path": path, "request": request}, claims)["reference"]
+        for name, reference in zip(names, found, strict=True):
+            assert abs(Decimal(digits[name]) - Decimal(reference["value"])) <= Decimal(reference["error"]), name

@@ -2217,6 +2217,7 @@ class ReferenceFigure(TypedDict):
     error: float
     how: str
     inherited: float | None
+    body_axis: Literal[1, 2, 3] | None
     sensitive: str | None
 
 
@@ -2287,6 +2288,7 @@ class VariantFigure(TypedDict):
     error: float
     how: str
     inherited: float | None
+    body_axis: Literal[1, 2, 3] | None
     sensitive: str | None
     condition: float | None
 

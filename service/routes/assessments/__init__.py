@@ -21,7 +21,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.requests.request_reader import Limits, Reader
-from service.routes.assessments.question_table import WITHIN, AskedQuestion, QuestionTable
+from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, AskedQuestion, QuestionTable
 from service.routes.assessments.submissions import SubmissionList
 from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
@@ -86,9 +86,9 @@ With `reveal: false` no mistakes are named and none gives credit: who knows that
 reference."""
 
 
-def assessing(routes: Sequence[PostRoute]) -> PostRoute:
-    """Return the route that assesses answers to questions to `routes`."""
-    table = QuestionTable(routes)
+def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> PostRoute:
+    """Return the route that assesses answers to questions to `routes`, some of which have proven digits, too."""
+    table = QuestionTable(routes, certified)
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
         uncertainty = _uncertainty(question)
@@ -116,7 +116,7 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
         timed = _claims_with("times", question.submissions)
         methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED) + SECONDS_OF_SOLVERS * min(timed, MOST_SOLVED)
-        return (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
+        return SECONDS_OF_PROOF + (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
 
     def small(question: AssessmentRequest) -> bool:
         if len(question.submissions) > FEW_SUBMISSIONS or _claims_with("formula", question.submissions):
@@ -138,7 +138,7 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
     )
 
 
-def answer_key(routes: Sequence[PostRoute], body: bytes) -> Document:
+def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body: bytes) -> Document:
     """Return the answer key of the question of an assessment: of all its figures, and of what its submissions claim.
 
     Raises
@@ -147,7 +147,7 @@ def answer_key(routes: Sequence[PostRoute], body: bytes) -> Document:
         For what an assessment is refused with.
     """
     question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
-    asked = QuestionTable(routes).answered(question.question, Budget(), _uncertainty(question))
+    asked = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
     _check_tags(question.credits or {})
     claims = [entry for one in question.submissions if isinstance(one, dict) for entry in one.items()]
     timed = [(pointer, tuple(claim["times"])) for pointer, claim in claims if claim.get("times") is not None]

@@ -17,10 +17,14 @@ from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.routes.assessments.route_source import Refused, asked_question
+from service.routes.certified.answers import ROOT
 from service.routing import PostRoute
 from service.schemas import Request
 
 WITHIN: Path = ("question", "request")
+
+SECONDS_OF_PROOF = 5e-3
+"""For proven digits."""
 
 
 class AskedQuestion(Request):
@@ -31,10 +35,11 @@ class AskedQuestion(Request):
 
 
 class QuestionTable:
-    """The routes whose answers can be references."""
+    """The routes whose answers can be references, some of which have proven digits, too."""
 
-    def __init__(self, routes: Sequence[PostRoute]) -> None:
+    def __init__(self, routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> None:
         self._routes: Mapping[str, PostRoute] = {route.path: route for route in routes}
+        self._certified: Mapping[str, PostRoute] = {route.path: route for route in certified}
         self._reader = cache(self._new_reader)
 
     def route(self, question: AskedQuestion) -> PostRoute:
@@ -51,7 +56,9 @@ class QuestionTable:
     ) -> AssessedQuestion:
         """Return what is asked by a request, that of the question or a changed one."""
         route = self.route(question)
-        return asked_question(route, self._reader(route.path).read, request, budget, uncertainty)
+        twin = self._certified.get(ROOT + route.path.removeprefix("/v1"))
+        proven = None if twin is None else (twin, self._reader(twin.path).read)
+        return asked_question(route, self._reader(route.path).read, request, budget, uncertainty, proven)
 
     def answered(
         self, question: AskedQuestion, budget: Budget, uncertainty: float | Mapping[Path, float] | None
@@ -80,7 +87,7 @@ class QuestionTable:
         return self._reader(route.path).read(json.dumps(request).encode())
 
     def _new_reader(self, path: str) -> Reader[Any]:
-        route = self._routes[path]
+        route = self._routes[path] if path in self._routes else self._certified[path]
         # The document that holds the request has been held against the service's own limits.
         return Reader(route.question, Limits(10**4, 10**9, 10**9, 10**9), route.elsewhere)
 

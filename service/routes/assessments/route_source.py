@@ -14,11 +14,19 @@ from core.assessment.asked_question import AssessedQuestion
 from core.errors import MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
+from core.work import spend
 from service.problems import Refusal
 from service.responses.json_rows import written
 from service.routes.assessments.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.routes.bodies import properties_of
+from service.routes.certified.answers import ONLY_ORDINARY
 from service.routing import Answer, PostRoute
+
+DIGITS = 20
+"""In which figures are proven: more than doubles have."""
+
+PROVING = 600
+"""Work (`core.work`) of an answer in proven digits."""
 
 
 @dataclass(frozen=True)
@@ -29,11 +37,14 @@ class RouteSource:
     ----------
     read : callable
         From JSON bytes to the question; raises `Refusal`.
+    proven : tuple of PostRoute and callable, optional
+        The route that answers in proven digits, and how it is read.
     """
 
     route: PostRoute
     read: Callable[[bytes], Any]
     budget: Budget
+    proven: tuple[PostRoute, Callable[[bytes], Any]] | None = None
 
     @property
     def subject(self) -> str:
@@ -51,6 +62,18 @@ class RouteSource:
             return self.route.handle(self.read(request.encode()), self.budget)
         except Refusal as refusal:
             raise Refused(refusal) from None
+
+    def certified(self, request: Any) -> Answer | None:
+        """Return the answer in proven decimal strings, None where there is none."""
+        if self.proven is None:
+            return None
+        route, read = self.proven
+        spend(PROVING)
+        document = {name: value for name, value in request.items() if name not in ONLY_ORDINARY} | {"digits": DIGITS}
+        try:
+            return route.handle(read(json.dumps(document).encode()), self.budget)
+        except (MechanicsError, Refusal):
+            return None
 
     def takes(self, field: str) -> bool:
         """Return whether a request may have a field."""
@@ -94,6 +117,7 @@ def asked_question(
     request: Any,
     budget: Budget,
     uncertainty: float | Mapping[Path, float] | None,
+    proven: tuple[PostRoute, Callable[[bytes], Any]] | None = None,
 ) -> AssessedQuestion:
-    """Return the question that a request to a route asks; see `AssessedQuestion`."""
-    return AssessedQuestion(RouteSource(route, read, budget), request, uncertainty)
+    """Return the question that a request to a route asks; see `RouteSource` and `AssessedQuestion`."""
+    return AssessedQuestion(RouteSource(route, read, budget, proven), request, uncertainty)

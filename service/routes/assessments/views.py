@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -102,9 +102,13 @@ class ReferenceFigure(View):
     unit: str = Field(description="1 for pure numbers.")
     form: Form = Field(description="How submitted values are compared with it.")
     error: Annotated[float, OwnUnit] = Field(description="Numerical error; how says what it rests on.")
-    how: str = Field(description="closed form and measured ...: a bound; estimate ...: none.")
+    how: str = Field(description="closed form, ball arithmetic and measured ...: a bound; estimate ...: none.")
     inherited: Annotated[float, OwnUnit] | None = Field(
         description="Error propagated from the uncertainty of the question's numbers, to first order; null if unknown."
+    )
+    body_axis: Literal[1, 2, 3] | None = Field(
+        description="Body axis that the figure belongs to, by its order in the request and not by its moment; null if "
+        "it belongs to none."
     )
     sensitive: str | None = Field(description="Figure in which errors show, where this one is near a constant.")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -74,3 +75,21 @@ def test_variations_move_every_parameter_and_keep_the_law() -> None:
         assert one.figure == pytest.approx(2.0 * pi * sqrt(one.parameters["l"] / one.parameters["g"]))
     assert len({one.parameters["g"] for one in varied}) == 20
     assert set(asked.parameters(None)) == {"length", "gravity"}
+
+
+def test_a_figure_with_proven_digits_is_known_to_its_last_ones() -> None:
+    asked = AssessedQuestion(Pendulum(), REQUEST, None)
+    period, rate = asked.reference(("period",)), asked.reference(("rate",))
+    assert period is not None
+    assert rate is not None
+    with mpmath.workdps(40):
+        true = 2 * mpmath.pi * mpmath.sqrt(mpmath.mpf(0.5) / mpmath.mpf(9.81))
+        missed = float(abs(true - mpmath.mpf(period.value)))
+    assert period.how == "ball arithmetic"
+    assert missed <= period.error <= missed + 1e-15
+    # Of the rate there are no proven digits, nor of a question that is not answered in them.
+    assert rate.how.startswith("estimate")
+    other = AssessedQuestion(Pendulum(), {**REQUEST, "length": 0.6}, None).reference(("period",))
+    assert other is not None
+    assert other.how.startswith("estimate")
+    assert other.error > period.error
