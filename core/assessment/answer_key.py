@@ -39,7 +39,7 @@ Place = tuple[Path, tuple[float, ...] | None]
 
 @dataclass(frozen=True)
 class Terms:
-    """How submissions to a question are graded, as the service is told.
+    """How submissions to a question are graded, as a request to the service says.
 
     Attributes
     ----------

@@ -33,6 +33,9 @@ class Pendulum:
         one, other = given["lengths"]
         return {"period": period, "frequency": frequency, "difference": other - one, "lengths": given["lengths"]}
 
+    def certified(self, request: Any) -> None:
+        return None
+
     def takes(self, field: str) -> bool:
         return False
 
