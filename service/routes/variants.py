@@ -148,9 +148,6 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
         each = (EXPECTED_DRAWS if required else 1) + 2 * min(inputs, MOST_INPUTS)
         return once + question.count * (SECONDS_OF_PROOF + once * each)
 
-    def small(question: VariantsRequest) -> bool:
-        return question.count == 1 and table.small(question.question)
-
     return PostRoute(
         "/v1/variants",
         "vary",
@@ -160,7 +157,6 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
         VariantsAnswer,
         vary,
         price,
-        small,
         description=DESCRIPTION,
     )
 
