@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from core.assessment.compare import Floats, Form, Reference, distance
+from core.assessment.curves import dense
 from core.assessment.figures import equal_moments, form_of, inside, is_null, name_of, value_at
 from core.assessment.propagation import Propagation, changed, numbers_of, relative_uncertainties
 from core.errors import InvalidParameter, MechanicsError, Path
@@ -45,6 +46,7 @@ MOST_CERTIFIED = 20
 """Times of a request that is answered in proven digits, too."""
 
 CERTIFIED = "ball arithmetic"
+BETWEEN_POINTS = "measured (curve through its points)"
 ESTIMATE = "estimate (conditioning)"
 OF_METHOD = "estimate (rounding of the method that the question names)"
 
@@ -252,6 +254,8 @@ class AssessedQuestion:
         if accuracy is not None and self.subject != TRAJECTORY:
             how = inside(accuracy, "how")
             return replace(bare, error=inside(accuracy, "error") * size, how=how, inherited=inherited)
+        if form == "curve":
+            return replace(bare, error=dense(value)[1], how=BETWEEN_POINTS, inherited=inherited)
         proven = self._proven(path, bare)
         if proven is not None:
             return replace(bare, error=proven, how=CERTIFIED, inherited=inherited)

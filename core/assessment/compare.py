@@ -11,6 +11,7 @@ axes                      largest difference of any entry of the projections on 
 set                       largest difference of any entry, in the best pairing of the members
 choice                    none: equal or not
 samples                   largest norm of the difference of any sample
+curve                     largest distance of any point of either closed curve from the other
 """
 
 from __future__ import annotations
@@ -26,12 +27,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.assessment.comparisons import Comparison, Interval, RelAbs
+from core.assessment.curves import separation
 from core.errors import InvalidParameter
 
 Form = Literal[
-    "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "none"
+    "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "curve", "none"
 ]
 Verdict = Literal["correct", "incorrect", "missing-unit", "wrong-unit", "not-gradable", "unreadable"]
+
+LEAST_OF_A_CURVE, MOST_OF_A_CURVE = 8, 2000
+"""Points of a submitted curve."""
 
 MOST_OF_A_SET = 6
 """Members of a set: all their orders are tried."""
@@ -193,8 +198,11 @@ def distance(reference: Reference, value: Any) -> float:
             apart = min(apart, 2.0 * pi - apart)
         return _bounded(apart)
     right: Floats = reference.value
-    if not isinstance(value, np.ndarray) or value.shape != right.shape:
-        raise InvalidParameter((), _shape(right))
+    curve = reference.form == "curve"
+    fits = isinstance(value, np.ndarray) and value.shape[curve:] == right.shape[curve:] and value.ndim == right.ndim
+    if not fits or (curve and not LEAST_OF_A_CURVE <= len(value) <= MOST_OF_A_CURVE):
+        rows = f"{LEAST_OF_A_CURVE} to {MOST_OF_A_CURVE} rows of {right.shape[-1]} numbers"
+        raise InvalidParameter((), f"be an array of {rows}" if curve else _shape(right))
     with np.errstate(over="ignore", invalid="ignore"):
         return _bounded(_DISTANCES[reference.form](value, right, reference))
 
@@ -215,6 +223,10 @@ def _entries(value: Floats, right: Floats, reference: Reference) -> float:
 def _samples(value: Floats, right: Floats, reference: Reference) -> float:
     apart = np.abs(value - right)
     return float(apart.max(initial=0.0)) if apart.ndim < 2 else float(np.sqrt((apart**2).sum(axis=-1)).max(initial=0.0))
+
+
+def _curve(value: Floats, right: Floats, reference: Reference) -> float:
+    return separation(value, right)
 
 
 def _direction(value: Floats, right: Floats, reference: Reference) -> float:
@@ -254,6 +266,7 @@ _DISTANCES = {
     "vector": _entries,
     "matrix": _entries,
     "samples": _samples,
+    "curve": _curve,
     "direction": _direction,
     "attitude": _attitude,
     "axes": _axes,

@@ -90,6 +90,8 @@ def form_of(path: Path, value: Any, unit: str) -> Form:
     }
     if (name, value.shape) in shaped:
         return shaped[name, value.shape]
+    if name == "points" and value.ndim == 2 and np.array_equal(value[0], value[-1]) and len(value) > 1:
+        return "curve"
     if name == "eigenvalues":
         return "set"
     if name in ("angular_velocity", "attitude") and value.ndim == 2:

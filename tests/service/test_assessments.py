@@ -648,3 +648,47 @@ def test_proven_references_agree_with_forty_digits() -> None:
         found = handled({"path": path, "request": request}, claims)["reference"]
         for name, reference in zip(names, found, strict=True):
             assert abs(Decimal(digits[name]) - Decimal(reference["value"])) <= Decimal(reference["error"]), name
+
+
+async def test_curves_are_right_from_any_start_in_either_direction() -> None:
+    request = {
+        "body": {"kind": "principal-moments", "moments": [2.0, 1.0, 0.5]}, "angular_velocity": [0.4, 1.0, 0.7],
+        "resolution": 6, "layout": "grid", "points": 256,
+    }  # fmt: skip
+    question = {"path": "/v1/rotation/energy-ellipsoid", "request": request}
+    route = ROUTES[str(question["path"])]
+    answer = HANDLER.answer(route, HANDLER.read(route, json.dumps({**request, "points": 100}).encode()))
+    points = np.array(json.loads(written(answer))["polhodes"][0]["points"])[:-1]
+    claims = [points, np.roll(points[::-1], 17, axis=0), points[:, [0, 2, 1]], -points[:40]]
+    graded = handled(question, *[{"/polhodes/0/points": {"value": one.tolist(), "unit": "rad/s"}} for one in claims])
+    assert [result["correct"] for result in graded["results"]] == [True, True, False, False]
+    assert graded["results"][2]["matches"] == ["permuted-axes"]
+    (reference,) = graded["reference"]
+    assert reference["form"] == "curve"
+    assert 0.0 < reference["error"] < 1e-4
+
+
+@settings(max_examples=10)
+@given(seed=st.integers(0, 10**6))
+def test_without_reveal_samples_say_nothing_but_their_verdict(seed: int) -> None:
+    """Of two motions, the answers to samples that are wrong in the same way are the same bytes."""
+    chance = random.Random(seed)
+    times = np.linspace(0.0, 5.0, 30)
+
+    def hidden(rates: list[float], change: Any) -> Any:
+        question = {**MOTION, "request": {**MOTION["request"], "angular_velocity": rates}}
+        route = ROUTES[MOTION["path"]]
+        timed = {**question["request"], "times": times.tolist()}
+        rows = np.array(HANDLER.answer(route, HANDLER.read(route, json.dumps(timed).encode()))["angular_velocity"])
+        claim = {"value": change(rows).tolist(), "times": times.tolist(), "unit": "rad/s"}
+        return handled(question, {"/angular_velocity": claim}, reveal=False)
+
+    first = [chance.uniform(0.3, 2.0) for _ in range(3)]
+    second = [chance.uniform(1.2, 3.0) * rate for rate in first]
+    for change in (
+        lambda rows: rows[:, [1, 2, 0]] * [1.0, 2.0, 3.0],
+        lambda rows: 2.0 * rows,
+        lambda rows: np.append(3.0 * rows[1:], rows[:1], axis=0),
+        lambda rows: rows,
+    ):
+        assert hidden(first, change) == hidden(second, change)

@@ -2212,7 +2212,18 @@ class ReferenceFigure(TypedDict):
     value: Any
     unit: str
     form: Literal[
-        "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "none"
+        "number",
+        "vector",
+        "matrix",
+        "angle",
+        "attitude",
+        "direction",
+        "axes",
+        "set",
+        "choice",
+        "samples",
+        "curve",
+        "none",
     ]
     error: float
     how: str
@@ -2283,7 +2294,18 @@ class VariantFigure(TypedDict):
     value: Any
     unit: str
     form: Literal[
-        "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "none"
+        "number",
+        "vector",
+        "matrix",
+        "angle",
+        "attitude",
+        "direction",
+        "axes",
+        "set",
+        "choice",
+        "samples",
+        "curve",
+        "none",
     ]
     error: float
     how: str

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field
 
 from core.assessment.answer_key import Document, Terms, key_of
 from core.assessment.asked_question import VARIATIONS
 from core.assessment.catalogue import MISTAKES
+from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
@@ -30,13 +33,16 @@ from service.schemas import Request
 FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
 
-SECONDS_OF_A_SUBMISSION = 5e-5
+SECONDS_OF_A_CLAIM, SECONDS_OF_SAMPLES = 2.5e-5, 1e-3
 
-SECONDS_OF_A_SEARCH = 1e-2
-"""For the method that samples come from."""
+SECONDS_OF_A_SEARCH, SECONDS_OF_SOLVERS = 5e-3, 0.15
+"""For the method that wrong samples come from, and for solvers that choose their steps at times of their own."""
 
-SECONDS_OF_SOLVERS = 0.2
-"""For solvers that choose their steps, at the times of samples."""
+SECONDS_OF_A_COLUMN = 2e-2
+"""For the mistakes at some times."""
+
+CHANGED_BY_MISTAKES = 10
+"""Changed questions that the mistakes of a figure are computed from, about."""
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
@@ -112,15 +118,26 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
     def price(question: AssessmentRequest, budget: Budget) -> float:
         once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
-        again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
-        again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
-        timed = _claims_with("times", question.submissions)
-        methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED) + SECONDS_OF_SOLVERS * min(timed, MOST_SOLVED)
-        return SECONDS_OF_PROOF + (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
+        again = 1 + min(inputs, MOST_INPUTS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
+        again += VARIATIONS * min(1, len(_claims_with("formula", question.submissions)))
+        # What is right is judged in a hundredth of the time; before it is judged nobody knows.
+        timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
+        columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
+        samples = SECONDS_OF_SAMPLES * len(timed) + SECONDS_OF_A_SEARCH * min(len(timed), MOST_IDENTIFIED)
+        samples += SECONDS_OF_SOLVERS * min(columns, MOST_SOLVED) + SECONDS_OF_A_COLUMN * columns
+        claims = sum(len(one) for one in question.submissions if isinstance(one, dict))
+        return (
+            SECONDS_OF_PROOF
+            + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
+            + samples
+            + SECONDS_OF_A_CLAIM * claims
+        )
 
     def small(question: AssessmentRequest) -> bool:
-        if len(question.submissions) > FEW_SUBMISSIONS or _claims_with("formula", question.submissions):
-            # For a formula, the question is asked in many variations.
+        if len(question.submissions) > FEW_SUBMISSIONS:
+            return False
+        if _claims_with("formula", question.submissions) or _claims_with("times", question.submissions):
+            # The question is then asked in many variations, or methods are run.
             return False
         return table.small(question.question)
 
@@ -149,17 +166,25 @@ def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body
     question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
     asked = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
     _check_tags(question.credits or {})
-    claims = [entry for one in question.submissions if isinstance(one, dict) for entry in one.items()]
-    timed = [(pointer, tuple(claim["times"])) for pointer, claim in claims if claim.get("times") is not None]
+    claimed: list[str] = []
+    timed: list[tuple[str, tuple[float, ...]]] = []
+    for pointer, entry in (pair for one in question.submissions if isinstance(one, dict) for pair in one.items()):
+        # What cannot be read is no example of what students claim.
+        with suppress(InvalidParameter):
+            times = Claim.read(entry).times
+            steps_of(pointer)
+            if times is None:
+                claimed.append(pointer)
+            else:
+                timed.append((pointer, tuple(times.tolist())))
     terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question))
-    claimed = [pointer for pointer, claim in claims if claim.get("times") is None]
     return key_of(asked, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
 
 
-def _claims_with(key: str, submissions: Sequence[Any]) -> int:
-    """Return how many claims have a key, such as times of their own."""
+def _claims_with(key: str, submissions: Sequence[Any]) -> list[dict[str, Any]]:
+    """Return the claims that have a key, such as times of their own."""
     claims = (claim for one in submissions if isinstance(one, dict) for claim in one.values())
-    return sum(isinstance(claim, dict) and key in claim for claim in claims)
+    return [claim for claim in claims if isinstance(claim, dict) and key in claim]
 
 
 def _uncertainty(question: AssessmentRequest) -> float | dict[Path, float] | None:

@@ -23,7 +23,7 @@ from service.schemas import Request
 
 WITHIN: Path = ("question", "request")
 
-SECONDS_OF_PROOF = 5e-3
+SECONDS_OF_PROOF = 1e-3
 """For proven digits."""
 
 
