@@ -2,7 +2,8 @@
 
 Each member has a generator of its own, the member's child of the seed (numpy's ``SeedSequence.spawn``). So the first
 members are the same however many there are. A draw is rejected if the question is refused with it, if a figure that is
-wanted does not exist, if a constraint is not met, or if an earlier member has the same request.
+wanted does not exist, if the answer has a warning of another kind than the question as it is, if a constraint is not
+met, or if an earlier member has the same request.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from core.quantities import Quantity, check
 
 Share = Annotated[float, Quantity("1", above=0, below=1)]
 
-REFUSED, ABSENT, CONDITION, REPEATED = "refused", "absent", "condition", "repeated"
+REFUSED, WARNED, ABSENT, CONDITION, REPEATED = "refused", "warned", "absent", "condition", "repeated"
 """Reasons for which draws are rejected, beside the pointers of figures that meet no constraint."""
 
 MOST_EXACT = 2.0**53
@@ -122,6 +123,8 @@ class Variants:
         Relative, of the question's numbers, by which the references are propagated; half an ulp if None.
     most_draws : int
         For one member.
+    warnings : frozenset of str
+        Codes of warnings that answers may have.
     required : bool
         Whether draws are rejected for which a figure that is wanted does not exist; otherwise it is left out.
 
@@ -141,6 +144,7 @@ class Variants:
     max_condition: float | None
     uncertainty: float | None
     most_draws: int
+    warnings: frozenset[str] = frozenset()
     required: bool = True
     rejected: Counter[str] = field(default_factory=Counter, init=False)
 
@@ -189,6 +193,8 @@ class Variants:
             answer = asked.answer
         except MechanicsError:
             return REFUSED
+        if not {notice.code for notice in answer.get("warnings", ())} <= self.warnings:
+            return WARNED
         here = {pointer: value_at(answer, path) for pointer, path in self.constrained.items()}
         for pointer, value in here.items():
             if not isinstance(value, (float, np.ndarray)):

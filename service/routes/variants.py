@@ -100,9 +100,10 @@ class VariantsAnswer(Envelope):
     seed: int = Field(description="As in the request.", json_schema_extra={"x-unit": "1"})
     variants: list[Variant] = Field(description="As many as were asked for.")
     rejected: dict[str, int] = Field(
-        description="How many draws were rejected, by reason: refused (the question has no answer with them), absent "
-        "(a figure does not exist), repeated (an earlier variant has the same request), condition, or the pointer of "
-        "a constraint."
+        description="How many draws were rejected, by reason: refused (the question has no answer with them), warned "
+        "(by another kind of warning than the question as it is, such as that no body has these moments), absent (a "
+        "figure does not exist), repeated (an earlier variant has the same request), condition, or the pointer of a "
+        "constraint."
     )
 
 
@@ -130,7 +131,8 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
         constrained = {pointer: _path(pointer, answer, ("constraints",)) for pointer in constraints}
         source = Variants(
             asked.request, varied, together, ask, figures, constraints, constrained, question.max_condition,
-            question.input_uncertainty, question.draws, question.quantities is not None,
+            question.input_uncertainty, question.draws, frozenset(notice.code for notice in answer.get("warnings", ())),
+            question.quantities is not None,
         )  # fmt: skip
         members = source.members(question.seed, question.count)
         return {

@@ -115,6 +115,14 @@ def test_the_condition_is_that_of_the_closed_form() -> None:
     )
 
 
+def test_variants_are_physical_where_their_question_is() -> None:
+    vary = {"/body/moments/2": {"min": 1.5, "max": 3.0}}
+    answer = handled(question=COIN, vary=vary, count=10)
+    # No body has a moment above the sum of the others.
+    assert all(variant["request"]["body"]["moments"][2] <= 2.0 for variant in answer["variants"])
+    assert answer["rejected"]["warned"] > 0
+
+
 def test_constraints_hold_and_rejected_draws_are_counted() -> None:
     answer = handled(
         question=WOBBLE,

@@ -14,6 +14,7 @@ from core.assessment.asked_question import AssessedQuestion
 from core.assessment.variants import Constraint, Variants
 from core.assessment.varied_input import VariedInput
 from core.errors import InvalidParameter, NotApplicable, Path
+from core.notices import Notice
 
 REQUEST = {"length": 1, "gravity": 9.81, "lengths": [1.0, 2.0]}
 
@@ -31,7 +32,9 @@ class Pendulum:
         period = 2.0 * pi * sqrt(given["length"] / given["gravity"])
         frequency = 1.0 / period if given["length"] <= 4.0 else None
         one, other = given["lengths"]
-        return {"period": period, "frequency": frequency, "difference": other - one, "lengths": given["lengths"]}
+        warnings = [Notice("heavy", "gravity is large")] if given["gravity"] > 10.0 else []
+        figures = {"period": period, "frequency": frequency, "difference": other - one, "lengths": given["lengths"]}
+        return figures | {"warnings": warnings}
 
     def certified(self, request: Any) -> None:
         return None
@@ -68,6 +71,7 @@ def variants(vary: dict[Path, VariedInput], figures: tuple[str, ...] = ("period"
         more.get("max_condition"),
         more.get("uncertainty"),
         more.get("most_draws", 100),
+        more.get("warnings", frozenset()),
     )
 
 
@@ -114,6 +118,16 @@ def test_refused_and_absent_draws_are_counted_apart() -> None:
     assert all(member.request["length"] <= 4.0 for member in members)
     assert found.rejected.keys() == {"refused", "absent"}
     assert sum(found.rejected.values()) == sum(member.draws - 1 for member in members)
+
+
+def test_members_have_no_warnings_of_another_kind() -> None:
+    vary = {("gravity",): VariedInput(min=1.0, max=20.0)}
+    found = variants(vary)
+    assert all(member.request["gravity"] <= 10.0 for member in found.members(0, 20))
+    assert found.rejected.keys() == {"warned"}
+    found = variants(vary, warnings=frozenset({"heavy"}))
+    assert any(member.request["gravity"] > 10.0 for member in found.members(0, 20))
+    assert not found.rejected
 
 
 def test_members_differ() -> None:
