@@ -41,6 +41,8 @@ LEAST_OF_A_CURVE, MOST_OF_A_CURVE = 8, 2000
 MOST_OF_A_SET = 6
 """Members of a set: all their orders are tried."""
 
+LARGEST = np.finfo(np.float64).max.item()
+
 Floats = NDArray[np.float64]
 
 
@@ -221,8 +223,20 @@ def _entries(value: Floats, right: Floats, reference: Reference) -> float:
 
 
 def _samples(value: Floats, right: Floats, reference: Reference) -> float:
-    apart = np.abs(value - right)
-    return float(apart.max(initial=0.0)) if apart.ndim < 2 else float(np.sqrt((apart**2).sum(axis=-1)).max(initial=0.0))
+    return float(norms(value - right if value.ndim > 1 else (value - right)[:, None]).max(initial=0.0))
+
+
+def norms(rows: Floats) -> Floats:
+    """Return the lengths of rows, at most the largest double: runs with far too long steps grow beyond all bounds."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = float(np.abs(rows).max(initial=0.0))
+        if 1e-100 < size < 1e100:
+            plain: Floats = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+            return plain
+        sizes = np.abs(rows).max(axis=1)
+        units = np.where(sizes > 0.0, sizes, 1.0)
+        lengths: Floats = np.nan_to_num(units * np.sqrt(((rows / units[:, None]) ** 2).sum(axis=1)), nan=LARGEST)
+    return lengths
 
 
 def _curve(value: Floats, right: Floats, reference: Reference) -> float:
@@ -306,7 +320,7 @@ def _magnitude(value: Any, form: Form, scale: float) -> float:
 
 def _bounded(number: float) -> float:
     # A difference that overflows is as wrong as any number can be.
-    return number if isfinite(number) else np.finfo(np.float64).max.item()
+    return number if isfinite(number) else LARGEST
 
 
 def _finite(number: float) -> float | None:

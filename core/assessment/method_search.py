@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from core.assessment.compare import Floats
+from core.assessment.compare import Floats, norms
 from core.assessment.student_methods import ExplicitMidpoint, Heun, SemiImplicitEuler
 from core.errors import MechanicsError
 from core.rotation.torque_free import TorqueFree
@@ -60,8 +60,6 @@ RUNAWAYS, RUNAWAY = 6, 3.0
 
 ROUNDED = 1e-12
 """Error, of the largest rate, that is explained by rounding."""
-
-LARGEST = np.finfo(np.float64).max.item()
 
 MOST_EVALUATIONS = 200_000
 """Of each run of a method; a step that needs more is not looked for."""
@@ -300,19 +298,6 @@ def _candidates(step: float, spacing: float) -> Iterator[float]:
         yield float(f"{(round(step / digit) + offset) * digit:.2g}")
         yield 1.0 / max(1, round(1.0 / step) + offset)
     yield step
-
-
-def norms(rows: Floats) -> Floats:
-    """Return the lengths of rows, at most the largest double: runs with far too long steps grow beyond all bounds."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        size = float(np.abs(rows).max(initial=0.0))
-        if 1e-100 < size < 1e100:
-            plain: Floats = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-            return plain
-        sizes = np.abs(rows).max(axis=1)
-        units = np.where(sizes > 0.0, sizes, 1.0)
-        lengths: Floats = np.nan_to_num(units * np.sqrt(((rows / units[:, None]) ** 2).sum(axis=1)), nan=LARGEST)
-    return lengths
 
 
 def _resolution(rows: Floats) -> float:

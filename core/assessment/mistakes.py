@@ -161,15 +161,17 @@ class WrongValues:
     def _within(value: Any, right: Any, band: Band) -> list[Mistake]:
         if not band.mistakes:
             return []
-        if band.values.ndim == 1:
-            near = np.flatnonzero(np.abs(band.values - value) <= band.tolerances)
-        else:
-            near = np.flatnonzero(_largest(band.values[:, band.some] - value[band.some]) <= band.tolerances)
-            near = near[_largest(band.values[near] - value) <= band.tolerances[near]]
-            if near.size:
-                # Samples that are hardly wrong are within the tolerance of much that is hardly wrong.
-                error = _largest((value - right)[None])[0]
-                near = near[_largest(band.values[near] - value) <= SHARE * error]
+        # Differences that overflow are not near, and those of infinite ones no number.
+        with np.errstate(over="ignore", invalid="ignore"):
+            if band.values.ndim == 1:
+                near = np.flatnonzero(np.abs(band.values - value) <= band.tolerances)
+            else:
+                near = np.flatnonzero(_largest(band.values[:, band.some] - value[band.some]) <= band.tolerances)
+                near = near[_largest(band.values[near] - value) <= band.tolerances[near]]
+                if near.size:
+                    # Samples that are hardly wrong are within the tolerance of much that is hardly wrong.
+                    error = _largest((value - right)[None])[0]
+                    near = near[_largest(band.values[near] - value) <= SHARE * error]
         return [band.mistakes[k] for k in near]
 
     def _band(self, comparison: Comparison | None) -> Band:
@@ -185,9 +187,12 @@ class WrongValues:
 
 def _largest(apart: Floats) -> Floats:
     """Return the largest norm of any sample's difference, shape (k,), of differences (k, n, m) or (k, n)."""
-    with np.errstate(over="ignore"):
-        squares = np.einsum("knm,knm->kn", apart, apart) if apart.ndim == 3 else apart * apart
-        largest: Floats = np.sqrt(squares.max(axis=1, initial=0.0))
+    sizes = np.abs(apart).max(axis=tuple(range(1, apart.ndim)), initial=0.0)
+    if apart.ndim < 3:
+        return sizes
+    # Squares of what is far from one would overflow, or vanish.
+    units = apart / np.where(sizes > 0.0, sizes, 1.0)[:, None, None]
+    largest: Floats = sizes * np.sqrt(np.einsum("knm,knm->kn", units, units).max(axis=1, initial=0.0))
     return largest
 
 

@@ -9,8 +9,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from core.assessment.compare import Floats
-from core.assessment.method_search import norms
+from core.assessment.compare import Floats, norms
 from core.errors import MechanicsError
 from core.rotation.torque_free import TorqueFree
 
