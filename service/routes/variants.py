@@ -37,6 +37,12 @@ MOST_NUMBERS = 100_000
 EXPECTED_DRAWS = 4
 """For a member, where anything is required of it: a guess, by which the work is predicted."""
 
+EXPECTED_FIELDS = 5
+"""Of an answer, that have figures."""
+
+SECONDS_OF_ASKING = 2e-4
+"""A changed question, beside its own price: reading it and finding its figures."""
+
 NO_FIGURES = ("signature", "warnings", "accuracy", "work", "model")
 """Fields of answers that are not about the motion."""
 
@@ -147,8 +153,14 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
         once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
         required = question.constraints or question.max_condition is not None
-        each = (EXPECTED_DRAWS if required else 1) + 2 * min(inputs, MOST_INPUTS)
-        return once + question.count * (SECONDS_OF_PROOF + once * each)
+        # Each number is changed, for each field of the answer that has figures.
+        named = question.quantities
+        fields = (
+            EXPECTED_FIELDS if named is None else len({pointer.split("/")[1] for pointer in named if "/" in pointer})
+        )
+        changes = min(inputs, MOST_INPUTS) * fields * (1 if question.input_uncertainty is None else 3)
+        each = (EXPECTED_DRAWS if required else 1) + changes
+        return once + question.count * (SECONDS_OF_PROOF + (once + SECONDS_OF_ASKING) * each)
 
     return PostRoute(
         "/v1/variants",
