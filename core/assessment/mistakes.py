@@ -187,7 +187,7 @@ class WrongValues:
 
 def _largest(apart: Floats) -> Floats:
     """Return the largest norm of any sample's difference, shape (k,), of differences (k, n, m) or (k, n)."""
-    sizes = np.abs(apart).max(axis=tuple(range(1, apart.ndim)), initial=0.0)
+    sizes: Floats = np.abs(apart).max(axis=tuple(range(1, apart.ndim)), initial=0.0)
     if apart.ndim < 3:
         return sizes
     # Squares of what is far from one would overflow, or vanish.

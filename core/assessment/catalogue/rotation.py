@@ -207,14 +207,14 @@ OF_ROTATION = (
         "The samples are right, but each stands at the time of its neighbour.", _shifted, credit=0.5,
     ),
     Mistake(
-        "time-scaled", "Samples at other times than stated: minutes, milliseconds, turns, twice or half of them.",
-        "The motion is right, but runs too fast or too slowly: check the unit of time and factors in the rate.",
-        _time_scaled, credit=0.25,
-    ),
-    Mistake(
         "samples-rate-over-axial-moment", "Samples of a symmetric body that precess at (I3 - I)/I3 w3.",
         "The motion precesses at a wrong rate: the difference of the moments is divided by the transverse moment.",
         _slow_precession, credit=0.25,
+    ),
+    Mistake(
+        "time-scaled", "Samples at other times than stated: minutes, milliseconds, turns, twice or half of them.",
+        "The motion is right, but runs too fast or too slowly: check the unit of time and factors in the rate.",
+        _time_scaled, credit=0.25,
     ),
     Mistake(
         "period-for-flip-interval", "The period for the interval between flips, or the reverse.",
