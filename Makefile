@@ -39,6 +39,7 @@ $(ENV)/made: requirements-dev.lock | $(ENV)/bin/python
 
 openapi: environment
 	$(BIN)/python -m service --openapi > docs/openapi.json
+	$(BIN)/python clients/python/generate.py
 
 judge: environment
 	$(BIN)/python -m tests.core.certified.judge 100000

@@ -145,6 +145,7 @@ def test_the_architecture_page_lists_every_package_and_its_imports() -> None:
 
 
 TESTED_IN = {
+    "core/assessment/results.py": "core/assessment/test_answer_key.py",
     "core/bodies/uniform.py": "core/bodies/test_solids.py",
     "core/certified/scene_samples.py": "core/certified/test_scenes.py",
     "core/systems/budget.py": "core/systems/methods/test_fixed_step.py",

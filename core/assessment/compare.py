@@ -209,6 +209,15 @@ def distance(reference: Reference, value: Any) -> float:
         return _bounded(_DISTANCES[reference.form](value, right, reference))
 
 
+def exchanged(rows: Floats, right: Floats) -> str:
+    """Return how axes are exchanged in samples that are right but for their order, as a sentence."""
+    order = min(permutations(range(3)), key=lambda order: float(np.abs(rows - right[:, list(order)]).max()))
+    moved = [k + 1 for k in range(3) if order[k] != k]
+    if len(moved) == 2:
+        return f"Axes {moved[0]} and {moved[1]} are exchanged."
+    return f"The axes stand in the order {', '.join(str(k + 1) for k in order)}."
+
+
 def _entries(value: Floats, right: Floats, reference: Reference) -> float:
     return float(np.abs(value - right).max(initial=0.0))
 

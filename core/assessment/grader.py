@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from core.assessment.asked_question import AssessedQuestion, Variation
 from core.assessment.claims import MOST_CLAIMS, Claim
-from core.assessment.compare import Floats, Judgement, Reference, compare
+from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
 from core.assessment.formulas import Formula
-from core.assessment.judged_formulas import FORMULA, judge_formula
-from core.assessment.method_search import Consistent, MethodSearch
+from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
-from core.assessment.samples import ExactSamples, SampleErrors, exchanged
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.work import spend
+
+if TYPE_CHECKING:
+    from core.assessment.method_search import Consistent, MethodSearch
+    from core.assessment.samples import ExactSamples, SampleErrors
+    from core.rotation.torque_free import TorqueFree
 
 CLAIM = 4
 """Work (`core.work`) of judging a claim."""
@@ -97,12 +99,42 @@ class JudgedSubmission:
     faults: list[InvalidParameter]
 
 
+class Question(Protocol):
+    """What is graded against: a question that is asked (`AssessedQuestion`), or the answer key of one."""
+
+    @property
+    def subject(self) -> str:
+        """Last steps of the endpoint's path."""
+
+    @property
+    def request(self) -> Any:
+        """As it was sent."""
+
+    def evaluate(self, request: Any) -> Callable[[Path], Any]:
+        """Ask a changed question; the result finds the value at a path of its answer, None where there is none."""
+
+    def reference(self, path: Path) -> Reference | None:
+        """Return the reference at a path of the answer, None if nothing that can be compared stands there."""
+
+    def samples(self, path: Path, times: Floats) -> Reference | None:
+        """Return a column of samples at other times, None if the path leads to no column."""
+
+    def parameters(self, names: Mapping[str, Path] | None) -> Mapping[str, tuple[Path, float, str]]:
+        """Return path, value and unit of the numbers of the request that formulas may name."""
+
+    def variations(self, path: Path, parameters: Mapping[str, tuple[Path, float, str]]) -> Sequence[Varied]:
+        """Return the question's parameters and the figure at a path, and those of variations of it."""
+
+    def rotation(self) -> TorqueFree | None:
+        """Return the free rotation that the question is about; None where its samples cannot be analysed."""
+
+
 class Grader:
     """Grades submissions to one question.
 
     Parameters
     ----------
-    asked : AssessedQuestion
+    asked : Question
     comparison : Comparison or None
         Of every figure that has none of its own.
     comparisons : mapping of str to Comparison
@@ -123,7 +155,7 @@ class Grader:
 
     def __init__(
         self,
-        asked: AssessedQuestion,
+        asked: Question,
         comparison: Comparison | None,
         comparisons: Mapping[str, Comparison],
         reveal: bool,
@@ -138,7 +170,7 @@ class Grader:
         self._samples: dict[tuple[str, bytes], Reference] = {}
         self._columns: dict[int, tuple[ExactSamples, MethodSearch]] = {}
         self._wrong: dict[int, WrongValues] = {}
-        self._variations: dict[Path, list[Variation]] = {}
+        self._variations: dict[Path, Sequence[Varied]] = {}
         self.looked_for = 0
 
     def judged(self, submission: Any) -> JudgedSubmission:
@@ -246,6 +278,10 @@ class Grader:
         system = self._asked.rotation() if self._reveal else None
         if system is None:
             return None
+        # Not at the top: with an answer key, nothing is imported that has to be compiled.
+        from core.assessment.method_search import MethodSearch
+        from core.assessment.samples import ExactSamples
+
         if id(reference) not in self._columns:
             column = (system, times, reference.value)
             search = MethodSearch(*column, solvers=len(self._columns) < MOST_SOLVED)

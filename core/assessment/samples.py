@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import permutations
 from math import isfinite
 
 import numpy as np
@@ -156,12 +155,3 @@ class ExactSamples:
 def _drift(values: Floats, start: float) -> float | None:
     worst = float(np.abs(values / start - 1.0).max()) if start else float("nan")
     return worst if isfinite(worst) else None
-
-
-def exchanged(rows: Floats, right: Floats) -> str:
-    """Return how axes are exchanged in samples that are right but for their order, as a sentence."""
-    order = min(permutations(range(3)), key=lambda order: float(np.abs(rows - right[:, list(order)]).max()))
-    moved = [k + 1 for k in range(3) if order[k] != k]
-    if len(moved) == 2:
-        return f"Axes {moved[0]} and {moved[1]} are exchanged."
-    return f"The axes stand in the order {', '.join(str(k + 1) for k in order)}."

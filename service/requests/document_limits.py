@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from service.problems import Fault, Refusal, pointer_of
+from core.errors import pointer_of
+from service.problems import Fault, Refusal
 
 _KEY_END = re.compile(rb'"[ \t\r\n]*:')
 _KEY = re.compile(rb'"(\w*)"[ \t\r\n]*:')

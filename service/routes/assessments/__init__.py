@@ -2,37 +2,33 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from functools import cache
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
 
+from core.assessment.answer_key import Document, Terms, key_of
 from core.assessment.asked_question import VARIATIONS
 from core.assessment.catalogue import MISTAKES
+from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
-from core.errors import InvalidParameter, MechanicsError, Path
+from core.assessment.results import reference_views, submission_view
+from core.errors import InvalidParameter, Path
 from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
-from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
-from service.requests.suggestions import nearest_path
-from service.routes.assessments.route_source import Refused, asked_question
+from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, AskedQuestion, QuestionTable
 from service.routes.assessments.submissions import SubmissionList
-from service.routes.assessments.views import AssessmentAnswer, reference_views, submission_view
-from service.routes.certified.answers import ROOT
+from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
 from service.schemas import Request
-
-WITHIN: Path = ("question", "request")
 
 FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
@@ -45,20 +41,10 @@ SECONDS_OF_A_SEARCH, SECONDS_OF_SOLVERS = 5e-3, 0.15
 SECONDS_OF_A_COLUMN = 2e-2
 """For the mistakes at some times."""
 
-SECONDS_OF_PROOF = 1e-3
-"""For proven digits."""
-
 CHANGED_BY_MISTAKES = 10
 """Changed questions that the mistakes of a figure are computed from, about."""
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
-
-
-class AskedQuestion(Request):
-    """A request to another endpoint, whose answer is the reference."""
-
-    path: str = Field(max_length=200, description="Of the endpoint, for example /v1/rotation/precession.")
-    request: dict[str, Any] = Field(description="The body that it would be sent.")
 
 
 class AssessmentRequest(Request):
@@ -108,33 +94,12 @@ reference."""
 
 def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> PostRoute:
     """Return the route that assesses answers to questions to `routes`, some of which have proven digits, too."""
-    table: Mapping[str, PostRoute] = {route.path: route for route in routes}
-    proven = {route.path: route for route in certified}
-
-    @cache
-    def reader(path: str) -> Reader[Any]:
-        route = table[path] if path in table else proven[path]
-        # The document that holds the request has been held against the service's own limits.
-        return Reader(route.question, Limits(10**4, 10**9, 10**9, 10**9), route.elsewhere)
-
-    def routed(question: AssessmentRequest) -> PostRoute:
-        path = question.question.path
-        if path not in table:
-            near = nearest_path(path, table)
-            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
-            raise _refusal(Fault("/question/path", "must be the path of a question that can be assessed", remedy))
-        return table[path]
+    table = QuestionTable(routes, certified)
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
-        route = routed(question)
         uncertainty = _uncertainty(question)
-        with _within_question():
-            twin = proven.get(ROOT + route.path.removeprefix("/v1"))
-            certified = None if twin is None else (twin, reader(twin.path).read)
-            asked = asked_question(
-                route, reader(route.path).read, question.question.request, budget, uncertainty, certified
-            )
-            warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
+        asked = table.answered(question.question, budget, uncertainty)
+        warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
         credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
         catalogue = credited(MISTAKES, credits)
@@ -151,9 +116,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         return {"results": results, **shown, "warnings": warnings}
 
     def price(question: AssessmentRequest, budget: Budget) -> float:
-        route = routed(question)
-        with _within_question():
-            once = route.price(reader(route.path).read(json.dumps(question.question.request).encode()), budget)
+        once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
         again = 1 + min(inputs, MOST_INPUTS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
         again += VARIATIONS * min(1, len(_claims_with("formula", question.submissions)))
@@ -171,16 +134,12 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         )
 
     def small(question: AssessmentRequest) -> bool:
-        route = table.get(question.question.path)
-        if route is None or len(question.submissions) > FEW_SUBMISSIONS:
-            return route is None
+        if len(question.submissions) > FEW_SUBMISSIONS:
+            return False
         if _claims_with("formula", question.submissions) or _claims_with("times", question.submissions):
             # The question is then asked in many variations, or methods are run.
             return False
-        try:
-            return route.small(reader(route.path).read(json.dumps(question.question.request).encode()))
-        except (Refusal, MechanicsError):
-            return True
+        return table.small(question.question)
 
     return PostRoute(
         "/v1/assessments",
@@ -194,6 +153,32 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         small,
         description=DESCRIPTION,
     )
+
+
+def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body: bytes) -> Document:
+    """Return the answer key of the question of an assessment: of all its figures, and of what its submissions claim.
+
+    Raises
+    ------
+    Refusal, MechanicsError
+        For what an assessment is refused with.
+    """
+    question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
+    asked = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
+    _check_tags(question.credits or {})
+    claimed: list[str] = []
+    timed: list[tuple[str, tuple[float, ...]]] = []
+    for pointer, entry in (pair for one in question.submissions if isinstance(one, dict) for pair in one.items()):
+        # What cannot be read is no example of what students claim.
+        with suppress(InvalidParameter):
+            times = Claim.read(entry).times
+            steps_of(pointer)
+            if times is None:
+                claimed.append(pointer)
+            else:
+                timed.append((pointer, tuple(times.tolist())))
+    terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question))
+    return key_of(asked, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
 
 
 def _claims_with(key: str, submissions: Sequence[Any]) -> list[dict[str, Any]]:
@@ -240,29 +225,3 @@ def _check_tags(credits: Mapping[str, float]) -> None:
         if tag not in known:
             path = ("credits", tag) if len(tag) <= 40 else ("credits",)
             raise InvalidParameter(path, "be the tag of a recognised mistake", remedy="GET /v1/mistakes lists them")
-
-
-@contextmanager
-def _within_question() -> Iterator[None]:
-    """Have refusals of the question point into the document that holds it."""
-    try:
-        yield
-    except Refusal as refusal:
-        raise _moved(refusal.problem) from None
-    except Refused as refused:
-        raise _moved(refused.refusal.problem) from None
-    except MechanicsError as error:
-        error.path = (*WITHIN, *error.path)
-        raise
-
-
-def _moved(problem: Problem) -> Refusal:
-    """Return the refusal of the question itself, with pointers into the document that holds it."""
-    faults = problem.faults or (Fault("", problem.detail),)
-    moved = [Fault("/question/request" + fault.pointer, fault.detail, fault.remedy) for fault in faults]
-    code = problem.type.code if problem.type.status == 422 else "invalid-parameter"
-    return Refusal(code, headline(moved), faults=moved, extra=problem.extra)
-
-
-def _refusal(fault: Fault) -> Refusal:
-    return Refusal("invalid-parameter", headline([fault]), faults=[fault])

@@ -7,11 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from core.assessment.compare import Form, Verdict
-from core.assessment.grader import FEEDBACK, Grader, JudgedClaim, JudgedSubmission
 from core.quantities import Unit
-from service.problems import Fault, pointer_of
-from service.routing import Answer
-from service.schemas import Envelope, RadiansPerSecond, Ratio, Seconds, View, fields_of
+from service.schemas import Envelope, RadiansPerSecond, Ratio, Seconds, View
 from service.schemas import Fault as FaultView
 
 OwnUnit = Unit("as in the field unit")
@@ -123,56 +120,3 @@ class AssessmentAnswer(Envelope):
     reference: list[ReferenceFigure] | None = Field(
         default=None, description="Of every figure that was claimed; left out unless revealed."
     )
-
-
-def submission_view(index: int, judged: JudgedSubmission, *, reveal: bool) -> Answer:
-    """Return the result of a submission, `SubmissionResult`."""
-    claims = judged.claims
-    gradable = not judged.faults and all(one.judgement.correct is not None for one in claims)
-    faults = [
-        Fault(pointer_of(("submissions", index, *fault.path)), f"must {fault.rule}", fault.remedy)
-        for fault in judged.faults
-    ]
-    return {
-        "score": sum(one.score or 0.0 for one in claims) / len(claims) if gradable else None,
-        "correct": all(one.judgement.correct for one in claims) if gradable else None,
-        "gradable": gradable,
-        "format_errors": [fault.document() for fault in faults],
-        "tests": [_claim_view(one, reveal=reveal) for one in claims],
-        "matches": list(dict.fromkeys(mistake.tag for one in claims for mistake in one.mistakes)),
-        "feedback": " ".join(dict.fromkeys(one.feedback for one in claims)) or FEEDBACK["unreadable"],
-    }
-
-
-def _claim_view(judged: JudgedClaim, *, reveal: bool) -> Answer:
-    judgement = judged.judgement
-    result: Answer = {
-        "pointer": judged.pointer,
-        "verdict": judgement.verdict,
-        "correct": judgement.correct,
-        "score": judged.score,
-        "matches": [{"tag": one.tag, "credit": one.credit, "feedback": one.feedback} for one in judged.mistakes],
-        "feedback": judged.feedback,
-    }
-    if reveal:
-        result["error"] = {
-            "absolute": judgement.absolute,
-            "relative": judgement.relative,
-            "in_tolerances": judgement.in_tolerances,
-            "tolerance": judgement.tolerance,
-            "sensitive": judgement.sensitive_error,
-            "unit": judged.reference.unit,
-        }
-    if judged.samples is not None:
-        errors, method = judged.samples
-        result["samples"] = fields_of(errors) | {"consistent_with": method}
-    return result
-
-
-def reference_views(grader: Grader) -> list[Answer]:
-    """Return the references that were needed, in the order in which they were, each a `ReferenceFigure`."""
-    shown = ("value", "unit", "form", "error", "how", "inherited", "body_axis", "sensitive")
-    return [
-        {"pointer": pointer} | {name: getattr(reference, name) for name in shown}
-        for pointer, reference in grader.references.items()
-    ]

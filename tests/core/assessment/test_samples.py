@@ -7,7 +7,8 @@ from random import Random
 import numpy as np
 import pytest
 
-from core.assessment.samples import ExactSamples, SampleErrors, exchanged
+from core.assessment.compare import exchanged
+from core.assessment.samples import ExactSamples, SampleErrors
 from core.bodies import PrincipalMoments
 from core.rotation.torque_free import TorqueFree
 from tests.core.assessment.student_integrators import euler, gyration, marched, motion
