@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody import laws
+from core.multibody import attraction, laws
 from core.multibody.coordinates import Coordinates, dimension_of
 from core.multibody.language import GROUND, Scene
 from core.multibody.measures import Measures, perpendicular
@@ -126,6 +126,10 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
         laws.spring(measures, name, connection, path)
     elif kind == "torsion-spring":
         laws.torsion_spring(measures, name, connection, path)
+    elif kind == "gravitation":
+        attraction.gravitation(measures, name, connection, path)
+    elif kind == "inverse-square":
+        attraction.inverse_square(measures, name, connection, path)
     elif kind == "damper":
         laws.damper(measures, name, connection, path)
     elif kind == "motor":

@@ -87,6 +87,7 @@ class Measures:
         self.potential = ONE - ONE
         self.conservative = True
         self._lengths: dict[Any, int] = {}
+        self._inverses: dict[int, int] = {}
 
     def hold(self, name: str, measure: Poly) -> int:
         """Add a measure that stays zero and return the number of its row."""
@@ -151,6 +152,14 @@ class Measures:
         self.limits.append(Limit("singular", name, length=coordinate(index)))
         self._lengths[key] = index
         return index
+
+    def inverse(self, name: str, length: int) -> int:
+        """Return the coordinate that is one over a length, made once for each."""
+        if length not in self._inverses:
+            index = self.table.coordinate(f"{name}.inverse", "1/m", 1 / self.table.q[length])
+            self.hold(name, {(length, index): ONE, (): -ONE})
+            self._inverses[length] = index
+        return self._inverses[length]
 
     def aligned(self, name: str, a: str | None, b: str | None, components: Sequence[Ball], path: Path) -> list[int]:
         """Hold a direction of body `a`, given in space at the start, in body `b`."""

@@ -10,6 +10,7 @@ from core.multibody.assembly import assemble_places, assemble_rates
 from core.multibody.description import Described, described
 from core.multibody.dynamics import accelerations, parts, restricted, singular_row
 from core.multibody.generic_equation import SceneSystem, scene_system
+from core.multibody.kepler import keplerian
 from core.multibody.language import Scene
 from core.multibody.modes import Modes
 from core.multibody.motion import Motion, Rest
@@ -134,7 +135,7 @@ def _motion(piece: Piece) -> Motion:
         return Uniform(part, gain)
     if linear and not part.gyration:
         return Modes.of(part, chosen)
-    found: Motion | None = repeating(part, gain, chosen) or precessing(part, gain, chosen)
+    found: Motion | None = keplerian(part) or repeating(part, gain, chosen) or precessing(part, gain, chosen)
     if found is not None:
         return found
     free = piece.freedom

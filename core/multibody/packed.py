@@ -21,7 +21,7 @@ from core.multibody.table import Table
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-GROUPS = {"1": 0, "m": 1, "rad": 2, "s": 3}
+GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 4}
 """Coordinates of one unit share the scale by which steps are chosen."""
 
 
@@ -134,7 +134,7 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     if pull is not None:
         times.append((size - pull) // 2)
     time = min(times, default=0)
-    lengths = [{"1": 0, "rad": 0, "m": size, "s": time}[unit] for unit in table.units]
+    lengths = [{"1": 0, "rad": 0, "m": size, "1/m": -size, "s": time}[unit] for unit in table.units]
     masses = [e + lengths[i] + lengths[j] for (i, j), x in table.mass.items() if (e := exponent(x)) is not None]
     rows = []
     for row in table.rows:
