@@ -75,8 +75,12 @@ class Numerical:
         found = self._runs.get(key)
         if found is not None and (abs(found.end) >= abs(end) or found.singular):
             return found
-        self._runs[key] = integrate(self.table, self.arrays, self.units, kind, end)
+        self._runs[key] = self.steps(kind, end)
         return self._runs[key]
+
+    def steps(self, kind: str, end: float) -> Run:
+        """Take steps to a time in the units of the arrays."""
+        return integrate(self.table, self.arrays, self.units, kind, end)
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, and how far they are from a run in pairs."""

@@ -2,14 +2,16 @@
 
 *Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
 leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a difference of two squares is
-the factor that vanishes. *Separate*: what nothing ties to a place falls as its centre of mass does. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants; this pass
-serves the motion from the given start only, never questions about its surroundings.
+the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants. *Separate*:
+what nothing ties to a place falls as its centre of mass does. The last two serve the motion from the given start only,
+never questions about its surroundings.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from core.multibody.centre_of_mass import centred, free_shift
 from core.multibody.dynamics import undetermined, weightless
 from core.multibody.polynomials import (
     ONE,
@@ -26,7 +28,6 @@ from core.multibody.polynomials import (
     substituted,
     variables,
 )
-from core.multibody.centre_of_mass import centred, free_shift
 from core.multibody.rank import Elimination
 from core.multibody.table import Row, Table, identity
 
