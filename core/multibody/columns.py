@@ -45,6 +45,8 @@ class Columns:
                 found[f"{name}.axis"] = self._vector(frame.axis[1], "1", rates=False)
             elif frame.axes is not None:
                 found.update(self._attitude(name, frame.axes))
+            elif frame.turns is not None:
+                found[f"{name}.angular_velocity_in_space"] = self._vector(frame.turns, "rad/s", rates=True)
         return found
 
     def forces(self, chosen: Sequence[Force]) -> dict[str, Column]:

@@ -14,6 +14,7 @@ from core.multibody.measures import Measures, perpendicular
 from core.multibody.numerals import Numerals
 from core.multibody.polynomials import ONE, constant, difference, evaluated, is_zero
 from core.multibody.rolling import rolling
+from core.multibody.rolling_in_space import rolling_in_space
 from core.multibody.strings import string
 
 _TURNED = ("torsion-spring", "motor", "torque")
@@ -87,7 +88,7 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
                     see(place, "turn")
         if kind == "rolling":
             for place in (connection.place, connection.a, connection.b):
-                see(place, "turn", "orientation")
+                see(place, "turn")
         if kind in _TURNED or (kind == "damper" and connection.measure == "turn"):
             for place in (getattr(connection, "a", None), getattr(connection, "b", None)):
                 see(place, "turn")
@@ -112,7 +113,7 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
     if kind == "string":
         string(measures, name, connection, path)
     elif kind == "rolling":
-        rolling(measures, name, connection, path)
+        (rolling if measures.dimension == 2 else rolling_in_space)(measures, name, connection, path)
     elif kind == "track":
         measures.on_curve(name, point(connection.place, (*path, "place")), connection.on, path)
     elif kind in ("pin", "ball-joint", "weld", "slider", "rod"):

@@ -131,7 +131,11 @@ def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -
     if measures.dimension == 3 and not all(is_zero(coordinates.gravity[i]) for i in planar):
         raise InvalidParameter((*path, "about"), "be about the z axis: gravity has to be along it")
     for frame in coordinates.frames.values():
-        if frame.axis is not None or (measures.dimension == 2 and frame.turn is not None and frame.direction is None):
+        if (
+            frame.axis is not None
+            or frame.turns is not None
+            or (measures.dimension == 2 and frame.turn is not None and frame.direction is None)
+        ):
             raise InvalidParameter(path, f'have no top or wheel whose spin is counted apart, as "{frame.name}" is')
         vectors = [frame.position]
         if frame.direction is not None:

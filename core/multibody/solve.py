@@ -241,6 +241,11 @@ def _accelerations(found: Described, full: Sequence[Ball]) -> Mapping[str, BodyA
             angular = tuple(
                 float(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
             )
+        elif frame.turns is not None and frame.start_axes is not None:
+            angular = tuple(
+                float(sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO))
+                for axis in frame.start_axes
+            )
         answer[name] = BodyAcceleration(tuple(float(full[i]) for i in frame.position), angular)
     return answer
 
