@@ -73,9 +73,9 @@ def _quadratic(table: Table, inside: set[int]) -> bool:
 
 
 def _conditions(table: Table, inside: set[int]) -> Iterator[Line]:
-    """Yield the linear equations of a direction that nothing sees."""
+    """Yield the linear equations of a direction in space that nothing sees."""
     for i in inside:
-        if table.units[i] == "s":
+        if table.units[i] != "m":
             yield {i: ONE}
     for row in table.rows:
         if not inside & set(row.rates):

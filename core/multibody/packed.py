@@ -124,10 +124,14 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         times.append(-turn)
     if spin is not None:
         times.append(-(spin // 2))
-    if size is None and rate is not None and pull is not None:
-        size = 2 * rate - pull
-    if size is None and times and (rate is not None or pull is not None):
-        size = rate + min(times) if rate is not None else (pull or 0) + 2 * min(times)
+    if size is None:
+        # What starts at the origin is measured by how far it comes until it turns back, or something else has turned.
+        ways = []
+        if rate is not None and pull is not None:
+            ways.append(2 * rate - pull)
+        if times and (rate is not None or pull is not None):
+            ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
+        size = min(ways, default=None)
     size = 0 if size is None else size
     if rate is not None:
         times.append(size - rate)

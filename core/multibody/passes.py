@@ -3,8 +3,8 @@
 *Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
 leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a difference of two squares is
 the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants.
-*Separate*: what nothing ties to a place falls as its centre of mass does. The last two serve the motion from the given start only,
-never questions about its surroundings.
+*Separate*: what nothing ties to a place falls as its centre of mass does. The last two serve the motion from the given
+start only, never questions about its surroundings.
 """
 
 from __future__ import annotations
