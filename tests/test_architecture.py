@@ -173,6 +173,7 @@ TESTED_IN |= {
         "generic_equation": "trajectories",
         "description": "coordinates inertia laws measures rolling strings",
         "language": "reading",
+        "along": "integrals",
         "free_body": "turning_body",
         "numerical": "packed periods returns series series_pairs vertical_symmetry",
         "solve": "answer dynamics events modelling motion uniform whole",

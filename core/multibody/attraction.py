@@ -10,7 +10,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Point
-from core.multibody.measures import Force, Measures
+from core.multibody.measures import Force, Measures, Work
 from core.multibody.polynomials import Ball, entry, is_zero
 
 
@@ -57,3 +57,4 @@ def _attract(measures: Measures, name: str, ends: tuple[Point, Point], strength:
     index = measures.inverse(name, measures.length(name, *ends, path))
     measures.table.add_load(index, strength)
     measures.forces.append(Force(f"{name}.force", "N", [], {(index, index): strength}))
+    measures.works.append(Work(name, {(index,): -strength}))

@@ -57,7 +57,7 @@ def centred(table: Table, shift: Line) -> tuple[list[Poly], tuple[Ball, Ball], s
             if k != pivot:
                 expression[k,] = -t * weight
         if j != pivot:
-            expression[j,] = expression.get((j,), ZERO) + 1
+            expression[j,] = entry(expression, (j,)) + 1
         expressions[j] = {key: x for key, x in expression.items() if 0 not in x}
     q = sum((x * table.q[j] for j, x in weights.items()), ZERO)
     v = sum((x * table.v[j] for j, x in weights.items()), ZERO)

@@ -10,9 +10,9 @@ from core.errors import InvalidParameter, Path
 from core.multibody import attraction, laws
 from core.multibody.coordinates import Coordinates, dimension_of
 from core.multibody.language import GROUND, Scene
-from core.multibody.measures import Measures, perpendicular
+from core.multibody.measures import Measures, Work, perpendicular
 from core.multibody.numerals import Numerals
-from core.multibody.polynomials import ONE, constant, difference, evaluated, is_zero
+from core.multibody.polynomials import ONE, Poly, constant, difference, evaluated, is_zero
 from core.multibody.rolling import rolling
 from core.multibody.rolling_in_space import rolling_in_space
 from core.multibody.strings import string
@@ -47,7 +47,20 @@ def described(scene: Scene, numerals: Numerals | None = None) -> Described:
     for i, (name, connection) in enumerate(zip(names, scene.connections, strict=True)):
         paths[name] = ("connections", i)
         _connect(measures, name, connection, ("connections", i))
+    if "gravity" not in paths:
+        measures.works.extend(_weight(measures))
     return Described(scene, measures, paths)
+
+
+def _weight(measures: Measures) -> list[Work]:
+    """Return what gravity does, where there is any."""
+    fall: Poly = {}
+    for frame in measures.coordinates.frames.values():
+        for i, pull in zip(frame.position, measures.coordinates.gravity, strict=True):
+            mass = measures.table.mass.get((i, i))
+            if mass is not None and not is_zero(pull):
+                fall[i,] = -mass * pull
+    return [Work("gravity", fall)] if fall else []
 
 
 def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:

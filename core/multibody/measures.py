@@ -55,6 +55,30 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Work:
+    """What takes or brings energy: a potential, or a power.
+
+    Attributes
+    ----------
+    name : str
+    potential : polynomial or None
+        Whose fall is the work.
+    square : (ball, dict) or None
+        Of a damper: coefficient and the linear form in the rates whose square it takes.
+    terms : list of (ball, coordinate, rate)
+        Power as factor times coordinate times rate.
+    rows : list of (row, polynomial)
+        Power of what is driven: the multiplier of the row times less what the row says of the clock.
+    """
+
+    name: str
+    potential: Poly | None = None
+    square: tuple[Ball, dict[int, Ball]] | None = None
+    terms: list[tuple[Ball, int, int]] = field(default_factory=list)
+    rows: list[tuple[int, Poly]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
 class Limit:
     """Something that has to stay positive, and whose loss ends a scene.
 
@@ -84,6 +108,7 @@ class Measures:
         self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
         self.forces: list[Force] = []
         self.limits: list[Limit] = []
+        self.works: list[Work] = []
         self.potential = ONE - ONE
         self.conservative = True
         self._lengths: dict[Any, int] = {}

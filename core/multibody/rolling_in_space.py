@@ -13,7 +13,7 @@ from typing import Any
 from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Point, Rate
 from core.multibody.laws import clock
-from core.multibody.measures import COMPONENTS, Measures, perpendicular, unit
+from core.multibody.measures import COMPONENTS, Measures, Work, perpendicular, unit
 from core.multibody.polynomials import (
     ONE,
     ZERO,
@@ -84,6 +84,7 @@ class _Surface:
         measures.force(f"{name}.normal", [(gap, constant(ONE))])
         turning = measures.numerals.number(rate, (*self.path, "rate"))
         rows, across = [], perpendicular(n, self.path)
+        driven: list[tuple[int, Poly]] = []
         for e in across:
             parts = [*self._velocity(e), self._spin([-self.radius * x for x in _cross(n, e)])]
             if not is_zero(turning):
@@ -91,7 +92,10 @@ class _Surface:
                 carried = combined(*((-turning * x, self.d[i]) for i, x in enumerate(_cross(e, n))))
                 parts.append((carried, {clock(measures): constant(ONE)}))
                 measures.conservative = False
+                driven.append((len(measures.table.rows), carried))
             rows.append(measures.roll(name, sum_of_rates(*parts)))
+        if driven:
+            measures.works.append(Work(name, rows=driven))
         for i, axis in enumerate(COMPONENTS):
             terms = [(row, constant(e[i])) for row, e in zip(rows, across, strict=True) if not is_zero(e[i])]
             measures.force(f"{name}.friction.{axis}", terms)

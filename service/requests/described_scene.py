@@ -17,11 +17,15 @@ from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
 from core.multibody import language
+from core.multibody.occurrences import MOST_FOUND, ExtremesOf, When
 from core.multibody.reading import scene_from
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
 from service.schemas import ROUND, Request, Rounding, Times
+
+MOST_OUTPUTS = 30
+"""Outputs of one question, among them searches along the motion."""
 
 
 class AngleInDegrees(Request):
@@ -100,6 +104,32 @@ ConnectionReadByCore: Any = _by_core(SceneConnection)
 SCENE_FIELDS = tuple(entry.name for entry in fields(language.Scene))
 
 
+class WhenQuestion(Request):
+    """A quantity, and the value that it is to take."""
+
+    quantity: str = Field(
+        description="A column, such as rod.angle or s.tension; of a vector a component, such as ball.position.x, or "
+        "its length, such as ball.velocity.length.",
+        max_length=100,
+    )
+    equals: float = Field(description="In the unit of the quantity.")
+    nth: int | None = Field(
+        default=None, ge=1, le=MOST_FOUND, description="Which time after the start; every one if left out."
+    )
+
+
+class WhenOutput(Request):
+    """When a quantity takes a value, between the start and the latest of the times."""
+
+    when: WhenQuestion
+
+
+class ExtremesOutput(Request):
+    """How small and how large a quantity becomes, between the start and the latest of the times."""
+
+    extremes: str = Field(description="A quantity, named as in when.", max_length=100)
+
+
 class SceneDescription(Request):
     """Bodies, and what connects them."""
 
@@ -162,6 +192,23 @@ class DescribedSceneRequest(SceneDescription):
         "If it is given, accuracy.inherited says what it does to places and rates. Formulas are exact.",
     )
     round: Rounding | None = ROUND
-    outputs: list[Output] | None = Field(
-        default=None, min_length=1, description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}."
+    outputs: list[Output | WhenOutput | ExtremesOutput] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=MOST_OUTPUTS,
+        description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}. work-in-time: what gravity, springs, "
+        "dampers, motors and forces have done; paths-in-time: lengths of paths; momenta-in-time: momenta and, about "
+        "the origin, angular momenta.",
     )
+
+    def asked(self) -> tuple[Output | When | ExtremesOf, ...]:
+        """Return the outputs as core takes them."""
+        found: list[Output | When | ExtremesOf] = []
+        for output in DEFAULT_OUTPUTS if self.outputs is None else self.outputs:
+            if isinstance(output, WhenOutput):
+                found.append(When(output.when.quantity, output.when.equals, output.when.nth))
+            elif isinstance(output, ExtremesOutput):
+                found.append(ExtremesOf(output.extremes))
+            else:
+                found.append(output)
+        return tuple(found)

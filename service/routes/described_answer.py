@@ -105,6 +105,32 @@ class EndEvent(View):
     error: Seconds[float]
 
 
+class SceneOccurrence(View):
+    """A time at which a quantity takes the value that was asked for."""
+
+    quantity: str
+    equals: Annotated[float, OwnUnit]
+    unit: str
+    nth: int = Field(description="Counted from 1, after the start.")
+    time: Seconds[float]
+    error: Seconds[float] = Field(description="Of the time.")
+    how: How = Field(description="How the error of the quantity is known.")
+
+
+class SceneExtremes(View):
+    """Least and largest value of a quantity."""
+
+    quantity: str
+    unit: str
+    least: Annotated[float, OwnUnit]
+    least_time: Seconds[float]
+    largest: Annotated[float, OwnUnit]
+    largest_time: Seconds[float] = Field(description="Near a smooth extreme known to half of the digits only.")
+    error: Annotated[float, OwnUnit] = Field(description="Of both values.")
+    until: Seconds[float] = Field(description="End of what was searched, from the start.")
+    periodic: bool = Field(description="Whether that is a period, so that the extremes are those of all time.")
+
+
 class SceneEquilibrium(View):
     """A place where the scene can rest."""
 
@@ -150,5 +176,7 @@ class DescribedSceneAnswer(Envelope):
     )
     events: list[EndEvent]
     trajectory: DescribedTrajectory | None = None
+    occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was asked for, in its order.")
+    extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were asked for.")
     equilibria: list[SceneEquilibrium] | None = None
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

@@ -13,7 +13,7 @@ from core.errors import BudgetExceeded
 from core.multibody.answer import SceneModel
 from core.multibody.generic_equation import weight_of
 from core.multibody.inherited import MOST_INPUTS
-from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
+from core.multibody.solve import OUTPUTS, solve_scene
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.from_scipy import FromSciPy
@@ -52,6 +52,9 @@ QUICK = 10.0
 SEARCHED = 10_000.0
 """Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
+FOLLOWED = 2000
+"""Samples that a search along the motion takes, or a sum."""
+
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
 
@@ -59,11 +62,10 @@ LONGEST = 4000.0
 def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     """Answer a question about a described scene."""
     times = () if question.times is None else sample_times(question.times, budget)
-    outputs = DEFAULT_OUTPUTS if question.outputs is None else question.outputs
     found = solve_scene(
         question.scene(),
         times,
-        outputs,
+        question.asked(),
         question.accuracy,
         method=question.method,
         input_uncertainty=question.input_uncertainty,
@@ -88,6 +90,8 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         columns = {name: fields_of(column) for name, column in motion.columns.items()}
         answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}
         answer["accuracy"] = motion.accuracy
+    if found.occurrences is not None:
+        answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
         answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
     return answer
@@ -124,7 +128,8 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         "connections times pairs of bodies": connections * bodies**2,
     }
     if question.times is not None:
-        samples = sample_count(question.times, budget)
+        # What is searched or summed up along the motion looks at it as often as thousands of samples do.
+        samples = sample_count(question.times, budget) + FOLLOWED * len(_along(question))
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
         coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
         found |= {
@@ -142,6 +147,12 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     if "equilibria" in (question.outputs or ()):
         found |= {"searches": bodies, "searches of pairs": bodies**2}
     return found
+
+
+def _along(question: DescribedSceneRequest) -> list[Any]:
+    """Return the outputs that need the motion between the samples."""
+    summed = ("work-in-time", "paths-in-time")
+    return [one for one in question.outputs or () if not isinstance(one, str) or one in summed]
 
 
 def _of_method(question: DescribedSceneRequest, bodies: float, connections: float) -> dict[str, float]:
@@ -178,7 +189,10 @@ def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
     few = instants[few_of(instants.size)]
     reach = min(NEAR, FEW_STEPS * getattr(question.method, "step", NEAR))
     near = few * min(1.0, reach / max(reach, float(np.abs(few).max())))
-    changes = {"times": near.tolist(), "input_uncertainty": None}
+    changes: dict[str, Any] = {"times": near.tolist(), "input_uncertainty": None}
+    if question.outputs is not None:
+        along = _along(question)
+        changes["outputs"] = [one for one in question.outputs if one not in along] or ["trajectory"]
     fields = _without_long_searches(question.model_copy(update=changes), budget)
     if hasattr(question.method, "step"):
         _require_affordable(question, fields["model"], budget)
