@@ -232,6 +232,9 @@ def _model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
         name, why = apart[0].name, apart[0].why
     else:
         name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
+    spins = any(not is_zero(frame.spin_momentum) for frame in found.described.measures.coordinates.frames.values())
+    if name == "rest" and spins:
+        name, why = "steady spin", "what turns spins steadily about its axis, and nothing moves its centre or the axis"
     return SceneModel(
         name,
         why,

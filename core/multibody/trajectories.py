@@ -13,7 +13,7 @@ from core.multibody.answer import Column, Extremes, How, Occurrence, SceneAccura
 from core.multibody.columns import Columns, apart, relative, worst
 from core.multibody.events import first_event
 from core.multibody.generic_equation import SceneSystem
-from core.multibody.inherited import changes, horizon, looks
+from core.multibody.inherited import Derived, changes, horizon, looks
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.numerical import Numerical
@@ -113,7 +113,8 @@ def trajectory_of(
         )
         stated = SceneAccuracy(asked.accuracy, worst(columns), sampling.how(method))
         if asked.input_uncertainty is not None and len(times):
-            columns, stated = _with_inherited(scene, found, times, columns, stated, asked.input_uncertainty)
+            follow = sampling.following
+            columns, stated = _with_inherited(scene, found, times, columns, stated, asked.input_uncertainty, follow)
     warnings = () if method is None else _warnings(stated, method)
     kind = None if method is None else method.kind
     trajectory = SceneTrajectory(times, rows, columns, stated, kind, work, warnings)
@@ -127,16 +128,20 @@ def _with_inherited(
     columns: dict[str, Column],
     stated: SceneAccuracy,
     uncertainty: float,
+    follow: Derived,
 ) -> tuple[dict[str, Column], SceneAccuracy]:
     """Add what the uncertainty of the inputs does, or why that is not known."""
     try:
-        known = changes(scene, found, np.concatenate([times, looks(times)]))
+        known = changes(scene, found, np.concatenate([times, looks(times)]), follow)
         moved = known.of_columns(np.arange(len(times)))
     except MechanicsError as fault:
         return columns, replace(stated, why=fault.detail)
     own = {name: column for name, column in columns.items() if name in moved}
     if not own:
-        return columns, replace(stated, why="it is propagated to places and rates alone, and none were asked for")
+        return columns, replace(
+            stated, why="it is not propagated to what is summed up along the motion, and there is nothing else"
+        )
+    moved = {name: moved[name] for name in own}
     share = uncertainty * relative(moved, own)
     until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
     why = None if until is not None else "the change stays below the accuracy at all of the times"
@@ -281,8 +286,17 @@ class _Sampling:
             return columns.energy()
         if group == "momenta-in-time":
             return columns.momenta()
-        forces = self.whole.measures.forces
+        forces = columns.whole.measures.forces
         return columns.forces([f for f, known in zip(forces, self.determined, strict=True) if known])
+
+    def following(self, whole: Whole, times: Floats, states: WholeStates) -> dict[str, Column]:
+        """Return the columns that were asked for and that follow from the states of a scene like this one."""
+        columns = Columns(whole, times, states, "closed form")
+        found: dict[str, Column] = {}
+        for group in _GROUPS[1:]:
+            if group in self.outputs:
+                found.update(self._group(columns, group))
+        return found
 
     def measured(self, states: WholeStates) -> dict[str, Column]:
         """Return the columns of states that a method computed, their errors measured against the motion itself."""

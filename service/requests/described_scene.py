@@ -189,7 +189,7 @@ class DescribedSceneRequest(SceneDescription):
     input_uncertainty: Uncertainty | None = Field(
         default=None,
         description="Relative uncertainty of every number of the description, 1.1e-16 for numbers known as doubles. "
-        "If it is given, accuracy.inherited says what it does to places and rates. Formulas are exact.",
+        "If it is given, accuracy.inherited says what it does to the samples. Formulas are exact.",
     )
     round: Rounding | None = ROUND
     outputs: list[Output | WhenOutput | ExtremesOutput] | None = Field(

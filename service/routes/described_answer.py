@@ -83,8 +83,8 @@ class SceneColumn(View):
     error: Annotated[float, OwnUnit] = Field(description="Largest error of any row, as the length of a vector.")
     how: How
     inherited: Annotated[float | None, OwnUnit] = Field(
-        description="Largest change of any row by input_uncertainty, to first order; null for forces and energies, and "
-        "where it is not known."
+        description="Largest change of any row by input_uncertainty, to first order; null for what is summed up along "
+        "the motion, and where it is not known."
     )
 
 
@@ -151,7 +151,7 @@ class DescribedAccuracy(View):
         "measured against closed form: of a method, the difference from it with its bound added."
     )
     inherited: Ratio[float] | None = Field(
-        description="Largest change of any column of places and rates by input_uncertainty, to first order, relative "
+        description="Largest change of any column by input_uncertainty, to first order, relative "
         "to the largest value in its unit; null where it is not asked for or not known."
     )
     horizon: Seconds[float] | None = Field(

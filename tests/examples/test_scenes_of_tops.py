@@ -46,7 +46,7 @@ def test_the_precessing_top(answer_of):
 def test_the_sleeping_top(answer_of):
     """z = x + i y: I1 z'' - i I3 w3 z' - m g l z = 0; stable while (I3 w3)^2 > 4 I1 m g l."""
     answer = answer_of("scenes/sleeping-top")
-    assert answer["model"]["name"] == "rest"
+    assert answer["model"]["name"] == "steady spin"
     assert columns(answer)["top.axis"].tolist() == 6 * [[0.0, 0.0, 1.0]]
     hanging, upright = answer["equilibria"]
     momentum, weight, inertia = 0.24, 0.981, 0.012
