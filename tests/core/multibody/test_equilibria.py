@@ -134,6 +134,28 @@ def test_a_rod_on_a_torsion_spring_stands_in_three_ways() -> None:
     assert angles[1][2] == (pytest.approx((0.0, growth), rel=1e-12),)
 
 
+@pytest.mark.parametrize(("spin", "grows"), [(108.49884, True), (108.49886, False)])
+def test_a_sleeping_top_is_held_by_a_spin_above_its_threshold(spin: float, grows: bool) -> None:
+    """I3 w3 = 2 sqrt(I1 M g l), w3 = 108.49884792015075 rad/s with M = 1, l = 0.1, I1 = 0.012, I3 = 0.002."""
+    top = {
+        "mass": 1,
+        "moments": [0.002, 0.002, 0.002],
+        "at": [0, 0, 0.1],
+        "angular_velocity": [0, 0, spin],
+        "places": {"tip": [0, 0, -0.1]},
+    }
+    scene = {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"top": top},
+        "connections": [{"kind": "pin", "a": "top.tip", "b": [0, 0, 0]}],
+    }
+    answer = solve_scene(read(scene), outputs=("equilibria",))
+    assert answer.model.name == "steady spin"
+    assert answer.equilibria is not None
+    upright = next(one for one in answer.equilibria if one.positions["top"][2] > 0)
+    assert (max(growth for _, growth in upright.modes) > 1e-3) is grows
+
+
 def test_a_weak_torsion_spring_may_be_wound_up() -> None:
     """k phi = m g l sin(phi), k small: windings of more than a turn are equilibria, too."""
     scene = {
