@@ -79,7 +79,7 @@ def test_problems_are_raised() -> None:
     assert (caught.value.status, caught.value.code, caught.value.problem) == (422, "invalid-parameter", problem)
 
 
-def test_a_busy_service_is_asked_again() -> None:
+def test_a_busy_service_is_retried() -> None:
     busy = httpx.Response(429, json={"status": 429, "code": "too-busy", "detail": "d"}, headers={"retry-after": "0"})
     client, asked = answering(busy, busy, httpx.Response(200, json={"answer": 1}))
     assert client.post("/x", {}) == {"answer": 1}

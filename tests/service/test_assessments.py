@@ -344,7 +344,7 @@ def test_without_reveal_equal_verdicts_are_equal_bytes(scale: float, seed: int) 
     assert hidden(0, 1.0)["results"][0]["correct"]
 
 
-async def test_without_reveal_nothing_is_told_by_warnings_or_errors_either() -> None:
+async def test_without_reveal_nothing_is_revealed_by_warnings_or_errors_either() -> None:
     rod = {"path": ROD["path"], "request": {**ROD["request"], "hole_radius": 1.0, "angular_velocity": 0.0}}
     claim = {"times": [-1e9, 1.0], "value": [1.0, 2.0], "unit": "rad"}
     text = json.dumps(await graded(rod, {"/trajectory/angle": claim}, reveal=False))

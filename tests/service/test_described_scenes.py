@@ -391,7 +391,7 @@ class TestPlan:
         assert plan["answerable"]
         assert plan["cost"]["evaluations"] is None
 
-    async def test_refusals_are_told_where_they_stand(self) -> None:
+    async def test_refusals_are_reported_where_they_stand(self) -> None:
         plan = (await asked({"path": PATH, "request": of_rod(a="q")}, "/v1/plan")).json()
         assert [fault["pointer"] for fault in plan["errors"]] == ["/request/connections/0/a"]
 

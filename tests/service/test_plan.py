@@ -143,7 +143,7 @@ async def test_anything_can_be_planned(request_: Any) -> None:
             assert not (await planned(path, request_))["answerable"]
 
 
-async def test_an_unknown_path_is_told() -> None:
+async def test_an_unknown_path_is_reported() -> None:
     plan = await planned("/v1/nothing", {})
     assert [(entry["code"], entry["pointer"]) for entry in plan["errors"]] == [("not-found", "/path")]
     (fault,) = (await planned("/v1/rotation/trajectories", {}))["errors"]
