@@ -122,7 +122,7 @@ def solve_scene(
             check_search(output, i)
             if not np.max(moments, initial=0.0) > 0.0:
                 raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
-        elif output not in OUTPUTS:
+        elif not isinstance(output, str) or output not in OUTPUTS:
             raise InvalidParameter(("outputs", i), f"be one of {', '.join(OUTPUTS)}")
     if not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InvalidParameter("accuracy", "be greater than 0 and less than 1")

@@ -16,7 +16,9 @@ from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin, g
 from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
+from core.errors import InvalidParameter, Path
 from core.multibody import language
+from core.multibody.numerals import member
 from core.multibody.occurrences import MOST_FOUND, ExtremesOf, When
 from core.multibody.reading import scene_from
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
@@ -130,6 +132,10 @@ class ExtremesOutput(Request):
     extremes: str = Field(description="A quantity, named as in when.", max_length=100)
 
 
+AskedOutput = Annotated[Output | WhenOutput | ExtremesOutput, SkipValidation()]
+"""What may be asked for; core says what is wrong with it, with one place for each fault."""
+
+
 class SceneDescription(Request):
     """Bodies, and what connects them."""
 
@@ -192,7 +198,7 @@ class DescribedSceneRequest(SceneDescription):
         "If it is given, accuracy.inherited says what it does to the samples. Formulas are exact.",
     )
     round: Rounding | None = ROUND
-    outputs: list[Output | WhenOutput | ExtremesOutput] | None = Field(
+    outputs: list[AskedOutput] | None = Field(
         default=None,
         min_length=1,
         max_length=MOST_OUTPUTS,
@@ -203,12 +209,26 @@ class DescribedSceneRequest(SceneDescription):
 
     def asked(self) -> tuple[Output | When | ExtremesOf, ...]:
         """Return the outputs as core takes them."""
-        found: list[Output | When | ExtremesOf] = []
-        for output in DEFAULT_OUTPUTS if self.outputs is None else self.outputs:
-            if isinstance(output, WhenOutput):
-                found.append(When(output.when.quantity, output.when.equals, output.when.nth))
-            elif isinstance(output, ExtremesOutput):
-                found.append(ExtremesOf(output.extremes))
-            else:
-                found.append(output)
-        return tuple(found)
+        outputs = DEFAULT_OUTPUTS if self.outputs is None else self.outputs
+        return tuple(_searched(output, ("outputs", i)) for i, output in enumerate(outputs))
+
+
+def _searched(output: Any, path: Path) -> Any:
+    """Return an output as core takes it: a name, or a search along the motion."""
+    if not isinstance(output, Mapping):
+        return output
+    if set(output) == {"extremes"}:
+        return ExtremesOf(output["extremes"])
+    if set(output) != {"when"}:
+        raise InvalidParameter(path, 'be a name, {"when": {"quantity", "equals", "nth"}} or {"extremes": quantity}')
+    asked = output["when"]
+    if not isinstance(asked, Mapping):
+        raise InvalidParameter((*path, "when"), "be an object")
+    for key in asked:
+        if key not in WhenQuestion.model_fields:
+            known = ", ".join(WhenQuestion.model_fields)
+            raise InvalidParameter(member((*path, "when"), key), f"be left out; the fields here are {known}")
+    for key in ("quantity", "equals"):
+        if key not in asked:
+            raise InvalidParameter((*path, "when", key), "be given")
+    return When(asked["quantity"], asked["equals"], asked.get("nth"))
