@@ -120,19 +120,16 @@ class WhenQuestion(Request):
     )
 
 
-class WhenOutput(Request):
-    """When a quantity takes a value, between the start and the latest of the times."""
+class SearchOutput(Request):
+    """A search between the start and the latest of the times: one of its two fields is given."""
 
-    when: WhenQuestion
-
-
-class ExtremesOutput(Request):
-    """How small and how large a quantity becomes, between the start and the latest of the times."""
-
-    extremes: str = Field(description="A quantity, named as in when.", max_length=100)
+    when: WhenQuestion | None = Field(default=None, description="At which times a quantity takes a value.")
+    extremes: str | None = Field(
+        default=None, max_length=100, description="Of which quantity the least and the largest value are wanted."
+    )
 
 
-AskedOutput = Annotated[Output | WhenOutput | ExtremesOutput, SkipValidation()]
+AskedOutput = Annotated[Output | SearchOutput, SkipValidation()]
 """What may be asked for; core says what is wrong with it, with one place for each fault."""
 
 
