@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.errors import InvalidParameter
+from core.errors import AccuracyUnreachable, InvalidParameter
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, force, linear, read
 
@@ -71,3 +71,22 @@ def test_what_cannot_attract_is_refused_with_its_path(connection, path):
     with pytest.raises(InvalidParameter) as fault:
         solve_scene(two(connection, light={"mass": 0, "at": [5, 5]}))
     assert fault.value.path == path
+
+
+def test_what_comes_too_close_is_refused_with_where_and_when():
+    """Three equal masses at rest fall into their centre at pi/2 sqrt(r^3/2 mu), mu = 1/sqrt(3)."""
+    bodies = {name: {"mass": 1, "at": {"polar": [1, {"degrees": 120 * i}]}} for i, name in enumerate("abc")}
+    pairs = [{"kind": "gravitation", "a": a, "b": b, "constant": 1} for a, b in ("ab", "bc", "ca")]
+    scene = read({"bodies": bodies, "connections": pairs})
+    # Each is drawn by 1/(sqrt(3) r^2) towards the centre.
+    fall = np.pi / 2 / np.sqrt(2 / np.sqrt(3))
+    with pytest.raises(AccuracyUnreachable, match=f"{fall:.5f}"[:6]) as fault:
+        solve_scene(scene, [2.0])
+    assert fault.value.path == ("times",)
+    early = solve_scene(scene, [1.4])
+    central = {
+        "bodies": {"a": {"mass": 1, "at": [1, 0]}},
+        "connections": [{"kind": "inverse-square", "a": "a", "b": [0, 0], "strength": "1/sqrt(3)"}],
+    }
+    place, alone = column(early, "a.position"), column(solve_scene(read(central), [1.4]), "a.position")
+    assert place.values == pytest.approx(alone.values, abs=place.error + alone.error)
