@@ -35,7 +35,9 @@ SUMMARY = "A scene of your own: bodies and what connects them, answered by the s
 DESCRIPTION = """Two components mean the plane, three space. A number is the decimal that is written, with all its
 digits; it may also be a formula in quotes over the names in `let`, such as `"sqrt(2)/2"`, or `{"degrees": 30}`; a
 vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are left out follow from the connections.
-Forces that the scene does not determine are null.
+Forces that the scene does not determine are null. `outputs` may also ask when a quantity takes a value,
+`{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
+`{"extremes": "rod.force"}`, between the start and the latest of the times.
 
 Not covered yet: contact, friction, impacts, strings that become taut again, connections with `from` and `until`. They
 are refused, and a string that becomes slack ends the motion. It is not proven that all equilibria are found. A plan
@@ -231,6 +233,8 @@ DESCRIBED_SCENES = (
         solved,
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
+        # A heavy body about a point has kernels of its own.
+        warming=(scene_catalogue()["kovalevskaya-top"].question,),
         description=DESCRIPTION,
         representations={SVG: drawn},
     ),
