@@ -126,7 +126,8 @@ def figures(count: int, scene: Callable[[int], dict[str, Any]]) -> dict[str, Any
 
 def main(count: int) -> None:
     """Judge, write and print."""
-    result = figures(count, any_scene) | {"attracted_or_rolling": figures(count // 10, attracted_or_rolling)}
+    others = figures(7 * count // 50, attracted_or_rolling)
+    result = figures(count, any_scene) | {"attracted_or_rolling": others}
     TARGET.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     sys.stdout.write(f"{result}\n")
 
