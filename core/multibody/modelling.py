@@ -9,7 +9,10 @@ from core.errors import InvalidParameter
 from core.multibody.assembly import assemble_places, assemble_rates
 from core.multibody.description import Described, described
 from core.multibody.dynamics import accelerations, parts, restricted, singular_row
+from core.multibody.euler_poisson import EulerPoisson
+from core.multibody.free_body import freely_turning
 from core.multibody.generic_equation import SceneSystem, scene_system
+from core.multibody.kepler import keplerian
 from core.multibody.language import Scene
 from core.multibody.modes import Modes
 from core.multibody.motion import Motion, Rest
@@ -19,6 +22,7 @@ from core.multibody.passes import reduced
 from core.multibody.periods import repeating
 from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
 from core.multibody.table import Table
+from core.multibody.turning_body import turning_body
 from core.multibody.uniform import Uniform
 from core.multibody.vertical_symmetry import precessing
 from core.multibody.whole import Whole
@@ -134,7 +138,12 @@ def _motion(piece: Piece) -> Motion:
         return Uniform(part, gain)
     if linear and not part.gyration:
         return Modes.of(part, chosen)
-    found: Motion | None = repeating(part, gain, chosen) or precessing(part, gain, chosen)
+    body = turning_body(part)
+    if body is not None:
+        turning = freely_turning(part, body) or EulerPoisson.about(part, body, gain)
+        if turning is not None:
+            return turning
+    found: Motion | None = keplerian(part) or repeating(part, gain, chosen) or precessing(part, gain, chosen)
     if found is not None:
         return found
     free = piece.freedom

@@ -32,17 +32,29 @@ from core.multibody.equilibria import equilibria_of
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled, modelled
 from core.multibody.modes import Modes
+from core.multibody.occurrences import ExtremesOf, When, check_search
 from core.multibody.packed import Floats
 from core.multibody.periods import Periodic
 from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
-from core.multibody.trajectories import AskedMotion, trajectory_of
+from core.multibody.trajectories import AskedMotion, Searched, trajectory_of
 from core.multibody.vertical_symmetry import Shifted, Steady
 from core.quantities import Uncertainty, check_value
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
 
-Output = Literal["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "equilibria"]
+Output = Literal[
+    "accelerations",
+    "forces",
+    "energy",
+    "trajectory",
+    "forces-in-time",
+    "energy-in-time",
+    "momenta-in-time",
+    "work-in-time",
+    "paths-in-time",
+    "equilibria",
+]
 OUTPUTS: tuple[Output, ...] = (
     "accelerations",
     "forces",
@@ -50,6 +62,9 @@ OUTPUTS: tuple[Output, ...] = (
     "trajectory",
     "forces-in-time",
     "energy-in-time",
+    "momenta-in-time",
+    "work-in-time",
+    "paths-in-time",
     "equilibria",
 )
 DEFAULT_OUTPUTS: tuple[Output, ...] = ("accelerations", "forces", "energy", "trajectory")
@@ -61,7 +76,7 @@ MOST_NUMBERS = 5_000_000
 def solve_scene(
     scene: Scene,
     times: Sequence[float] | Floats = (),
-    outputs: Sequence[Output] = DEFAULT_OUTPUTS,
+    outputs: Sequence[Output | When | ExtremesOf] = DEFAULT_OUTPUTS,
     accuracy: float = 1e-9,
     *,
     method: AbstractMethod | None = None,
@@ -76,8 +91,8 @@ def solve_scene(
     scene : Scene
     times : sequence of float
         Seconds from the given state, of either sign and in any order.
-    outputs : sequence of str
-        Some of `OUTPUTS`.
+    outputs : sequence of str, When and ExtremesOf
+        Some of `OUTPUTS`, and what is to be searched between the start and the latest time.
     accuracy : float
         Largest error of any column, relative to its largest value, that is tolerated.
     method : AbstractMethod, optional
@@ -103,7 +118,11 @@ def solve_scene(
     """
     moments = _times(times)
     for i, output in enumerate(outputs):
-        if output not in OUTPUTS:
+        if isinstance(output, (When, ExtremesOf)):
+            check_search(output, i)
+            if not np.max(moments, initial=0.0) > 0.0:
+                raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
+        elif not isinstance(output, str) or output not in OUTPUTS:
             raise InvalidParameter(("outputs", i), f"be one of {', '.join(OUTPUTS)}")
     if not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InvalidParameter("accuracy", "be greater than 0 and less than 1")
@@ -139,8 +158,10 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
     model = _model(found, noticed, multipliers.rank)
     trajectory: SceneTrajectory | None = None
     events: tuple[SceneEvent, ...] = ()
+    searched = Searched()
     if len(asked.times):
-        trajectory, events = trajectory_of(scene, found, [value.value is not None for value in forces], asked)
+        determined = [value.value is not None for value in forces]
+        trajectory, events, searched = trajectory_of(scene, found, determined, asked)
     motions = found.whole.parts
     periods = [motion.period for _, motion in motions if motion.name != "rest"]
     single = periods[0] if len(periods) == 1 else None
@@ -154,6 +175,8 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         equilibria_of(found.described) if "equilibria" in outputs else None,
         events,
         next((event for event in events if event.time >= 0.0), None),
+        searched.occurrences,
+        searched.extremes,
     )
 
 
@@ -209,6 +232,9 @@ def _model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
         name, why = apart[0].name, apart[0].why
     else:
         name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
+    spins = any(not is_zero(frame.spin_momentum) for frame in found.described.measures.coordinates.frames.values())
+    if name == "rest" and spins:
+        name, why = "steady spin", "what turns spins steadily about its axis, and nothing moves its centre or the axis"
     return SceneModel(
         name,
         why,
@@ -240,6 +266,11 @@ def _accelerations(found: Described, full: Sequence[Ball]) -> Mapping[str, BodyA
                     space[i] = space[i] + (table.q[j] * full[k] - table.q[k] * full[j]) / 2
             angular = tuple(
                 float(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
+            )
+        elif frame.turns is not None and frame.start_axes is not None:
+            angular = tuple(
+                float(sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO))
+                for axis in frame.start_axes
             )
         answer[name] = BodyAcceleration(tuple(float(full[i]) for i in frame.position), angular)
     return answer

@@ -968,6 +968,8 @@ class SceneConnection(TypedDict):
     stiffness: NotRequired[float | str | AngleInDegrees]
     rest_length: NotRequired[float | str | AngleInDegrees]
     rest_angle: NotRequired[float | str | AngleInDegrees]
+    constant: NotRequired[float | str | AngleInDegrees]
+    strength: NotRequired[float | str | AngleInDegrees]
     coefficient: NotRequired[float | str | AngleInDegrees]
     measure: NotRequired[Literal["length", "turn"]]
     rate: NotRequired[float | str | AngleInDegrees]
@@ -987,6 +989,8 @@ class SceneConnection(TypedDict):
         "string",
         "spring",
         "torsion-spring",
+        "gravitation",
+        "inverse-square",
         "damper",
         "motor",
         "spinning-frame",
@@ -1357,10 +1361,37 @@ class DescribedSceneRequest(TypedDict):
     round: NotRequired[Literal["meaningful"] | int | None]
     outputs: NotRequired[
         Sequence[
-            Literal["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "equilibria"]
+            Literal[
+                "accelerations",
+                "forces",
+                "energy",
+                "trajectory",
+                "forces-in-time",
+                "energy-in-time",
+                "momenta-in-time",
+                "work-in-time",
+                "paths-in-time",
+                "equilibria",
+            ]
+            | SearchOutput
         ]
         | None
     ]
+
+
+class SearchOutput(TypedDict):
+    """A search between the start and the latest of the times: one of its two fields is given."""
+
+    when: NotRequired[WhenQuestion | None]
+    extremes: NotRequired[str | None]
+
+
+class WhenQuestion(TypedDict):
+    """A quantity, and the value that it is to take."""
+
+    quantity: str
+    equals: float
+    nth: NotRequired[int | None]
 
 
 class DescribedSceneAnswer(TypedDict):
@@ -1378,6 +1409,8 @@ class DescribedSceneAnswer(TypedDict):
     ended: str | None
     events: list[EndEvent]
     trajectory: NotRequired[DescribedTrajectory | None]
+    occurrences: NotRequired[list[SceneOccurrence] | None]
+    extremes: NotRequired[list[SceneExtremes] | None]
     equilibria: NotRequired[list[SceneEquilibrium] | None]
     accuracy: NotRequired[DescribedAccuracy | None]
 
@@ -1465,6 +1498,32 @@ class SceneColumn(TypedDict):
     error: float
     how: Literal["closed form", "measured against pairs", "measured against closed form"]
     inherited: float | None
+
+
+class SceneOccurrence(TypedDict):
+    """A time at which a quantity takes the value that was asked for."""
+
+    quantity: str
+    equals: float
+    unit: str
+    nth: int
+    time: float
+    error: float
+    how: Literal["closed form", "measured against pairs", "measured against closed form"]
+
+
+class SceneExtremes(TypedDict):
+    """Least and largest value of a quantity."""
+
+    quantity: str
+    unit: str
+    least: float
+    least_time: float
+    largest: float
+    largest_time: float
+    error: float
+    until: float
+    periodic: bool
 
 
 class SceneEquilibrium(TypedDict):
