@@ -85,6 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     import uvicorn
 
     from service.app import app
+    from service.http.connection import Connection
 
     app.address = f"http://{host}:{port}"
     with sharing() if several else contextlib.nullcontext():
@@ -93,7 +94,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             host=host,
             port=port,
             workers=settings.workers,
-            http=settings.http_parser,
+            http=Connection,
             log_config=None,
             access_log=False,
             server_header=False,
@@ -101,7 +102,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
             proxy_headers=False,
             timeout_graceful_shutdown=settings.shutdown_seconds,
             timeout_keep_alive=settings.keep_alive_seconds,
-            h11_max_incomplete_event_size=65536,
         )
 
 

@@ -27,12 +27,11 @@ class Settings(BaseSettings):
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
     workers: int = Field(default=1, ge=1, le=256, description="Number of server processes that share the port.")
 
-    http_parser: Literal["zttp", "httptools", "h11"] = Field(
-        default="zttp",
-        description="HTTP parser of uvicorn; zttp and h11 bound the memory of a connection, h11 is the slowest.",
-    )
     keep_alive_seconds: int = Field(
-        default=75, ge=1, le=LONGEST, description="Time after which a connection without a request is closed."
+        default=75,
+        ge=1,
+        le=LONGEST,
+        description="Time after which a connection is closed on which no whole head of a request has arrived.",
     )
 
     max_body_bytes: int = Field(

@@ -90,7 +90,7 @@ def test_a_scene_answers_with_its_own_figures(scene: Any, form: str) -> None:
     assert set(columns) == {entry.name for entry in fields(scene.samples_type)}
 
 
-def test_unions_of_objects_are_told_apart() -> None:
+def test_unions_of_objects_are_distinguished() -> None:
     for node in nodes(DOCUMENT):
         members = [
             m for m in (*node.get("oneOf", ()), *node.get("anyOf", ())) if "$ref" in m or m.get("type") == "object"
@@ -103,7 +103,7 @@ def test_what_a_problem_adds_is_in_its_schema() -> None:
     assert own <= set(SCHEMAS["ProblemDocument"]["properties"])
 
 
-def test_kinds_are_required_where_they_tell_members_of_a_union_apart() -> None:
+def test_kinds_are_required_where_they_distinguish_members_of_a_union() -> None:
     schemas = DOCUMENT["components"]["schemas"]
     bodies = schemas["MassPropertiesRequest"]["properties"]["body"]["discriminator"]["mapping"]
     assert len(bodies) > 1
@@ -119,7 +119,7 @@ def asked(name: str) -> dict[str, Any]:
     return {field: entry.get("description") for field, entry in properties.items()}
 
 
-def test_every_number_that_is_asked_for_is_described() -> None:
+def test_every_number_that_is_requested_is_described() -> None:
     schemas = DOCUMENT["components"]["schemas"]
     bodies = schemas["MassPropertiesRequest"]["properties"]["body"]["discriminator"]["mapping"].values()
     methods = schemas["TrajectoryRequest"]["properties"]["method"]["anyOf"][0]["discriminator"]["mapping"].values()

@@ -230,6 +230,58 @@ class SceneEvent:
 
 
 @dataclass(frozen=True)
+class Occurrence:
+    """A time at which a quantity takes a value.
+
+    Attributes
+    ----------
+    quantity : str
+    equals : float
+    unit : str
+    nth : int
+        Counted from one, after the start.
+    time : float
+    error : float
+        Of the time (s).
+    how : str
+        How the error of the quantity is known.
+    """
+
+    quantity: str
+    equals: float
+    unit: str
+    nth: int
+    time: float
+    error: float
+    how: How
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Least and largest value of a quantity, each with the time at which it is taken.
+
+    Attributes
+    ----------
+    error : float
+        Of both values.
+    until : float
+        End of the time that was searched, from the start (s).
+    periodic : bool
+        Whether that is a period, so that the extremes are those of all time.
+    """
+
+    quantity: str
+    unit: str
+    least: float
+    least_time: float
+    largest: float
+    largest_time: float
+    error: float
+    until: float
+    periodic: bool
+
+
+@dataclass(frozen=True)
 class Equilibrium:
     """A place where the scene can rest.
 
@@ -320,5 +372,7 @@ class SceneAnswer:
     equilibria: tuple[Equilibrium, ...] | None
     events: tuple[SceneEvent, ...]
     ended: SceneEvent | None
+    occurrences: tuple[Occurrence, ...] | None = None
+    extremes: tuple[Extremes, ...] | None = None
     phases: tuple[ScenePhase, ...] | None = None
     problem: SceneProblem | None = None

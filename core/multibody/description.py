@@ -7,14 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody import laws
+from core.multibody import attraction, laws
 from core.multibody.contacts import contact
 from core.multibody.coordinates import Coordinates, dimension_of
 from core.multibody.language import GROUND, Scene
-from core.multibody.measures import Measures, perpendicular
+from core.multibody.measures import Measures, Work, perpendicular
 from core.multibody.numerals import Numerals
-from core.multibody.polynomials import ONE, constant, difference, evaluated, is_zero
+from core.multibody.polynomials import ONE, Poly, constant, difference, evaluated, is_zero
 from core.multibody.rolling import rolling
+from core.multibody.rolling_in_space import rolling_in_space
 from core.multibody.strings import string
 
 _TURNED = ("torsion-spring", "motor", "torque")
@@ -53,7 +54,20 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
     for i, (name, connection) in enumerate(zip(names, scene.connections, strict=True)):
         paths[name] = ("connections", i)
         _connect(measures, name, connection, ("connections", i))
+    if "gravity" not in paths:
+        measures.works.extend(_weight(measures))
     return Described(scene, measures, paths)
+
+
+def _weight(measures: Measures) -> list[Work]:
+    """Return what gravity does, where there is any."""
+    fall: Poly = {}
+    for frame in measures.coordinates.frames.values():
+        for i, pull in zip(frame.position, measures.coordinates.gravity, strict=True):
+            mass = measures.table.mass.get((i, i))
+            if mass is not None and not is_zero(pull):
+                fall[i,] = -mass * pull
+    return [Work("gravity", fall)] if fall else []
 
 
 def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
@@ -94,7 +108,7 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
                     see(place, "turn")
         if kind in ("rolling", "contact"):
             for place in (connection.place, connection.a, connection.b):
-                see(place, "turn", "orientation")
+                see(place, "turn")
         if kind in _TURNED or (kind == "damper" and connection.measure == "turn"):
             for place in (getattr(connection, "a", None), getattr(connection, "b", None)):
                 see(place, "turn")
@@ -119,7 +133,7 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
     if kind == "string":
         string(measures, name, connection, path)
     elif kind == "rolling":
-        rolling(measures, name, connection, path)
+        (rolling if measures.dimension == 2 else rolling_in_space)(measures, name, connection, path)
     elif kind == "contact":
         contact(measures, name, connection, path)
     elif kind == "track":
@@ -135,6 +149,10 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
         laws.spring(measures, name, connection, path)
     elif kind == "torsion-spring":
         laws.torsion_spring(measures, name, connection, path)
+    elif kind == "gravitation":
+        attraction.gravitation(measures, name, connection, path)
+    elif kind == "inverse-square":
+        attraction.inverse_square(measures, name, connection, path)
     elif kind == "damper":
         laws.damper(measures, name, connection, path)
     elif kind == "motor":

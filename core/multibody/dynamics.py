@@ -9,7 +9,7 @@ from flint import arb_mat
 
 from core.errors import InvalidParameter
 from core.multibody.measures import Force, Measures
-from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, entry, evaluated, is_zero, variables
+from core.multibody.polynomials import ONE, ZERO, Ball, entry, evaluated, is_zero, variables
 from core.multibody.rank import Elimination, independent
 from core.multibody.table import Row, Table
 
@@ -162,9 +162,10 @@ def singular_row(table: Table, chosen: Sequence[int]) -> Row | None:
         for j in range(len(table.names)):
             column = {i: lines[i][j] for i in chosen if j in lines[i]}
             weights.add(column, lines[r].get(j, ZERO))
-        terms: list[tuple[Ball, Poly]] = [(ONE, measure)]
-        terms.extend((-weights.pivots[i][1], table.rows[i].measure or {}) for i in weights.pivots)
-        bend: Poly = {key: x for key, x in combined(*terms).items() if len(key) == 2}
+        bend = _slopes(table.rows[r], ONE)
+        for i in weights.pivots:
+            for key, x in _slopes(table.rows[i], -weights.pivots[i][1]).items():
+                bend[key] = entry(bend, key) + x
         for a, first in enumerate(directions):
             for second in directions[: a + 1]:
                 if not is_zero(_bilinear(bend, first, second)):
@@ -172,7 +173,14 @@ def singular_row(table: Table, chosen: Sequence[int]) -> Row | None:
     return None
 
 
-def _bilinear(form: Poly, first: dict[int, Ball], second: dict[int, Ball]) -> Ball:
+def _slopes(row: Row, factor: Ball) -> dict[tuple[int, int], Ball]:
+    """Return by how much the line of a row changes with each coordinate, times a factor."""
+    return {
+        (key[0], j): factor * value for j, poly in row.rates.items() for key, value in poly.items() if len(key) == 1
+    }
+
+
+def _bilinear(form: dict[tuple[int, int], Ball], first: dict[int, Ball], second: dict[int, Ball]) -> Ball:
     total = ZERO
     for key, x in form.items():
         i, j = key

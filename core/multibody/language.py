@@ -232,6 +232,28 @@ class TorsionSpring(Connection):
 
 
 @dataclass(frozen=True)
+class Gravitation(Connection):
+    """Two bodies attract one another by their masses, as their centres do: constant m_a m_b/r^2."""
+
+    a: str
+    b: str
+    constant: Number = "6.6743e-11"
+    name: str | None = None
+    kind: ClassVar[str] = "gravitation"
+
+
+@dataclass(frozen=True)
+class InverseSquare(Connection):
+    """Two places attract one another by strength/r^2 (N m^2); a negative strength repels, as equal charges do."""
+
+    a: Place
+    b: Place
+    strength: Number
+    name: str | None = None
+    kind: ClassVar[str] = "inverse-square"
+
+
+@dataclass(frozen=True)
 class Damper(Connection):
     """A force against the rate of a distance (N s/m), or with `measure` "turn" against that of a turn (N m s)."""
 
@@ -303,6 +325,8 @@ KINDS: Mapping[str, type[Any]] = MappingProxyType(
             String,
             Spring,
             TorsionSpring,
+            Gravitation,
+            InverseSquare,
             Damper,
             Motor,
             SpinningFrame,

@@ -56,6 +56,30 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Work:
+    """What takes or brings energy: a potential, or a power.
+
+    Attributes
+    ----------
+    name : str
+    potential : polynomial or None
+        Whose fall is the work.
+    square : (ball, dict) or None
+        Of a damper: coefficient and the linear form in the rates whose square it takes.
+    terms : list of (ball, coordinate, rate)
+        Power as factor times coordinate times rate.
+    rows : list of (row, polynomial)
+        Power of what is driven: the multiplier of the row times less what the row says of the clock.
+    """
+
+    name: str
+    potential: Poly | None = None
+    square: tuple[Ball, dict[int, Ball]] | None = None
+    terms: list[tuple[Ball, int, int]] = field(default_factory=list)
+    rows: list[tuple[int, Poly]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
 class Limit:
     """Something that has to stay positive, and whose loss ends a scene.
 
@@ -129,9 +153,11 @@ class Measures:
         self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
         self.forces: list[Force] = []
         self.limits: list[Limit] = []
+        self.works: list[Work] = []
         self.potential = ONE - ONE
         self.conservative = True
         self._lengths: dict[Any, int] = {}
+        self._inverses: dict[int, int] = {}
 
     def hold(self, name: str, measure: Poly) -> int:
         """Add a measure that stays zero and return the number of its row."""
@@ -196,6 +222,14 @@ class Measures:
         self.limits.append(Limit("singular", name, length=coordinate(index)))
         self._lengths[key] = index
         return index
+
+    def inverse(self, name: str, length: int) -> int:
+        """Return the coordinate that is one over a length, made once for each."""
+        if length not in self._inverses:
+            index = self.table.coordinate(f"{name}.inverse", "1/m", 1 / self.table.q[length])
+            self.hold(name, {(length, index): ONE, (): -ONE})
+            self._inverses[length] = index
+        return self._inverses[length]
 
     def aligned(self, name: str, a: str | None, b: str | None, components: Sequence[Ball], path: Path) -> list[int]:
         """Hold a direction of body `a`, given in space at the start, in body `b`."""

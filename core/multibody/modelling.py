@@ -9,7 +9,10 @@ from core.errors import InvalidParameter, NotApplicable
 from core.multibody.assembly import assemble_places, assemble_rates
 from core.multibody.description import Described, described
 from core.multibody.dynamics import accelerations, parts, restricted, singular_row
+from core.multibody.euler_poisson import EulerPoisson
+from core.multibody.free_body import freely_turning
 from core.multibody.generic_equation import SceneSystem, scene_system
+from core.multibody.kepler import keplerian
 from core.multibody.language import Scene
 from core.multibody.modes import Modes
 from core.multibody.motion import Motion, Rest
@@ -20,6 +23,7 @@ from core.multibody.periods import repeating
 from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
 from core.multibody.table import Table
 from core.multibody.turning import turning
+from core.multibody.turning_body import turning_body
 from core.multibody.uniform import Uniform
 from core.multibody.vertical_symmetry import precessing
 from core.multibody.whole import Whole
@@ -148,11 +152,18 @@ def _motion(piece: Piece) -> Motion:
         return Uniform(part, gain)
     if linear and not part.gyration:
         return Modes.of(part, chosen)
+    rubs = any(row.drag for row in part.rows)
     free_turn = turning(part, chosen)
     if free_turn is not None:
         return free_turn
-    rubs = any(row.drag for row in part.rows)
-    found: Motion | None = None if rubs else repeating(part, gain, chosen) or precessing(part, gain, chosen)
+    body = None if rubs else turning_body(part)
+    if body is not None:
+        about = freely_turning(part, body) or EulerPoisson.about(part, body, gain)
+        if about is not None:
+            return about
+    found: Motion | None = None
+    if not rubs:
+        found = keplerian(part) or repeating(part, gain, chosen) or precessing(part, gain, chosen)
     if found is not None:
         return found
     free = piece.freedom

@@ -21,7 +21,7 @@ from core.multibody.table import Table
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-GROUPS = {"1": 0, "m": 1, "rad": 2, "s": 3}
+GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 4}
 """Coordinates of one unit share the scale by which steps are chosen."""
 
 
@@ -133,17 +133,21 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         times.append(-turn)
     if spin is not None:
         times.append(-(spin // 2))
-    if size is None and rate is not None and pull is not None:
-        size = 2 * rate - pull
-    if size is None and times and (rate is not None or pull is not None):
-        size = rate + min(times) if rate is not None else (pull or 0) + 2 * min(times)
+    if size is None:
+        # What starts at the origin is measured by how far it comes until it turns back, or something else has turned.
+        ways = []
+        if rate is not None and pull is not None:
+            ways.append(2 * rate - pull)
+        if times and (rate is not None or pull is not None):
+            ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
+        size = min(ways, default=None)
     size = 0 if size is None else size
     if rate is not None:
         times.append(size - rate)
     if pull is not None:
         times.append((size - pull) // 2)
     time = min(times, default=0)
-    lengths = [{"1": 0, "rad": 0, "m": size, "s": time}[unit] for unit in table.units]
+    lengths = [{"1": 0, "rad": 0, "m": size, "1/m": -size, "s": time}[unit] for unit in table.units]
     masses = [e + lengths[i] + lengths[j] for (i, j), x in table.mass.items() if (e := exponent(x)) is not None]
     rows = []
     for row in table.rows:

@@ -2,14 +2,16 @@
 
 *Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
 leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a difference of two squares is
-the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants; this pass
-serves the motion from the given start only, never questions about its surroundings.
+the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants.
+*Separate*: what nothing ties to a place falls as its centre of mass does. The last two serve the motion from the given
+start only, never questions about its surroundings.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from core.multibody.centre_of_mass import centred, free_shift
 from core.multibody.dynamics import undetermined, weightless
 from core.multibody.polynomials import (
     ONE,
@@ -64,7 +66,7 @@ def reduced(table: Table, *, pinning: bool) -> Reduced:
         changed = _linear(state) or changed
         changed = _straighten(state) or changed
         if not changed and pinning:
-            changed = _pin(state)
+            changed = _pin(state) or _separate(state)
         if not changed:
             return state
 
@@ -270,7 +272,7 @@ def _readiness(table: Table, i: int) -> int:
     """Return how readily a coordinate is given away: lengths and positions first, time never."""
     if table.units[i] == "m" and (i, i) not in table.mass:
         return 6
-    return {"s": 0, "1": 1, "rad": 2, "m": 3}[table.units[i]]
+    return {"s": 0, "1": 1, "1/m": 1, "rad": 2, "m": 3}[table.units[i]]
 
 
 def _substitute(state: Reduced, expressions: list[Poly | None]) -> None:
@@ -283,6 +285,11 @@ def _substitute(state: Reduced, expressions: list[Poly | None]) -> None:
             final.append({(number[i],): ONE})
         else:
             final.append({tuple(number[k] for k in key): value for key, value in expression.items()})
+    _recast(state, final, fresh)
+
+
+def _recast(state: Reduced, final: list[Poly], fresh: list[int]) -> None:
+    """Write the table in new coordinates, of which the present ones are affine functions."""
     state.table = state.table.changed(final, fresh)
     state.table.rows = [row for row in state.table.rows if row.rates or (row.measure is None and row.rate != 0)]
     state.expressions = [substituted(expression, final) for expression in state.expressions]
@@ -321,6 +328,24 @@ def _pin(state: Reduced) -> bool:
     for i in pinned:
         expressions[i] = constant(table.q[i])
     _substitute(state, expressions)
+    return True
+
+
+def _separate(state: Reduced) -> bool:
+    """Split off a coordinate of the centre of mass of what nothing ties to a place: it falls freely by itself."""
+    shift = free_shift(state.table)
+    if shift is None:
+        return False
+    expressions, start, name = centred(state.table, shift)
+    pivot = min(shift)
+    old = state.table
+    _recast(state, expressions, list(range(len(old.names))))
+    table = state.table
+    for j in shift:
+        table.q[j], table.v[j] = (x[j] - shift[j] / shift[pivot] * x[pivot] for x in (old.q, old.v))
+        table.names[j] = f"{old.names[j]} - {old.names[pivot]}"
+    (table.q[pivot], table.v[pivot]), table.names[pivot] = start, name
+    state.steps.append(f"{name} moves by itself")
     return True
 
 

@@ -32,6 +32,8 @@ from core.multibody.trajectories import AskedMotion
 from core.multibody.whole import WholeStates
 
 MOST_NUMBERS = 5_000_000
+ANSWERED = ("accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
+"""Outputs that are answered about scenes with contacts."""
 _NOT_KNOWN = "what the uncertainty of the inputs does is not followed through events"
 
 
@@ -52,6 +54,13 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
             "a scene with contacts is answered by its own phases, each with the smallest model that suffices",
             path=("method",),
             remedy="leave the method out",
+        )
+    unknown = [i for i, output in enumerate(asked.outputs) if output not in ANSWERED and output != "equilibria"]
+    if unknown:
+        raise NotApplicable(
+            f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",
+            path=("outputs", unknown[0]),
+            remedy="leave it out; events are found without being asked for",
         )
     if "equilibria" in asked.outputs:
         raise NotApplicable(
@@ -268,7 +277,7 @@ def _bouncing(phase: Phase, times: Floats) -> WholeStates:
 
 
 def _columns(
-    model: Modelled, times: Floats, states: WholeStates, how: How, outputs: Sequence[str]
+    model: Modelled, times: Floats, states: WholeStates, how: How, outputs: Sequence[object]
 ) -> dict[str, Column]:
     columns = Columns(model.whole, times, states, how)
     found: dict[str, Column] = {}
@@ -283,6 +292,8 @@ def _columns(
         )
     if "energy-in-time" in outputs:
         found.update(columns.energy())
+    if "momenta-in-time" in outputs:
+        found.update(columns.momenta())
     return found
 
 

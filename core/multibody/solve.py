@@ -14,19 +14,31 @@ from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equilibria import equilibria_of
 from core.multibody.language import Scene
 from core.multibody.modelling import modelled
+from core.multibody.occurrences import ExtremesOf, When, check_search
 from core.multibody.packed import Floats
-from core.multibody.phase_answer import answer_in_phases
+from core.multibody.phase_answer import ANSWERED, answer_in_phases
 from core.multibody.phases import one_sided
 from core.multibody.polynomials import BITS
 from core.multibody.start import accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.strings import SlackAtStart
-from core.multibody.trajectories import AskedMotion, trajectory_of
+from core.multibody.trajectories import AskedMotion, Searched, trajectory_of
 from core.quantities import Uncertainty, check_value
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
 
-Output = Literal["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "equilibria"]
+Output = Literal[
+    "accelerations",
+    "forces",
+    "energy",
+    "trajectory",
+    "forces-in-time",
+    "energy-in-time",
+    "momenta-in-time",
+    "work-in-time",
+    "paths-in-time",
+    "equilibria",
+]
 OUTPUTS: tuple[Output, ...] = (
     "accelerations",
     "forces",
@@ -34,6 +46,9 @@ OUTPUTS: tuple[Output, ...] = (
     "trajectory",
     "forces-in-time",
     "energy-in-time",
+    "momenta-in-time",
+    "work-in-time",
+    "paths-in-time",
     "equilibria",
 )
 DEFAULT_OUTPUTS: tuple[Output, ...] = ("accelerations", "forces", "energy", "trajectory")
@@ -45,7 +60,7 @@ MOST_NUMBERS = 5_000_000
 def solve_scene(
     scene: Scene,
     times: Sequence[float] | Floats = (),
-    outputs: Sequence[Output] = DEFAULT_OUTPUTS,
+    outputs: Sequence[Output | When | ExtremesOf] = DEFAULT_OUTPUTS,
     accuracy: float = 1e-9,
     *,
     method: AbstractMethod | None = None,
@@ -60,8 +75,8 @@ def solve_scene(
     scene : Scene
     times : sequence of float
         Seconds from the given state, of either sign and in any order.
-    outputs : sequence of str
-        Some of `OUTPUTS`.
+    outputs : sequence of str, When and ExtremesOf
+        Some of `OUTPUTS`, and what is to be searched between the start and the latest time.
     accuracy : float
         Largest error of any column, relative to its largest value, that is tolerated.
     method : AbstractMethod, optional
@@ -87,7 +102,11 @@ def solve_scene(
     """
     moments = _times(times)
     for i, output in enumerate(outputs):
-        if output not in OUTPUTS:
+        if isinstance(output, (When, ExtremesOf)):
+            check_search(output, i)
+            if not np.max(moments, initial=0.0) > 0.0:
+                raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
+        elif not isinstance(output, str) or output not in OUTPUTS:
             raise InvalidParameter(("outputs", i), f"be one of {', '.join(OUTPUTS)}")
     if not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InvalidParameter("accuracy", "be greater than 0 and less than 1")
@@ -130,9 +149,11 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
     model = scene_model(found, noticed, multipliers.rank)
     trajectory: SceneTrajectory | None = None
     events: tuple[SceneEvent, ...] = ()
+    searched = Searched()
     if len(asked.times):
-        trajectory, events = trajectory_of(scene, found, [value.value is not None for value in forces], asked)
-    if any(event.kind == "slack" for event in events) and asked.method is None and np.min(asked.times) >= 0.0:
+        determined = [value.value is not None for value in forces]
+        trajectory, events, searched = trajectory_of(scene, found, determined, asked)
+    if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(asked):
         # Slack strings become taut again: the scene has further phases.
         return answer_in_phases(scene, asked)
     motions = found.whole.parts
@@ -148,4 +169,12 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         equilibria_of(found.described) if "equilibria" in outputs else None,
         events,
         next((event for event in events if event.time >= 0.0), None),
+        searched.occurrences,
+        searched.extremes,
     )
+
+
+def _has_phases(asked: AskedMotion) -> bool:
+    """Return whether what is asked can be answered through events."""
+    forward = bool(np.min(asked.times) >= 0.0)
+    return forward and asked.method is None and all(output in ANSWERED for output in asked.outputs)

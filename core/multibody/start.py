@@ -42,6 +42,9 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
         name, why = apart[0].name, apart[0].why
     else:
         name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
+    spins = any(not is_zero(frame.spin_momentum) for frame in found.described.measures.coordinates.frames.values())
+    if name == "rest" and spins:
+        name, why = "steady spin", "what turns spins steadily about its axis, and nothing moves its centre or the axis"
     return SceneModel(
         name,
         why,
@@ -74,6 +77,11 @@ def accelerations_of(found: Described, full: Sequence[Ball]) -> Mapping[str, Bod
                     space[i] = space[i] + (table.q[j] * full[k] - table.q[k] * full[j]) / 2
             angular = tuple(
                 _double(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
+            )
+        elif frame.turns is not None and frame.start_axes is not None:
+            angular = tuple(
+                _double(sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO))
+                for axis in frame.start_axes
             )
         answer[name] = BodyAcceleration(tuple(_double(full[i]) for i in frame.position), angular)
     return answer

@@ -105,7 +105,7 @@ class Table:
     Attributes
     ----------
     names, units : list of str
-        Of the coordinates; units are "m", "1", "rad" or "s".
+        Of the coordinates; units are "m", "1", "rad", "1/m" or "s".
     mass : dict
         Upper triangle of M.
     load, stiffness, damping, gyration : dict

@@ -218,9 +218,14 @@ def _spread(slopes: Floats, offsets: Floats, z: Floats) -> Floats:
     for s in range(z.shape[0]):
         for i in range(count):
             sh, sl = offsets[i, 0], offsets[i, 1]
+            size = abs(sh)
             for j in range(n):
                 if slopes[i, j, 0] != 0.0:
                     ph, pl = dd_mul(slopes[i, j, 0], slopes[i, j, 1], z[s, j, 0], z[s, j, 1])
                     sh, sl = dd_add(sh, sl, ph, pl)
+                    size += abs(ph)
+            # What is below the rounding of its terms is zero: the velocity of a body beside that of its centre of mass.
+            if abs(sh) <= 2.0**-104 * size:
+                sh, sl = 0.0, 0.0
             out[s, i, 0], out[s, i, 1] = sh, sl
     return out

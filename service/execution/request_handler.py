@@ -8,10 +8,9 @@ from typing import Any
 
 import orjson
 
-from core.errors import Path
+from core.errors import Path, pointer_of
 from core.notices import Notice
 from core.systems.budget import Budget
-from service.problems import pointer_of
 from service.requests.request_reader import Limits, Reader
 from service.routing import Answer, PostRoute
 from service.schemas import SIGNATURE
@@ -37,9 +36,13 @@ class RequestHandler:
         """Return the whole answer: signature, warnings, fields."""
         return signed(route.handle(question, self._budget))
 
-    def warm(self) -> None:
-        """Have every kernel that can be reached compiled or loaded, so that no client waits for that."""
-        for route in self._routes:
+    def warm(self, *, backwards: bool = False) -> None:
+        """Have every kernel that can be reached compiled or loaded, so that no client waits for that.
+
+        Of two processes that start at the same time on empty caches, one goes backwards: each compiles half of the
+        kernels and loads the other half.
+        """
+        for route in reversed(self._routes) if backwards else self._routes:
             for question in (*(example.question for example in route.examples.values()), *route.warming):
                 self.answer(route, self.read(route, orjson.dumps(question)))
         # Its first use would otherwise import it, and hold up the event loop.

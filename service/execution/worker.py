@@ -88,7 +88,8 @@ Work = Callable[[Terms, Task], Any]
 def handler_of(terms: Terms) -> RequestHandler:
     """Return this process's handler of requests, warm; inherited warm if the fork server has made it."""
     made = RequestHandler(_routes(terms.table).values(), terms.budget, terms.limits)
-    made.warm()
+    # The server process goes forwards at the same time.
+    made.warm(backwards=True)
     return made
 
 

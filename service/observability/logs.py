@@ -57,11 +57,12 @@ class TextLines(logging.Formatter):
 
 
 def configure(level: str) -> None:
-    """Send all logging of this process to standard error: as text to a terminal, otherwise as JSON lines."""
+    """Send all logging and warnings of this process to standard error: as text to a terminal, otherwise as JSON."""
     handler = logging.StreamHandler(sys.stderr)
     terminal = sys.stderr.isatty()
     handler.setFormatter(TextLines() if terminal else JsonLines())
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
+    logging.captureWarnings(True)
     if terminal:
         # The service logs its own start and stop.
         logging.getLogger("uvicorn.error").setLevel(logging.WARNING)

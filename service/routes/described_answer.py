@@ -83,8 +83,8 @@ class SceneColumn(View):
     error: Annotated[float, OwnUnit] = Field(description="Largest error of any row, as the length of a vector.")
     how: How
     inherited: Annotated[float | None, OwnUnit] = Field(
-        description="Largest change of any row by input_uncertainty, to first order; null for forces and energies, and "
-        "where it is not known."
+        description="Largest change of any row by input_uncertainty, to first order; null for what is summed up along "
+        "the motion, and where it is not known."
     )
 
 
@@ -138,6 +138,32 @@ class SceneProblem(View):
     decided_by: str = Field(description="Which further assumption would decide it.")
 
 
+class SceneOccurrence(View):
+    """A time at which a quantity takes the value that was asked for."""
+
+    quantity: str
+    equals: Annotated[float, OwnUnit]
+    unit: str
+    nth: int = Field(description="Counted from 1, after the start.")
+    time: Seconds[float]
+    error: Seconds[float] = Field(description="Of the time.")
+    how: How = Field(description="How the error of the quantity is known.")
+
+
+class SceneExtremes(View):
+    """Least and largest value of a quantity."""
+
+    quantity: str
+    unit: str
+    least: Annotated[float, OwnUnit]
+    least_time: Seconds[float]
+    largest: Annotated[float, OwnUnit]
+    largest_time: Seconds[float] = Field(description="Near a smooth extreme known to half of the digits only.")
+    error: Annotated[float, OwnUnit] = Field(description="Of both values.")
+    until: Seconds[float] = Field(description="End of what was searched, from the start.")
+    periodic: bool = Field(description="Whether that is a period, so that the extremes are those of all time.")
+
+
 class SceneEquilibrium(View):
     """A place where the scene can rest."""
 
@@ -158,7 +184,7 @@ class DescribedAccuracy(View):
         "measured against closed form: of a method, the difference from it with its bound added."
     )
     inherited: Ratio[float] | None = Field(
-        description="Largest change of any column of places and rates by input_uncertainty, to first order, relative "
+        description="Largest change of any column by input_uncertainty, to first order, relative "
         "to the largest value in its unit; null where it is not asked for or not known."
     )
     horizon: Seconds[float] | None = Field(
@@ -187,5 +213,7 @@ class DescribedSceneAnswer(Envelope):
     )
     problem: SceneProblem | None = Field(default=None, description="If mechanics leaves something undecided.")
     trajectory: DescribedTrajectory | None = None
+    occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was asked for, in its order.")
+    extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were asked for.")
     equilibria: list[SceneEquilibrium] | None = None
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

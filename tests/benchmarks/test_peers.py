@@ -142,7 +142,7 @@ def test_the_fastest_setting_that_reaches_an_error_is_compared():
     assert closest(points) == points[2]
 
 
-def test_states_hold_the_attitude_where_it_is_asked_for():
+def test_states_hold_the_attitude_where_it_is_requested():
     assert initial_state(T_HANDLE).tolist() == [1.0, 10.0, 1.0]
     assert initial_state(replace(T_HANDLE, attitude=True)).tolist() == [1.0, 10.0, 1.0, 1.0, 0.0, 0.0, 0.0]
 

@@ -191,7 +191,7 @@ def shape(value: Any) -> Any:
     return [shape(entry) for entry in value] if isinstance(value, list) else isinstance(value, bool)
 
 
-def test_every_certified_question_is_asked() -> None:
+def test_every_certified_question_is_sent() -> None:
     assert {param.values[0] for param in asking()} == set(ROUTES)
     assert {path.replace("/v1/", CERTIFIED) for path in ROUTES} == {path for path in ALL if CERTIFIED in path}
     assert len(ROUTES) == 7

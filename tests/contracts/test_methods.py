@@ -120,7 +120,7 @@ def test_finer_settings_give_smaller_errors(kind: str) -> None:
 
 
 @every
-def test_every_time_is_served_in_the_order_asked(kind: str) -> None:
+def test_every_time_is_served_in_the_order_requested(kind: str) -> None:
     system, method = elliptic_functions(), finest(kind)
     times = np.array([1.5, -0.7, 0.0, 2.5, 1.5, -3.0, 0.1, -0.7])
     states = method.integrate(system, times).states
@@ -196,7 +196,7 @@ def test_units_do_not_matter(kind: str, exponent: int) -> None:
 
 
 @pytest.mark.parametrize("kind", [kind for kind in MARCHING if CATALOGUE[kind].preserves])
-def test_what_is_claimed_to_be_kept_is_kept_at_coarse_steps(kind: str) -> None:
+def test_what_is_claimed_to_be_conserved_is_conserved_at_coarse_steps(kind: str) -> None:
     # Errors of several per cent, invariants at round-off.
     member = CATALOGUE[kind]
     # Every third time is a grid point, the others lie between two.
@@ -241,7 +241,7 @@ def test_the_statement_of_error_is_never_below_the_truth_nor_far_above(kind: str
 
 
 @every
-def test_a_body_of_the_house_is_served(kind: str) -> None:
+def test_a_catalogue_body_is_served(kind: str) -> None:
     # Imported here: these laws do not rest on the free body.
     from core.bodies.mass_properties import diagonal
     from core.rotation.torque_free import TorqueFree

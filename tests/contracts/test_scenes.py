@@ -163,7 +163,7 @@ def test_every_scene_of_the_catalogue_is_under_contract() -> None:
 
 @settings(deadline=None, max_examples=60, derandomize=True)
 @given(scene=any_scene)
-def test_energy_is_kept_but_for_the_stated_cost_of_jerks(scene: Any) -> None:
+def test_energy_is_conserved_but_for_the_stated_cost_of_jerks(scene: Any) -> None:
     answer = scene.answer(np.linspace(0, span_of(scene), 33))
     s = dict(answer.trajectory)
     kinetic, potential = ENERGY[type(scene)](scene, s)
@@ -271,7 +271,7 @@ def test_each_output_alone_is_what_it_is_among_all(scene: Any, data: Any) -> Non
 
 @settings(deadline=None, max_examples=40, derandomize=True)
 @given(scene=any_scene)
-def test_samples_depend_on_their_own_time_only_and_come_in_the_order_asked(scene: Any) -> None:
+def test_samples_depend_on_their_own_time_only_and_come_in_the_order_requested(scene: Any) -> None:
     span = span_of(scene)
     assume(span > 0)
     times = np.linspace(0, span, 7)

@@ -102,7 +102,7 @@ def test_what_is_damaged_is_compiled_again(compiled: Program, ending: str, damag
     assert compiled.run() == (2, "")
 
 
-def test_where_there_is_no_room_nothing_is_cached(program: Program) -> None:
+def test_on_a_full_disk_nothing_is_cached(program: Program) -> None:
     hits, errors = program.run(FULL)
     assert hits == 0
     assert "CacheUnusable" in errors

@@ -247,7 +247,7 @@ def test_rows_are_read_or_refused_at_their_first_fault(data: st.DataObject) -> N
         assert not array.flags.writeable
 
 
-def test_an_angle_out_of_range_is_told_to_be_in_radians() -> None:
+def test_an_angle_out_of_range_is_reported_to_be_in_radians() -> None:
     slope = Quantity("rad", at_least=0, at_most=math.pi / 2)
     for value in (30.0, -1.0):
         with pytest.raises(InvalidParameter) as caught:

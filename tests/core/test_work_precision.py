@@ -115,7 +115,7 @@ def test_the_recommendation_reaches_the_accuracy_when_it_is_followed(accuracy: f
     assert measured(method.integrate(system, TIMES).states, reference, TIMES, norm).largest <= accuracy
 
 
-def test_an_accuracy_that_nothing_reached_is_told_with_the_best() -> None:
+def test_an_accuracy_that_nothing_reached_is_reported_with_the_best() -> None:
     found = work_precision(elliptic_functions(), TIMES, [ExplicitEuler(0.01)], accuracy=1e-9)
     assert found.recommendation.method is None
     assert "the smallest error was 0.0" in found.recommendation.reason
@@ -159,7 +159,7 @@ def test_a_method_is_refused_that_is_there_already_with_the_same_settings() -> N
     assert len(work_precision(elliptic_functions(), TIMES, methods[:3]).curves) == 2
 
 
-def test_questions_that_cannot_be_asked() -> None:
+def test_questions_that_cannot_be_answered() -> None:
     with pytest.raises(InvalidParameter, match="methods must"):
         work_precision(elliptic_functions(), TIMES, [])
     with pytest.raises(InvalidParameter, match="times must"):

@@ -164,7 +164,7 @@ def test_no_component_of_a_solid_is_too_small_to_count(solid, axis, first, secon
 
 @plain
 @given(st.floats(-300.0, -1.0))
-def test_a_disturbance_of_a_solid_is_told_from_none(exponent):
+def test_a_disturbance_of_a_solid_is_distinguished_from_none(exponent):
     small = 10.0**exponent
     try:
         flip = stability(DECK.mass_properties(), 10.0, (small, 0.0)).flip

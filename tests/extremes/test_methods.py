@@ -80,7 +80,7 @@ def test_the_error_of_a_run_that_nothing_can_judge_is_relative_to_what_is_certai
         ([LARGEST, LARGEST, 0.0], [0.0, LARGEST], {"kind": "runge-kutta-4", "step": 5e-324}),
     ],
 )
-def test_whatever_is_asked_has_a_price_and_a_plan(rates: Any, times: Any, method: Any) -> None:
+def test_whatever_the_request_has_a_price_and_a_plan(rates: Any, times: Any, method: Any) -> None:
     """A price that is no number would be added to the backlog and to the quota of a key, which then are none either."""
     motion = {"body": BODY, "angular_velocity": rates, "times": times}
     for path, asked in (

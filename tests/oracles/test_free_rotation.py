@@ -87,7 +87,7 @@ def test_every_promised_digit_is_right(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
-def test_momentum_stands_still_in_space_and_energy_is_kept(case: Case) -> None:
+def test_momentum_stands_still_in_space_and_energy_is_conserved(case: Case) -> None:
     omega, attitude = references(case, 50)
     with mp.workdps(60):
         moments = [mpf(i) for i in case.moments]

@@ -174,13 +174,13 @@ async def test_evenly_spaced_times_are_exactly_so() -> None:
     assert float(alone["time"][0]) == 0.3
 
 
-async def test_only_what_is_asked_for_is_answered() -> None:
+async def test_only_what_is_requested_is_answered() -> None:
     found = await answer(TRAJECTORY, QUESTION | {"outputs": ["attitude"]})
     assert "attitude" in found
     assert not {"time", "angular_velocity"} & set(found)
 
 
-async def test_a_body_held_away_from_its_centre_of_mass_is_told_not_to_be_free() -> None:
+async def test_a_body_held_away_from_its_centre_of_mass_is_reported_not_to_be_free() -> None:
     """By every answer about it, certified or not."""
     body = {"kind": "composite", "parts": [WALL | {"position": ["3", 0, "4"]}], "about": "origin"}
     plain = {"body": {"kind": "cuboid", "edges": [1.0, 2.0, 0.1], "mass": 3.0}, "position": [3.0, 0.0, 4.0]}
@@ -390,7 +390,7 @@ async def test_digits_are_required() -> None:
 
 
 @pytest.mark.parametrize("kind", ["mesh", "cubiod"])
-async def test_a_kind_that_has_no_certified_form_is_told_those_that_have(kind: str) -> None:
+async def test_a_kind_that_has_no_certified_form_is_answered_with_those_that_have(kind: str) -> None:
     [fault] = (await asked(TRAJECTORY, QUESTION | {"body": {"kind": kind}})).json()["errors"]
     assert fault["pointer"] == "/body/kind"
     assert "'cuboid'" in fault["detail"]

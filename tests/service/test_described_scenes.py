@@ -90,6 +90,31 @@ class TestNumbers:
 
 
 HOSTILE: dict[str, tuple[Any, str]] = {
+    "an attraction without a body": (
+        PENDULUM | {"connections": [{"kind": "gravitation", "a": "p", "b": "q"}]},
+        "/connections/0/b",
+    ),
+    "a strength that is no number": (
+        PENDULUM | {"connections": [{"kind": "inverse-square", "a": "p", "b": [0, 0], "strength": "1/0"}]},
+        "/connections/0/strength",
+    ),
+    "a value that is no quantity": (
+        PENDULUM | {"times": [1], "outputs": [{"when": {"quantity": "../p", "equals": 1}}]},
+        "/outputs/0/when/quantity",
+    ),
+    "extremes of nothing": (PENDULUM | {"times": [1], "outputs": [{"extremes": "p.mass"}]}, "/outputs/0/extremes"),
+    "a search for nothing": (PENDULUM | {"times": [1], "outputs": [{"when": 3}]}, "/outputs/0/when"),
+    "a search of two kinds": (PENDULUM | {"times": [1], "outputs": [{"when": {}, "extremes": "p"}]}, "/outputs/0"),
+    "a search without a value": (
+        PENDULUM | {"times": [1], "outputs": [{"when": {"quantity": "p.position.x"}}]},
+        "/outputs/0/when/equals",
+    ),
+    "a search for the time before the first": (
+        PENDULUM | {"times": [1], "outputs": [{"when": {"quantity": "p.position.x", "equals": 0, "nth": 0}}]},
+        "/outputs/0/when/nth",
+    ),
+    "a list as an output": (PENDULUM | {"outputs": [["energy"]]}, "/outputs/0"),
+    "a search without an end": (PENDULUM | {"outputs": [{"extremes": "p.position.x"}]}, "/times"),
     "no bodies": (PENDULUM | {"bodies": {}}, "/bodies"),
     "a list of bodies": (PENDULUM | {"bodies": [POINT]}, "/bodies"),
     "too many bodies": ({"bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(101)}}, "/bodies"),
@@ -391,7 +416,7 @@ class TestPlan:
         assert plan["answerable"]
         assert plan["cost"]["evaluations"] is None
 
-    async def test_refusals_are_told_where_they_stand(self) -> None:
+    async def test_refusals_are_reported_where_they_stand(self) -> None:
         plan = (await asked({"path": PATH, "request": of_rod(a="q")}, "/v1/plan")).json()
         assert [fault["pointer"] for fault in plan["errors"]] == ["/request/connections/0/a"]
 
@@ -401,3 +426,31 @@ def test_a_server_answers_in_its_compute_processes(server: Server) -> None:
     assert answer["model"]["name"] == "one period"
     refused = httpx.post(f"{server.url}{PATH}", json=of_rod(b="p"))
     assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/connections/0")
+
+
+async def test_searches_and_sums_are_answered_and_planned() -> None:
+    """A pendulum of 5 m from (3, -4): lowest after a quarter of its period, as fast as its fall of 1 m makes it."""
+    outputs = [
+        {"when": {"quantity": "p.position.x", "equals": 0, "nth": 1}},
+        {"extremes": "p.velocity.length"},
+        "work-in-time",
+        "paths-in-time",
+        "momenta-in-time",
+    ]
+    question = PENDULUM | {"times": [0, 10], "outputs": outputs}
+    response = await asked(question)
+    assert response.status_code == 200, response.text
+    answer = response.json()
+    (first,) = answer["occurrences"]
+    assert first["time"] == pytest.approx(answer["period"] / 4, rel=1e-14)
+    assert first["error"] < 1e-13
+    (speed,) = answer["extremes"]
+    assert speed["largest"] == pytest.approx(19.62**0.5, rel=1e-14)
+    assert speed["periodic"]
+    columns = answer["trajectory"]["columns"]
+    assert set(columns) == {
+        "gravity.work", "p.path", "momentum", "angular_momentum", "p.momentum", "p.angular_momentum",
+    }  # fmt: skip
+    plan = await asked({"path": PATH, "request": question}, "/v1/plan")
+    assert plan.status_code == 200, plan.text
+    assert not plan.json().get("errors")

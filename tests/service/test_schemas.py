@@ -117,7 +117,7 @@ class TestSamples:
                 assert (caught.value.needed, caught.value.limit) == (count, 5)
                 assert caught.value.remedy
 
-    def test_a_list_is_counted_and_kept_in_its_order(self) -> None:
+    def test_a_list_is_counted_and_stays_in_its_order(self) -> None:
         times = [3.0, -1.0, 3.0, 0.0]
         assert sample_count(times, Budget(samples=4)) == 4
         found = sample_times(times, Budget(samples=4))
@@ -153,7 +153,7 @@ class TestTimes:
             ("[]", ()),
         ],
     )
-    def test_faults_are_told_of_the_kind_that_was_sent(self, sent: str, place: tuple[Any, ...]) -> None:
+    def test_faults_are_reported_of_the_kind_that_was_sent(self, sent: str, place: tuple[Any, ...]) -> None:
         with pytest.raises(ValidationError) as caught:
             READ_TIMES.validate_json(sent)
         kinds = {tuple(error["loc"][1:]): error["loc"][0] for error in caught.value.errors()}

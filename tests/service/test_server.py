@@ -275,7 +275,7 @@ def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_eve
         time.sleep(0.1)
 
 
-def test_a_large_question_in_flight_is_finished_when_the_server_is_told_to_stop(
+def test_a_large_question_in_flight_is_finished_when_the_server_is_stopped(
     start_server: Callable[..., Server],
 ) -> None:
     server = start_server(POLHODE_COMPUTE_WORKERS="1")
@@ -292,7 +292,7 @@ def test_a_large_question_in_flight_is_finished_when_the_server_is_told_to_stop(
     assert "Traceback" not in log
 
 
-def test_what_cannot_be_finished_in_time_is_refused_when_the_server_is_told_to_stop(
+def test_what_cannot_be_finished_in_time_is_refused_when_the_server_is_stopped(
     start_server: Callable[..., Server],
 ) -> None:
     server = start_server(POLHODE_COMPUTE_WORKERS="1", POLHODE_SHUTDOWN_SECONDS="0")

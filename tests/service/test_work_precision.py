@@ -43,7 +43,7 @@ async def test_equal_questions_get_equal_bytes() -> None:
     assert first.content == second.content
 
 
-async def test_times_are_medians_of_repeats_if_asked_for() -> None:
+async def test_times_are_medians_of_repeats_if_requested() -> None:
     answer = (await asked(QUESTION | {"repeats": 3})).json()
     assert all(one["seconds"] > 0.0 for curve in answer["curves"] for one in curve["measurements"])
 
@@ -57,7 +57,7 @@ async def test_a_failing_setting_is_listed_with_its_reason() -> None:
     assert "step" in failed["failure"] or "double range" in failed["failure"]
 
 
-async def test_an_unknown_setting_is_told_where_it_stands() -> None:
+async def test_an_unknown_setting_is_reported_where_it_stands() -> None:
     methods = [{"kind": "closed-form"}, {"kind": "runge-kutta-4", "step": -1.0}]
     response = await asked(QUESTION | {"methods": methods})
     assert response.status_code == 422

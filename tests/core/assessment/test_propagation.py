@@ -64,7 +64,7 @@ def test_numbers_that_have_to_be_equal_are_changed_together() -> None:
     assert inherited(symmetric, {"moments": [1.0, 1.0, 2.0]}, 1e-6) == pytest.approx(4e-6, rel=1e-4)
 
 
-def test_what_cannot_be_asked_is_not_known() -> None:
+def test_what_cannot_be_requested_is_not_known() -> None:
     assert Propagation({"a": 1.0}, {("a",): 1e-3}, asking(lambda r: None)).of(("x",), Reference(1.0)) is None
 
 

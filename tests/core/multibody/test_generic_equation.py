@@ -141,7 +141,7 @@ def test_a_close_tolerance_agrees_with_the_model(scene: str) -> None:
     assert worst(answer.trajectory.columns) < 1e-10
 
 
-def test_error_larger_than_asked_for_is_answered_with_a_warning() -> None:
+def test_error_larger_than_requested_is_answered_with_a_warning() -> None:
     answer = moved(PENDULUM, [3.0], ExplicitEuler(0.1))
     assert answer.trajectory is not None
     (warning,) = answer.trajectory.warnings

@@ -127,7 +127,7 @@ FAULTS: list[tuple[Any, tuple[str | int, ...]]] = [
 
 
 @pytest.mark.parametrize(("description", "path"), FAULTS, ids=range(len(FAULTS)))
-def test_faults_are_told_with_their_path(description: Any, path: tuple[str | int, ...]) -> None:
+def test_faults_are_reported_with_their_path(description: Any, path: tuple[str | int, ...]) -> None:
     with pytest.raises(InvalidParameter) as refused:
         solve_scene(scene_from(description), [0.1])
     assert refused.value.path == path

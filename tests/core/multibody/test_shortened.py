@@ -39,6 +39,6 @@ def test_meaningful_places_are_those_that_the_error_supports() -> None:
     assert column.error < 5e-2
 
 
-def test_rounding_beyond_the_accuracy_is_told() -> None:
+def test_rounding_beyond_the_accuracy_is_reported() -> None:
     (warning,) = moved(digits=3).warnings
     assert warning.code == "rounded-beyond-accuracy"

@@ -71,7 +71,7 @@ def test_functions_of_balls(x: float, y: float, z: float, angle: float, size: fl
             assert abs(mpmath.mpf(found.mid().str(95, radius=False)) - want) <= mpmath.mpf(10) ** -85 * (1 + abs(want))
 
 
-def test_what_cannot_be_told_from_zero() -> None:
+def test_what_cannot_be_distinguished_from_zero() -> None:
     doubtful = arb("0 +/- 1e-90")
     assert sign(doubtful) == 0
     assert square_root(doubtful).is_zero()

@@ -254,7 +254,7 @@ def test_rest_at_the_bottom() -> None:
 
 
 @pytest.mark.parametrize("length", [1e-6, 0.1, 0.9, 1.7, 1.999999])
-def test_contact_is_kept_when_released_at_the_rim(length: float) -> None:
+def test_contact_is_maintained_when_released_at_the_rim(length: float) -> None:
     contact = figures(replace(UNIT, length=length))["contact"]
     assert contact["kept"]  # type: ignore[index]
     assert contact["limit_angle"] == pytest.approx(  # type: ignore[index]

@@ -304,7 +304,7 @@ def test_rounded_products_count_as_taut() -> None:
     assert answer.accuracy.error < 1e-13
 
 
-def test_only_what_is_asked_for_is_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_what_is_requested_is_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     def forbidden(*_: object, **__: object) -> None:
         raise AssertionError("this was not asked for")
 

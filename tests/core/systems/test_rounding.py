@@ -79,7 +79,7 @@ def test_places_left_of_the_point() -> None:
     assert to_places(np.array([1.234e-250]), 252).tolist() == [1.23e-250]
 
 
-def test_a_rounding_that_overtakes_the_accuracy_is_told() -> None:
+def test_a_rounding_that_overtakes_the_accuracy_is_reported() -> None:
     stated = Accuracy(1e-9, 1e-12, "closed form")
     assert [notice.code for notice in notices_of(stated, 1e-3)] == ["rounded-beyond-accuracy"]
     assert notices_of(stated, 1e-12) == ()

@@ -189,7 +189,7 @@ def test_a_finer_run_over_the_budget_is_refused_with_the_whole_need() -> None:
     assert allowed.work.evaluations + allowed.work.evaluations_for_error == 3000
 
 
-def test_the_order_of_the_times_is_kept() -> None:
+def test_the_order_of_the_times_is_preserved() -> None:
     times = np.array([3.0, -1.0, 0.0, 3.0, 0.5, -2.0])
     for method in (None, DormandPrince853(1e-10), ExplicitEuler(1e-4)):
         trajectory = solve(oscillator(), times, method=method)

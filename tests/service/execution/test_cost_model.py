@@ -147,7 +147,7 @@ class TestQuestions:
         st.floats(1e-12, 0.99),
     )
     @settings(deadline=None, derandomize=True, max_examples=150)
-    def test_whatever_is_asked_has_a_price_or_is_refused(
+    def test_whatever_the_request_has_a_price_or_is_refused(
         self, path: str, moments: Any, rate: Any, times: Any, kind: str, value: float
     ) -> None:
         name = dataclasses.fields(INTEGRATORS[kind])[0].name
@@ -337,7 +337,7 @@ class TestMotionsThatOutrunTheirStart:
         assert given / 2 < price("/v1/rotation/ensemble", **question, sample=sample) < 2 * given
 
 
-def test_the_parts_of_a_body_cost_the_same_whatever_is_asked() -> None:
+def test_the_parts_of_a_body_cost_the_same_whatever_the_request() -> None:
     turning = {"body": {"kind": "composite", "parts": PARTS}, "angular_velocity": [1.0, 0.0, 0.0]}
     least = price("/v1/bodies/mass-properties", body=turning["body"]) / 2
     assert price("/v1/rotation/precession", **turning) > least > 0.003

@@ -19,7 +19,7 @@ async def test_the_result_and_the_loop_goes_on_meanwhile() -> None:
     assert await task == (True, True)
 
 
-async def test_a_failure_is_told_as_it_was() -> None:
+async def test_a_failure_is_reported_as_it_was() -> None:
     with pytest.raises(KeyError, match="lost"):
         await run_in_daemon_thread(lambda: {}["lost"])
 
@@ -39,7 +39,7 @@ async def test_what_is_given_up_disturbs_nobody() -> None:
     assert failures == []
 
 
-def test_a_loop_that_is_closed_is_told_nothing() -> None:
+def test_a_loop_that_is_closed_is_sent_nothing() -> None:
     loop = asyncio.new_event_loop()
     loop.close()
     told: list[int] = []

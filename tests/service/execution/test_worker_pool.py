@@ -146,7 +146,7 @@ class TestReady:
         await processes.stop()
         assert (processes.ready, processes.any_ready, processes.pids) == (False, False, {})
 
-    async def test_what_works_is_told(self, place: Path) -> None:
+    async def test_what_works_is_reported(self, place: Path) -> None:
         async with warm(place, 2) as (processes, _):
             job = ask(processes, b"wait a")
             await until(lambda: job.begun)
@@ -282,7 +282,7 @@ class TestQueue:
             (place / "gate").touch()
             assert [await job.reply for job in jobs] == [b"0", b"1", b"2", b"3", b"4"]
 
-    async def test_what_finds_no_process_in_time_is_told_so_and_never_begun(self, place: Path) -> None:
+    async def test_what_finds_no_process_in_time_is_reported_and_never_begun(self, place: Path) -> None:
         async with warm(place) as (processes, _):
             ahead, hasty = ask(processes, b"wait a"), ask(processes, b"echo b", patience=0.05)
             patient = ask(processes, b"echo c")
@@ -374,7 +374,7 @@ class TestLoss:
             await until(lambda: lost and holds_together(processes))
             assert lost == [code]
 
-    async def test_every_exit_code_is_told_as_it_was(self, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def test_every_exit_code_is_reported_as_it_was(self, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         """Starting a process reads the codes of others, which those who bury them read too."""
         read = forkserver.read_signed  # type: ignore[attr-defined]
 
@@ -578,7 +578,7 @@ class TestKilled:
 
 
 class TestStop:
-    async def test_what_works_and_what_waits_is_told_and_nothing_goes_on(self, place: Path) -> None:
+    async def test_what_works_and_what_waits_is_reported_and_nothing_goes_on(self, place: Path) -> None:
         lost: list[int] = []
         processes = made(place, 2, lost)
         await processes.start()

@@ -122,7 +122,7 @@ async def test_large_answers_are_streamed_and_complete(service: Service) -> None
     np.testing.assert_array_equal(np.array(answer["position"])[:, 1], np.linspace(0, 1, 100_001))
 
 
-async def test_kept_answers_are_the_same(service: Service) -> None:
+async def test_cached_answers_are_the_same(service: Service) -> None:
     keeping = Service(Settings(**INLINE, cached_answers=2), TOYS)
     async with client_of(keeping) as client, client_of(service) as plain:
         for stop in (1.0, 2.0, 3.0, 1.0, 3.0, 3.0, 1.0):
@@ -136,7 +136,7 @@ async def test_kept_answers_are_the_same(service: Service) -> None:
             assert (await client.post("/v1/toy", json={})).status_code == 422
 
 
-async def test_what_is_kept_is_given_to_those_who_accept_it() -> None:
+async def test_what_is_cached_is_sent_to_those_who_accept_it() -> None:
     keeping = Service(Settings(**INLINE, cached_answers=2), TOYS)
     found = []
     async with client_of(keeping) as client:
@@ -227,7 +227,7 @@ async def test_pages_need_nothing_from_elsewhere(client: httpx.AsyncClient) -> N
     assert "script-src 'self'" in policy
 
 
-async def test_a_failure_tells_an_id_and_nothing_else(
+async def test_a_failure_gives_an_id_and_nothing_else(
     client: httpx.AsyncClient, caplog: pytest.LogCaptureFixture
 ) -> None:
     for behaviour in ("fail", "nan"):

@@ -16,7 +16,7 @@ def test_headers_describe_the_text() -> None:
 
 
 @given(st.lists(st.binary(max_size=9), min_size=1, max_size=3), st.lists(st.binary(max_size=9), min_size=1, max_size=3))
-def test_validators_tell_contents_apart(one: list[bytes], two: list[bytes]) -> None:
+def test_validators_distinguish_contents(one: list[bytes], two: list[bytes]) -> None:
     # Parts are JSON, paths, media types and versions, none of which holds a NUL.
     one, two = ([part.replace(b"\0", b"") for part in parts] for parts in (one, two))
     assert (etag_of(*one) == etag_of(*two)) == (one == two)

@@ -71,7 +71,7 @@ async def test_only_known_keys_may_ask(tmp_path: Path) -> None:
             assert (await client.get(path)).status_code == 200
 
 
-def test_keys_are_not_kept_as_they_are() -> None:
+def test_keys_are_stored_as_digests() -> None:
     key, line = new_key("alpha")
     assert key not in line
     assert len(key) > 40

@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 import uvicorn
 
+from service.http.connection import Connection
 from service.responses.json_stream import Document
-from service.settings import Settings
 from tests.service.conftest import inline_toys
 from tests.service.toy_routes import GOOD
 
@@ -39,11 +39,12 @@ def chunked(body: bytes, more: bytes = b"", behind: bytes = b"") -> bytes:
 
 
 @asynccontextmanager
-async def serving(**settings: Any) -> AsyncIterator[int]:
+async def serving(keep_alive: int = 75, **settings: Any) -> AsyncIterator[int]:
     """Serve the toys; gives the port."""
-    parser = Settings().http_parser
     app = inline_toys(**settings)
-    config = uvicorn.Config(app, port=0, http=parser, lifespan="off", log_config=None, access_log=False)
+    config = uvicorn.Config(
+        app, port=0, http=Connection, lifespan="off", log_config=None, access_log=False, timeout_keep_alive=keep_alive
+    )
     server = uvicorn.Server(config)
     started = asyncio.Event()
     startup = server.startup
@@ -143,7 +144,7 @@ async def test_what_does_not_end_is_refused(opening: bytes, more: bytes) -> None
         assert statuses(await heard(port, LAST)) == [200]
 
 
-async def test_whoever_pipelines_without_reading_is_not_read_for_ever() -> None:
+async def test_a_client_that_pipelines_without_reading_is_not_read_for_ever() -> None:
     loop, flood, sent = asyncio.get_running_loop(), ask(LARGE) * 20, 0
     async with serving() as port:
         # uvicorn cannot say in the middle of an answer that it refuses what follows; the loop closes the connection.
@@ -201,6 +202,26 @@ async def test_half_a_body_is_refused_in_time_and_the_connection_closed() -> Non
             assert statuses(received) == [408]
             assert b"\r\nconnection: close\r\n" in received
             assert b'"code":"body-too-slow"' in received
+
+
+@pytest.mark.parametrize("begin", [b"", b"P", HEAD, ask(), ask() + HEAD, ask() + b"P"])
+async def test_a_connection_without_a_whole_head_is_closed_in_time(begin: bytes) -> None:
+    """However slowly its bytes come; what was sent before that is answered."""
+    async with serving(keep_alive=1) as port:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(begin)
+        received = asyncio.create_task(reader.read())
+        while not received.done():
+            writer.write(b"x" if begin and begin != ask() else b"")
+            await asyncio.wait([received], timeout=0.05)
+        assert statuses(received.result()) == [200] * begin.count(BODY)
+        writer.close()
+
+
+async def test_a_request_that_takes_long_is_not_ended_by_the_limit_of_heads() -> None:
+    async with serving(keep_alive=1) as port:
+        slow = json.dumps(GOOD | {"behaviour": "sleep", "angular_velocity": [1.5, 1.0, 1.0]}).encode()
+        assert statuses(await heard(port, ask(slow)[:30], ask(slow)[30:] + LAST)) == [200, 200]
 
 
 async def test_unfinished_bodies_are_bounded_together() -> None:

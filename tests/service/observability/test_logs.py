@@ -48,7 +48,7 @@ def elsewhere(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("elsewhere")
-def test_a_line_tells_when_how_grave_who_and_what() -> None:
+def test_a_line_has_time_level_logger_and_message() -> None:
     made = record("%s of %d", "one", 2)
     made.created, made.msecs = 1_700_000_000.0625, 62.5
     found = read(LINES.format(made))
@@ -81,7 +81,7 @@ def test_extras_are_members() -> None:
     assert not {"pathname", "lineno", "args", "msg", "thread", "process", "exc_info"} & set(found)
 
 
-def test_what_was_raised_is_told_in_one_line() -> None:
+def test_what_was_raised_is_reported_in_one_line() -> None:
     try:
         raise ValueError("first\nsecond")
     except ValueError:
@@ -125,14 +125,14 @@ def test_whatever_is_logged_there_is_a_line(message: str, extra: Any) -> None:
     ],
     ids=["a large number", "a path", "keys that are no texts", "no Unicode"],
 )
-def test_what_json_has_no_form_for_is_told_as_text(extra: Any, told: str) -> None:
+def test_what_json_has_no_form_for_is_reported_as_text(extra: Any, told: str) -> None:
     found = read(LINES.format(record("a\nb", status=200, thing=extra)))
     assert (found["message"], found["status"], found["thing"]) == ("a\nb", 200, told)
 
 
-def test_a_process_is_configured_to_tell_all_in_lines_on_standard_error() -> None:
+def test_a_process_is_configured_to_log_lines_on_standard_error() -> None:
     script = f"""
-import logging, sys
+import logging, sys, warnings
 sys.path.insert(0, {str(ROOT)!r})
 from service.observability.logs import LOG, configure
 logging.basicConfig(stream=sys.stdout)
@@ -144,6 +144,7 @@ try:
     1 / 0
 except ZeroDivisionError:
     LOG.exception("failed")
+warnings.warn("of a package")
 """
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60)
     assert run.stdout == ""
@@ -152,7 +153,9 @@ except ZeroDivisionError:
         ("info", "polhode", "told"),
         ("warning", "uvicorn.error", "told too"),
         ("error", "polhode", "failed"),
+        ("warning", "py.warnings", found[3]["message"]),
     ]
+    assert "UserWarning: of a package" in found[3]["message"]
     assert found[0]["a"] == 1
     assert re.search("ZeroDivisionError", found[2]["traceback"])
 

@@ -54,7 +54,7 @@ EXPECTED = {
 }
 
 
-def test_the_exposition_tells_all_that_was_counted() -> None:
+def test_the_exposition_has_every_counter() -> None:
     found = read(fed(Metrics()).exposition())
     assert {name: found.get(name) for name in EXPECTED} == EXPECTED
 

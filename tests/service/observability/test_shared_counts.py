@@ -76,7 +76,7 @@ def test_a_file_that_is_damaged_counts_for_nothing(tmp_path: Path) -> None:
         assert Mine(tmp_path).lines() == ALONE
 
 
-def test_where_there_is_no_room_what_was_written_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_on_a_full_disk_what_was_written_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mine = Mine(tmp_path)
     mine.shared.publish()
     (written,) = tmp_path.iterdir()

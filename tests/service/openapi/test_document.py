@@ -121,7 +121,7 @@ class TestDocument:
                 found = found[step]
             assert found
 
-    def test_the_field_that_tells_members_apart_is_required(self, document: dict[str, Any]) -> None:
+    def test_the_field_that_distinguishes_members_is_required(self, document: dict[str, Any]) -> None:
         schemas = document["components"]["schemas"]
         for name in ("Moments", "Points", "Nest"):
             assert "kind" in schemas[name]["required"]

@@ -136,7 +136,7 @@ class TestNumeral:
         assert not reads("1e100000")
 
     @pytest.mark.parametrize(("form", "unit"), [(DecimalRate, "rad s^-1"), (DecimalEnergy, "J")])
-    def test_its_schema_tells_the_unit_of_both_forms(self, form: Any, unit: str) -> None:
+    def test_its_schema_states_the_unit_of_both_forms(self, form: Any, unit: str) -> None:
         schema = TypeAdapter(form).json_schema()
         assert schema == {"anyOf": [{"type": kind, "x-unit": unit} for kind in ("number", "string")]}
 
@@ -175,7 +175,7 @@ class TestTimes:
             TIMES.validate_json(bad, strict=True)
 
     @pytest.mark.parametrize("name", ["start", "stop"])
-    def test_faults_of_a_span_are_told_by_name(self, name: str) -> None:
+    def test_faults_of_a_span_are_reported_by_name(self, name: str) -> None:
         span = {"start": "0", "stop": "1", "count": 2} | {name: "1e2000"}
         with pytest.raises(InvalidParameter) as caught:
             instants(DecimalSpan.model_validate(span))
@@ -289,7 +289,7 @@ class TestBodyOf:
         ],
         ids=lambda value: value["kind"] if isinstance(value, dict) else None,
     )
-    def test_faults_are_told_as_seen_from_the_question(
+    def test_faults_are_reported_as_seen_from_the_question(
         self, body: dict[str, Any], error: type[MechanicsError], path: tuple[Any, ...]
     ) -> None:
         with pytest.raises(error) as caught:
@@ -297,7 +297,7 @@ class TestBodyOf:
         assert type(caught.value) is error
         assert caught.value.path == path
 
-    def test_what_mends_a_fault_is_told_too(self) -> None:
+    def test_the_remedy_of_an_error_is_given_too(self) -> None:
         with pytest.raises(NotApplicable) as caught:
             body_of(read({"kind": "ball", "radius": "1", "density": "1"}))
         assert caught.value.remedy

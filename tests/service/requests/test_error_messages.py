@@ -101,11 +101,11 @@ def test_a_missing_kind_is_answered_with_the_kinds() -> None:
         (3.0, "must be an array of 3 entries"),
     ],
 )
-def test_a_vector_of_another_length_is_told_the_right_one(value: Any, detail: str) -> None:
+def test_a_vector_of_another_length_is_answered_with_the_right_one(value: Any, detail: str) -> None:
     assert errors(asked(angular_velocity=value)) == [("/angular_velocity", detail, None)]
 
 
-def test_numbers_in_quotes_and_counts_with_a_point_are_told_how_to_write_them() -> None:
+def test_numbers_in_quotes_and_counts_with_a_point_are_answered_with_how_to_write_them() -> None:
     [(_, detail, remedy), *_] = errors(asked(angular_velocity=["1", "2", "3"]))
     assert (detail, remedy) == (
         "must be a number",
@@ -115,12 +115,12 @@ def test_numbers_in_quotes_and_counts_with_a_point_are_told_how_to_write_them() 
     assert (detail, remedy) == ("must be an integer", 'write a JSON integer: 10, not 10.0, 1e1 or "10"')
 
 
-def test_a_key_of_another_route_is_told_apart_from_one_that_is_unknown() -> None:
+def test_a_key_of_another_route_is_distinguished_from_one_that_is_unknown() -> None:
     remedy = "POST /v1/certified/rotation/trajectory answers to any number of digits from 16 to 1000"
     assert errors(asked(digits=30)) == [("/digits", "is not known here", remedy)]
 
 
-def test_at_most_twenty_faults_are_told_of_many() -> None:
+def test_at_most_twenty_faults_are_reported_of_many() -> None:
     assert len(errors({**TRAJECTORY, **{f"k{i}": 1 for i in range(1000)}})) == 20
 
 
@@ -136,14 +136,14 @@ ROD = {"hole_radius": 1.0, "length": 1.0, "mass": 1.0, "gravity": 9.81}
 IN_RADIANS = "angles are in radians: 30 degrees is 0.5236"
 
 
-def test_angles_in_degrees_are_told_to_be_radians() -> None:
+def test_angles_in_degrees_are_reported_to_be_radians() -> None:
     found = errors({**CHAIN, "slopes": [30, 50]}, "/v1/scenes/chain-on-wedge")
     assert found == [(f"/slopes/{k}", "must be at most 1.5708 rad", IN_RADIANS) for k in (0, 1)]
     found = errors({**ROD, "angle": 30.0}, "/v1/scenes/rod-in-hole")
     assert found == [("/angle", "must be at most 3.14159 rad", IN_RADIANS)]
 
 
-def test_angles_in_degrees_are_told_to_be_radians_beside_digits() -> None:
+def test_angles_in_degrees_are_reported_to_be_radians_beside_digits() -> None:
     route = ROUTES["/v1/certified/scenes/chain-on-wedge"]
     question = ANSWERING.read(route, json.dumps({**CHAIN, "slopes": ["30", "50"], "digits": 20}).encode())
     with pytest.raises(InvalidParameter) as caught:
@@ -155,7 +155,7 @@ def test_angles_in_degrees_are_told_to_be_radians_beside_digits() -> None:
     ]
 
 
-def test_a_bound_is_told_with_its_unit() -> None:
+def test_a_bound_is_reported_with_its_unit() -> None:
     found = errors(asked(body={"kind": "principal-moments", "moments": [-1.0, 1.0, 1.0]}))
     assert found == [("/body/moments/0", "must be at least 0 kg m^2", None)]
     found = errors(asked(accuracy=2.0))

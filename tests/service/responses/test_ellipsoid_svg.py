@@ -38,7 +38,7 @@ def texts(found: ElementTree.Element) -> str:
     return "\n".join("".join(text.itertext()) for text in found.iter(f"{SVG}text"))
 
 
-async def test_polhodes_of_either_side_and_the_separatrix_are_told_apart() -> None:
+async def test_polhodes_of_either_side_and_the_separatrix_are_distinguished() -> None:
     found = await figure({"body": SOURCE, "energy": 1.0, "polhodes": {"count": 9, "seed": 1}, "separatrix": True})
     assert {"black", "#c1440e", "#1f4e8c"} < colours(found)
     told = texts(found)

@@ -112,7 +112,7 @@ def test_three_different_moments_and_three_equal_ones_do_not_drift() -> None:
     assert drift(Fraction(2), Fraction(2), Fraction(2), Fraction(5)) == 0
 
 
-def test_an_unstable_spin_is_told_from_a_stable_one() -> None:
+def test_an_unstable_spin_is_distinguished_from_a_stable_one() -> None:
     assert unstable_spin((True, True), (0.0, -2.0, 0.0)) == UNSTABLE_SPINS["saddle"]
     assert unstable_spin((False, True), (3.0, -2.0, 0.0)) == UNSTABLE_SPINS["degenerate"]
     assert unstable_spin((True, False), (0.0, 1.0, 0.0)) == UNSTABLE_SPINS["degenerate"]

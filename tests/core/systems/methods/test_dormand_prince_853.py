@@ -37,7 +37,7 @@ def test_as_efficient_as_the_published_control() -> None:
 
 
 @pytest.mark.parametrize("n", [2, 3, 100, 5000])
-def test_how_many_samples_are_asked_for_changes_no_step(n: int) -> None:
+def test_how_many_samples_are_requested_changes_no_step(n: int) -> None:
     system = prey_and_predator()
     few = DormandPrince853(1e-9).integrate(system, np.array([30.0]))
     many = DormandPrince853(1e-9).integrate(system, np.linspace(0, 30, n))
@@ -68,7 +68,7 @@ def test_the_time_is_given_to_the_equation() -> None:
     assert np.abs(DormandPrince853(1e-12).integrate(bell(), times).states[:, 0] - np.exp(-(times**2))).max() < 1e-10
 
 
-def test_a_solution_that_ceases_to_exist_is_told_with_the_place() -> None:
+def test_a_solution_that_ceases_to_exist_is_reported_with_the_place() -> None:
     with pytest.raises(InvalidParameter, match="at t = 1 s") as refused:
         DormandPrince853(1e-9).integrate(explosion(), np.array([2.0]))
     assert refused.value.path == ("tolerance",)

@@ -84,7 +84,7 @@ def test_rounding_of_the_grid_does_not_add_up_over_many_steps() -> None:
     st.floats(1e-3, 0.2),
     st.lists(st.floats(-3.0, 3.0), max_size=12),
 )
-def test_states_at_grid_points_are_the_same_whatever_other_times_are_asked_for(method, system, step, others) -> None:
+def test_states_at_grid_points_are_the_same_whatever_other_times_are_requested(method, system, step, others) -> None:
     """In both directions of time, to the last bit, with the work of the samples between them counted."""
     grid = step * np.array([0, 1, 2, 5, 9, -1, -3, -4], dtype=float)
     alone = method(step).integrate(system, grid)

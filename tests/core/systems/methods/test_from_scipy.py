@@ -34,7 +34,7 @@ def test_a_stiff_motion_takes_few_steps(method: type) -> None:
 
 
 @pytest.mark.parametrize("method", [Lsoda, Radau])
-def test_a_solution_that_ceases_to_exist_is_told(method: type) -> None:
+def test_a_solution_that_ceases_to_exist_is_reported(method: type) -> None:
     with pytest.raises((InvalidParameter, BudgetExceeded)):
         method(1e-8).integrate(explosion(), np.array([2.0]), Budget(evaluations=100_000))
 
