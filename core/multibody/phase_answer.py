@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +10,9 @@ from flint import arb
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, NotApplicable
 from core.multibody.answer import (
+    BodyAcceleration,
     Column,
+    ForceAnswer,
     How,
     SceneAccuracy,
     SceneAnswer,
@@ -85,11 +87,12 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         if len(asked.times):
             trajectory = _trajectory(motion, asked)
     started = motion.phases[0] if motion.phases else None
+    accelerations: Mapping[str, BodyAcceleration] = {}
+    forces: Mapping[str, ForceAnswer] = {}
     if started is None:
         problem = motion.problem
         assert problem is not None, "a motion without phases has a problem"
         model = SceneModel("undecided", problem.explanation, 0, 0, count, 0, (count, 0), (), tuple(noticed))
-        accelerations, forces = {}, {}
     else:
         found = started.models[0]
         multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
@@ -109,8 +112,8 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         None,
         tuple(motion.events),
         motion.ended,
-        tuple(_told(phase, motion) for phase in motion.phases),
-        _problem(motion),
+        phases=tuple(_told(phase, motion) for phase in motion.phases),
+        problem=_problem(motion),
     )
 
 

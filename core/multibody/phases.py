@@ -625,10 +625,10 @@ class _Run:
                 reactions[r] = reactions[r] + ratio * x
         # The row's multiplier answers an acceleration; an impulse is answered alike.
         for j, (row, slip) in enumerate(zip(phase.tables[k].normal, phase.tables[k].slip, strict=True)):
-            push = ZERO if row is None else reactions.get(row, ZERO)
+            push: Ball = ZERO if row is None else reactions.get(row, ZERO)
             if not is_zero(push) and push < 0:
                 return False
-            rub = ZERO if slip is None else reactions.get(slip, ZERO)
+            rub: Ball = ZERO if slip is None else reactions.get(slip, ZERO)
             if not is_zero(rub) and not abs(rub) < self.unilateral[j].static * push:
                 return False
         return True
@@ -665,8 +665,8 @@ def _pulls(piece: Piece) -> Vector:
     found = []
     for i, x in enumerate(piece.acceleration):
         load, mass = piece.table.load.get(i), piece.table.mass.get((i, i))
-        free = ZERO if load is None or mass is None else abs(load / mass)
-        found.append(free if free > abs(x) else x)
+        free: Ball = ZERO if load is None or mass is None else abs(load / mass)
+        found.append(free if float(free) > abs(float(x)) else x)
     return found
 
 
