@@ -194,7 +194,8 @@ class Contact(Connection):
 class String(Connection):
     """An inextensible string through places and over drums; a drum without slip divides it.
 
-    It is taut at the start unless it is longer than its way. `restitution` is that of the jerk when it becomes taut.
+    It is taut at the start unless it is longer than its way. `restitution` is that of the jerk when it becomes taut;
+    where it is given, velocities may open or jerk the string at the start.
     """
 
     through: Sequence[Place]

@@ -132,8 +132,11 @@ class PhaseMotion:
 
 
 def one_sided(scene: Scene) -> bool:
-    """Return whether a scene has anything that pushes and does not pull, strings apart."""
-    return any(connection.kind == "contact" for connection in scene.connections)
+    """Return whether a scene has anything that pushes and does not pull, or a string of which a jerk is foreseen."""
+    return any(
+        connection.kind == "contact" or getattr(connection, "restitution", None) is not None
+        for connection in scene.connections
+    )
 
 
 def motion_in_phases(scene: Scene, end: float) -> PhaseMotion:
