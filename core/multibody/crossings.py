@@ -364,6 +364,13 @@ class Sampled:
                 first = int(above[0]) + int(np.argmax(g[above[0] :] < -low[above[0] :]))
                 above = above[above < first]
             start = int(above[-1])
+            for _ in range(2):
+                # Newton's method needs a start on the falling side of a curve that may have risen before.
+                fine = np.linspace(fine[start], fine[first], _CLOSER)
+                g, low = (x[0] for x in Sampled(self.phase, self.model, [watch]).curves(fine))
+                below = g < -low
+                first = int(np.argmax(below)) if below.any() else _CLOSER - 1
+                start = max(first - 1, 0)
             a, b = g[start], g[first]
             guess = fine[start] + (fine[first] - fine[start]) * (a / (a - b) if a > 0 else 0.5)
             if best is None or guess < best[0]:

@@ -43,7 +43,7 @@ from core.multibody.polynomials import BITS, ZERO, Ball, evaluated, is_zero, siz
 from core.multibody.rank import independent
 from core.multibody.table import Row, Table
 
-MOST_EVENTS = 500
+MOST_EVENTS = 1000
 """Events that one question may have: what bounces elastically never ends."""
 TOUCHING = 1e-9
 """Gap, relative to its terms, below which something touches at the start."""
