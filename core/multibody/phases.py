@@ -43,7 +43,7 @@ from core.multibody.polynomials import BITS, ZERO, Ball, evaluated, is_zero, siz
 from core.multibody.rank import independent
 from core.multibody.table import Row, Table
 
-MOST_EVENTS = 1000
+MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
 TOUCHING = 1e-9
 """Gap, relative to its terms, below which something touches at the start."""
@@ -53,7 +53,7 @@ SLOW = 2.0**-42
 """Share of the largest rate below which several contacts that bounce in turn come to rest."""
 LISTED = 12
 """Bounces of one contact that are listed before the rest is summed up."""
-FINER_BITS = (1280, 2560)
+FINER_BITS = (1280,)
 TOLD = 16.0
 """The difference of the two tracks, times this, is what a state is taken to be wrong by."""
 FLOOR = 2.0**-96
