@@ -82,6 +82,30 @@ def decided(
     return states
 
 
+def stays(base: Table, unilateral: Sequence[Unilateral], touching: Sequence[int]) -> bool:
+    """Return whether a scene without any motion is in equilibrium: what touches may stay closed, and nothing moves.
+
+    A contact that could as well open without a force on it is closed with the force zero. Where mechanics would allow
+    another motion besides, the scene is in equilibrium all the same.
+    """
+    q, v = base.q, base.v
+    states = [State.OPEN] * len(unilateral)
+    for i in touching:
+        states[i] = State.CLOSED if unilateral[i].slip is None else State.STICK
+    found = responses(phase_table(base, (), (), q, v).table, unilateral, touching)
+    acceleration = list(found.start)
+    at = _Situation(base, unilateral, q, v, {i: (states[i],) for i in touching}, found)
+    for group in found.clusters():
+        require_few(unilateral, group, "contacts in equilibrium at once")
+        balance = balanced(unilateral, group, [states[i] for i in group], found)
+        if balance is None or isinstance(balance, Problem):
+            return False
+        if not all(is_zero(x) or x > 0 for x in _conditions(at, group, balance)):
+            return False
+        acceleration = [a + (b - c) for a, b, c in zip(acceleration, balance.acceleration, found.start, strict=True)]
+    return all(is_zero(x) for x in acceleration)
+
+
 def _choices(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> tuple[State, ...]:
     if one.slip is None:
         return (State.CLOSED, State.OPEN)

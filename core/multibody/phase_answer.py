@@ -38,6 +38,8 @@ from core.multibody.whole import WholeStates
 MOST_NUMBERS = 5_000_000
 ANSWERED = ("accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
 """Outputs that are answered about scenes with contacts."""
+THRESHOLDS = "thresholds"
+"""Place of a question about rest among the outputs: it is answered apart from the motion."""
 _NOT_KNOWN = "what the uncertainty of the inputs does is not followed through events"
 
 
@@ -59,7 +61,7 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
             path=("method",),
             remedy="leave the method out",
         )
-    unknown = [i for i, output in enumerate(asked.outputs) if output not in ANSWERED and output != "equilibria"]
+    unknown = [i for i, output in enumerate(asked.outputs) if output not in (*ANSWERED, "equilibria", THRESHOLDS)]
     if unknown:
         raise NotApplicable(
             f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from core.errors import BudgetExceeded
-from core.multibody.answer import SceneModel
+from core.multibody.answer import RestRange, SceneModel
 from core.multibody.generic_equation import weight_of
 from core.multibody.inherited import MOST_INPUTS
 from core.multibody.solve import OUTPUTS, solve_scene
@@ -58,6 +58,8 @@ QUICK = 10.0
 SEARCHED = 10_000.0
 """Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
+VALUES = 270.0
+"""Values of a number at which rest is looked for, about the most: 64 on either side, and some 70 halvings for an end."""
 FOLLOWED = 2000
 """Samples that a search along the motion takes, or a sum."""
 
@@ -104,7 +106,14 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
         answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
+    if found.thresholds is not None:
+        answer["thresholds"] = [_of_rest(one) for one in found.thresholds]
     return answer
+
+
+def _of_rest(found: RestRange) -> dict[str, Any]:
+    ends = {"lower": found.lower, "upper": found.upper}
+    return fields_of(found) | {name: None if end is None else fields_of(end) for name, end in ends.items()}
 
 
 def _model(model: SceneModel) -> dict[str, Any]:
@@ -137,6 +146,9 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         "pairs of connections": connections**2,
         "connections times pairs of bodies": connections * bodies**2,
     }
+    # A scene is read anew for every value of a number at which it is looked.
+    read = 1.0 + VALUES * len(_thresholds(question))
+    found = {name: count * read for name, count in found.items()}
     if question.times is not None:
         # What is searched or summed up along the motion looks at it as often as thousands of samples do.
         samples = sample_count(question.times, budget) + FOLLOWED * len(_along(question))
@@ -162,7 +174,13 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
 def _along(question: DescribedSceneRequest) -> list[Any]:
     """Return the outputs that need the motion between the samples."""
     summed = ("work-in-time", "paths-in-time")
-    return [one for one in question.outputs or () if not isinstance(one, str) or one in summed]
+    other = _thresholds(question)
+    return [one for one in question.outputs or () if (not isinstance(one, str) or one in summed) and one not in other]
+
+
+def _thresholds(question: DescribedSceneRequest) -> list[Any]:
+    """Return the outputs that ask for ranges of numbers."""
+    return [one for one in question.outputs or () if isinstance(one, Mapping) and "thresholds" in one]
 
 
 def _of_method(question: DescribedSceneRequest, bodies: float, connections: float) -> dict[str, float]:
@@ -226,7 +244,8 @@ def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> A
         with work_limit(SEARCHED):
             return solved(question, budget)
     except WorkLimitReached:
-        others = question.outputs and [name for name in question.outputs if name != "equilibria"]
+        long = ["equilibria", *_thresholds(question)]
+        others = question.outputs and [one for one in question.outputs if one not in long]
         return solved(question.model_copy(update={"outputs": others}), budget)
 
 
