@@ -2117,7 +2117,7 @@ class PlannedFault(TypedDict):
 class AssessmentRequest(TypedDict):
     """A question, and what was submitted as its answer."""
 
-    question: AskedQuestion
+    question: EndpointRequest
     submissions: Sequence[Mapping[str, ClaimDocument]]
     comparison: NotRequired[RelAbs | SigFig | DecDig | Interval | Data | None]
     comparisons: NotRequired[Mapping[str, RelAbs | SigFig | DecDig | Interval | Data] | None]
@@ -2128,7 +2128,7 @@ class AssessmentRequest(TypedDict):
     reveal: NotRequired[bool]
 
 
-class AskedQuestion(TypedDict):
+class EndpointRequest(TypedDict):
     """A request to another endpoint, whose answer is the reference."""
 
     path: str
@@ -2294,7 +2294,7 @@ class ReferenceFigure(TypedDict):
 class VariantsRequest(TypedDict):
     """A question, and what varies in it."""
 
-    question: AskedQuestion
+    question: EndpointRequest
     vary: Mapping[str, VariedInput]
     seed: int
     count: NotRequired[int]

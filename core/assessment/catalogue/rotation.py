@@ -87,7 +87,7 @@ def _quotient_of_moments(figure: Figure) -> Iterator[Any]:
 def _other_day(figure: Figure) -> Iterator[Any]:
     if figure.subject == WOBBLE:
         other = "sidereal" if figure.request.get("day", "sidereal") == "solar" else "solar"
-        yield figure.asked({**figure.request, "day": other})
+        yield figure.answered({**figure.request, "day": other})
 
 
 def _unstable_extreme(figure: Figure) -> Iterator[Any]:
@@ -169,14 +169,14 @@ def _shifted(figure: Figure) -> Iterator[Any]:
     times = _of_samples(figure)
     if times is not None and len(times) > 1:
         for moved in (np.append(times[1:], 2.0 * times[-1] - times[-2]), np.append(times[0], times[:-1])):
-            yield figure.asked({**figure.request, "times": moved.tolist()})
+            yield figure.answered({**figure.request, "times": moved.tolist()})
 
 
 def _time_scaled(figure: Figure) -> Iterator[Any]:
     times = _of_samples(figure)
     if times is not None:
         for scale in TIME_SCALES:
-            yield figure.asked({**figure.request, "times": (scale * times).tolist()})
+            yield figure.answered({**figure.request, "times": (scale * times).tolist()})
 
 
 def _slow_precession(figure: Figure) -> Iterator[Any]:

@@ -10,12 +10,12 @@ import numpy as np
 from pydantic import Field
 
 from core.assessment.answer_key import Document, Terms, key_of
-from core.assessment.asked_question import VARIATIONS
 from core.assessment.catalogue import MISTAKES
 from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
+from core.assessment.graded_question import VARIATIONS
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
@@ -24,7 +24,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.requests.request_reader import Limits, Reader
-from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, AskedQuestion, QuestionTable
+from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, EndpointRequest, QuestionTable
 from service.routes.assessments.submissions import SubmissionList
 from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
@@ -50,7 +50,7 @@ Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 class AssessmentRequest(Request):
     """A question, and what was submitted as its answer."""
 
-    question: AskedQuestion
+    question: EndpointRequest
     submissions: Annotated[list[Any], SubmissionList()] = Field(
         description="Each an object of claims by JSON pointer into the answer of the question. One that cannot be read "
         "is answered with its format_errors, and the others are graded."
@@ -98,12 +98,12 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
         uncertainty = _uncertainty(question)
-        asked = table.answered(question.question, budget, uncertainty)
-        warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
+        graded = table.answered(question.question, budget, uncertainty)
+        warnings = [notice.inside(*WITHIN) for notice in graded.answer.get("warnings", ())]
         credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
         catalogue = credited(MISTAKES, credits)
-        grader = Grader(asked, question.comparison, comparisons, question.reveal, catalogue, _names(question))
+        grader = Grader(graded, question.comparison, comparisons, question.reveal, catalogue, _names(question))
         results = [
             submission_view(i, grader.judged(submission), reveal=question.reveal)
             for i, submission in enumerate(question.submissions)
@@ -137,7 +137,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         if len(question.submissions) > FEW_SUBMISSIONS:
             return False
         if _claims_with("formula", question.submissions) or _claims_with("times", question.submissions):
-            # The question is then asked in many variations, or methods are run.
+            # The question is then answered in many variations, or methods are run.
             return False
         return table.small(question.question)
 
@@ -164,7 +164,7 @@ def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body
         For what an assessment is refused with.
     """
     question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
-    asked = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
+    graded = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
     _check_tags(question.credits or {})
     claimed: list[str] = []
     timed: list[tuple[str, tuple[float, ...]]] = []
@@ -178,7 +178,7 @@ def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body
             else:
                 timed.append((pointer, tuple(times.tolist())))
     terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question))
-    return key_of(asked, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
+    return key_of(graded, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
 
 
 def _claims_with(key: str, submissions: Sequence[Any]) -> list[dict[str, Any]]:

@@ -19,14 +19,14 @@ from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.work import spend
 
-ASKING = 60
+ANSWERING = 60
 """Work (`core.work`) of asking a question again, beside what the question counts itself."""
 
 SENSITIVE: Mapping[str, tuple[str, float]] = {"ellipticity": ("a/c - 1", 1.0)}
 """Figures near a number that says nothing: by their names, the figure in which errors show, and that number."""
 
 TRAJECTORY = "rotation/trajectory"
-"""The question of which all figures but the columns are the same whatever times are asked for."""
+"""The question of which all figures but the columns are the same whatever times it has."""
 
 MEASURED = "measured"
 """What a precession is answered with beside its figures if a measurement is requested."""
@@ -55,7 +55,7 @@ VARIATIONS = 20
 
 
 class Source(Protocol):
-    """Where a question is asked, and what is declared of its fields and its answer's."""
+    """What answers a question, and what is declared of its fields and its answer's."""
 
     @property
     def subject(self) -> str:
@@ -94,8 +94,8 @@ class Variation(NamedTuple):
     figure: float
 
 
-class AssessedQuestion:
-    """A question, which is asked as often as references, uncertainties and mistakes need.
+class GradedQuestion:
+    """A question, answered as often as references, uncertainties and mistakes need.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ class AssessedQuestion:
     @cached_property
     def answer(self) -> Mapping[str, Any]:
         """The answer; raises what the question is refused with."""
-        return self._asked(self.request)
+        return self._answered(self.request)
 
     def evaluate(self, request: Any) -> Callable[[Path], Any]:
         """Ask a changed question; the result finds the value at a path of its answer, None where there is none."""
@@ -149,7 +149,7 @@ class AssessedQuestion:
         request = self.request | {"times": times.tolist()}
         if path[0] in self._source.outputs:
             request["outputs"] = [path[0]]
-        answer = self._asked(request)
+        answer = self._answered(request)
         value = value_at(answer, path)
         if not isinstance(value, np.ndarray) or len(value) != len(times):
             return None
@@ -190,8 +190,8 @@ class AssessedQuestion:
         """Return the free rotation that the question is about, None for questions about anything else."""
         return self._source.rotation(self.request) if self.subject == TRAJECTORY else None
 
-    def _asked(self, request: Any) -> Mapping[str, Any]:
-        spend(ASKING)
+    def _answered(self, request: Any) -> Mapping[str, Any]:
+        spend(ANSWERING)
         return self._source.answer(json.dumps(request))
 
     def _ask(self, request: Any, output: str | int) -> Mapping[str, Any] | None:
@@ -205,7 +205,7 @@ class AssessedQuestion:
             changes["measure"] = None
         document = json.dumps(request | changes)
         if document not in self._answers:
-            spend(ASKING)
+            spend(ANSWERING)
             try:
                 self._answers[document] = self._source.answer(document)
             except MechanicsError:
