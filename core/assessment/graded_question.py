@@ -71,6 +71,9 @@ class Source(Protocol):
     def certified(self, request: Any) -> Mapping[str, Any] | None:
         """Return the answer in proven decimal strings, None where there is none."""
 
+    def errors(self, request: Any) -> tuple[Mapping[str, Any], str] | None:
+        """Return bounds of the errors of the answer's figures and what they rest on, None where there are none."""
+
     def takes(self, field: str) -> bool:
         """Return whether a request may have a field."""
 
@@ -256,11 +259,20 @@ class GradedQuestion:
             return replace(bare, error=inside(accuracy, "error") * size, how=how, inherited=inherited)
         if form == "curve":
             return replace(bare, error=dense(value)[1], how=BETWEEN_POINTS, inherited=inherited)
+        if self._errors is not None:
+            errors, how = self._errors
+            bound = value_at(errors, path)
+            if bound is not None:
+                return replace(bare, error=_distance_of(bare, bound), how=how, inherited=inherited)
         proven = self._proven(path, bare)
         if proven is not None:
             return replace(bare, error=proven, how=CERTIFIED, inherited=inherited)
         half = inherited if self._uncertainty is None else self._in_half_ulps.of(path, bare)
         return replace(bare, error=CONDITIONING * (half or 0.0) + ROUNDING * size, how=ESTIMATE, inherited=inherited)
+
+    @cached_property
+    def _errors(self) -> tuple[Mapping[str, Any], str] | None:
+        return self._source.errors(self.request)
 
     @cached_property
     def _certified(self) -> Mapping[str, Any] | None:
@@ -295,6 +307,13 @@ class GradedQuestion:
             return replace(bare, error=ROUNDING * norm, how=OF_METHOD, inherited=inherited)
         scale = max(norm, bare.scale) if bare.form == "samples" else bare.scale
         return replace(bare, scale=scale, error=error * norm, how=accuracy["how"], inherited=inherited)
+
+
+def _distance_of(bare: Reference, bound: float | Floats) -> float:
+    """Return how far a figure is from the true one, as its form measures it, if its entries are wrong by `bound`."""
+    wrong = float(np.max(bound))
+    # A projection is the product of a unit vector with itself.
+    return 6.0 * wrong if bare.form in ("axes", "direction") else wrong
 
 
 def _body_axis(answer: Mapping[str, Any], path: Path) -> int | None:

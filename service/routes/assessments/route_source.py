@@ -75,6 +75,12 @@ class RouteSource:
         except (MechanicsError, Refusal):
             return None
 
+    def errors(self, request: Any) -> tuple[Mapping[str, Any], str] | None:
+        """Return bounds of the errors of the answer's figures and what they rest on, None without."""
+        if self.route.errors is None:
+            return None
+        return self.route.errors(self.read(json.dumps(request).encode()), self.budget)
+
     def takes(self, field: str) -> bool:
         """Return whether a request may have a field."""
         return has_field(self.route.question, field)

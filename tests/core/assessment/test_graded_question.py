@@ -93,3 +93,12 @@ def test_a_figure_with_proven_digits_is_known_to_its_last_ones() -> None:
     assert other is not None
     assert other.how.startswith("estimate")
     assert other.error > period.error
+
+
+def test_the_errors_of_figures_are_those_that_the_source_bounds() -> None:
+    graded = GradedQuestion(Pendulum(), {**REQUEST, "length": 0.25}, None)
+    rate, period = graded.reference(("rate",)), graded.reference(("period",))
+    assert rate is not None
+    assert period is not None
+    assert (rate.error, rate.how) == (1e-6, "a bound")
+    assert period.how.startswith("estimate")
