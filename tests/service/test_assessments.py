@@ -49,6 +49,17 @@ STABILITY = {
     "path": "/v1/rotation/stability",
     "request": {"body": {"kind": "principal-moments", "moments": [2, 1, 0.5]}, "rate": 1},
 }
+PLANET = {"path": "/v1/rotation/wobble", "request": {"period": 430}}
+DUMBBELLS = {
+    "path": "/v1/bodies/mass-properties",
+    "request": {
+        "body": {
+            "kind": "point-masses",
+            "masses": [0.1, 0.3, 0.7, 0.2],
+            "positions": [[0.1, 0, 0.7], [0.3, 1.1, 0], [0.2, 0.9, 2.3], [1.7, 0.4, 0.3]],
+        }
+    },
+}
 MOTION = {
     "path": "/v1/rotation/trajectory",
     "request": {
@@ -109,6 +120,8 @@ async def test_the_reference_is_the_answer_with_its_error_and_its_unit() -> None
         (INTERVAL * 1e3, "ms", "correct"),
         (INTERVAL, "ms", "incorrect"),
         (INTERVAL, None, "missing-unit"),
+        (INTERVAL, "", "missing-unit"),
+        (INTERVAL, " ", "missing-unit"),
         (INTERVAL, "m", "wrong-unit"),
         (INTERVAL, "parsec per fortnight", "wrong-unit"),
     ],
@@ -279,6 +292,8 @@ async def test_what_is_not_finite_is_no_number(text: str) -> None:
         ({"comparison": {"kind": "interval", "lower": 2.0, "upper": 1.0}}, "/comparison/upper"),
         ({"comparison": {"kind": "exactly"}}, "/comparison/kind"),
         ({"comparisons": {"/flip_interval": {"kind": "sigfig", "digits": 0}}}, "/comparisons/~1flip_interval/digits"),
+        ({"comparisons": {"/flip_intervall": {"kind": "sigfig"}}}, "/comparisons/~1flip_intervall"),
+        ({"comparisons": {"flip_interval": {"kind": "sigfig"}}}, "/comparisons/flip_interval"),
         ({"credits": {"factor-2": 2.0}}, "/credits/factor-2"),
         ({"credits": {"unknown": 0.5}}, "/credits/unknown"),
         ({"input_uncertainties": {"/gravity": 0.1}}, "/input_uncertainties/~1gravity"),
@@ -624,6 +639,11 @@ def test_what_is_wrong_with_samples_is_a_sentence() -> None:
         (ROD, HORIZONTAL, "rad s^-1", "closed form", None),
         (MOTION, "/period", "s", "ball arithmetic", None),
         (MOTION, "/angular_velocity/1", "rad s^-1", "closed form", None),
+        (PLANET, "/ellipticity", "1", "ball arithmetic", None),
+        (PLANET, "/flattening", "1", "ball arithmetic", None),
+        (DUMBBELLS, "/principal/moments/2", "kg m^2", "sums of two doubles", None),
+        (DUMBBELLS, "/inertia/about_origin", "kg m^2", "sums of two doubles", None),
+        (DUMBBELLS, "/principal/axes", "1", "sums of two doubles", None),
     ],
 )
 def test_a_reference_says_what_its_error_rests_on_and_to_which_axis_it_belongs(
@@ -633,6 +653,12 @@ def test_a_reference_says_what_its_error_rests_on_and_to_which_axis_it_belongs(
     assert (reference["unit"], reference["how"], reference["body_axis"]) == (unit, how, axis)
     size = np.abs(reference["value"]).max()
     assert 0.0 < reference["error"] <= 1e-14 * size
+
+
+def test_as_many_submissions_as_are_documented_fit_into_one_request() -> None:
+    claims = [{"/flip_interval": {"value": INTERVAL + 0.1 * (i % 2), "unit": "s"}} for i in range(5000)]
+    results = handled(FLIP, *claims)["results"]
+    assert [result["correct"] for result in results] == [True, False] * 2500
 
 
 def test_proven_references_agree_with_forty_digits() -> None:
