@@ -230,7 +230,7 @@ class GradedQuestion:
     def _made(self, path: Path) -> Reference | None:
         value = value_at(self.answer, path)
         if value is None:
-            return Reference(None, form="none") if is_null(self.answer, path) else None
+            return Reference(None, self._unit(path), "none") if is_null(self.answer, path) else None
         return self._stated(path, value, form_of(path, value, self._unit(path)), self.answer)
 
     def _unit(self, path: Path) -> str:

@@ -222,12 +222,14 @@ class Grader:
         return self._result(pointer, judgement, reference, mistakes, " ".join(why), samples)
 
     def _formula(self, pointer: str, path: Path, reference: Reference, text: str) -> JudgedClaim:
-        if reference.form not in ("number", "angle"):
+        if reference.form not in ("number", "angle", "none"):
             raise InvalidParameter("formula", "be left out: the figure is no number")
         try:
             formula = Formula.read(text, self._parameters)
         except InvalidParameter as fault:
             raise fault.inside("formula") from None
+        if reference.form == "none":
+            return self._result(pointer, Judgement("incorrect"), reference)
         if path not in self._variations:
             self._variations[path] = self._question.variations(path, self._parameters)
         judged = judge_formula(formula, self._variations[path], self._units, reference)
@@ -323,7 +325,7 @@ def credited(catalogue: Sequence[Mistake], credits: Mapping[str, float]) -> tupl
 def _converted(claim: Claim, reference: Reference) -> Any:
     """Return a claim's value in the unit of the reference, None where the unit is missing."""
     value = claim.value
-    if reference.form in ("choice", "none") or not isinstance(value, (float, np.ndarray)):
+    if reference.form == "choice" or not isinstance(value, (float, np.ndarray)):
         return value
     if claim.unit is None:
         return value if reference.unit in UNITLESS else None

@@ -627,6 +627,34 @@ def test_what_is_wrong_with_samples_is_a_sentence() -> None:
     assert feedback(np.array(twice["angular_velocity"]))[1] == ["time-scaled"]
 
 
+def test_a_constant_is_no_motion_at_another_time() -> None:
+    times = np.linspace(0.0, 30.0, 200)
+    claim = {"times": times.tolist(), "value": [[0.1, 2.0, 0.1]] * 200, "unit": "rad/s"}
+    (result,) = handled(MOTION, {"/angular_velocity": claim})["results"]
+    assert (result["matches"], result["score"]) == ([], 0.0)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        {"value": 1.0, "unit": "s"},
+        {"value": 1.0},
+        {"value": 1.0, "unit": "m"},
+        {"formula": "1"},
+        {"formula": "1 +"},
+        {"value": None},
+    ],
+    ids=str,
+)
+def test_without_reveal_a_figure_that_does_not_exist_is_judged_as_one_that_does(claim: Body) -> None:
+    coin, handle = (handled(one, {"/flip_interval": claim}, reveal=False)["results"] for one in (COIN, FLIP))
+    if claim == {"value": None}:
+        assert coin[0]["correct"]
+        assert not handle[0]["correct"]
+    else:
+        assert coin == handle
+
+
 @pytest.mark.parametrize(
     ("question", "pointer", "unit", "how", "axis"),
     [

@@ -219,7 +219,7 @@ def _steps(pointer: str, document: str, example: str) -> Path:
         raise InvalidParameter((), f"be a JSON pointer into the {document}", remedy=f'such as "{example}"') from None
 
 
-def _check_figures(pointers: Iterable[str], answer: Answer) -> None:
+def _check_figures(pointers: Iterable[str], answer: Mapping[str, Any]) -> None:
     """Refuse a comparison for a figure that the answer has not: it would be left unused without a word."""
     for pointer in pointers:
         within = ("comparisons", pointer) if len(pointer) <= LONGEST_POINTER else ("comparisons",)

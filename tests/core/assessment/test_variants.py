@@ -36,6 +36,9 @@ class Pendulum:
         figures = {"period": period, "frequency": frequency, "difference": other - one, "lengths": given["lengths"]}
         return figures | {"warnings": warnings}
 
+    def errors(self, request: Any) -> None:
+        return None
+
     def certified(self, request: Any) -> None:
         return None
 
