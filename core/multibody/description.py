@@ -8,6 +8,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody import attraction, laws
+from core.multibody.contacts import contact
 from core.multibody.coordinates import Coordinates, dimension_of
 from core.multibody.language import GROUND, Scene
 from core.multibody.measures import Measures, Work, perpendicular
@@ -30,8 +31,10 @@ class Described:
     paths: Mapping[str, Path]
 
 
-def described(scene: Scene, numerals: Numerals | None = None) -> Described:
+def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool = False) -> Described:
     """Return the table of a scene, its numbers read by `numerals` if given; the precision of balls is the caller's.
+
+    If it is `one_sided`, strings are no rows but unilateral measures, as contacts are.
 
     Raises
     ------
@@ -40,8 +43,12 @@ def described(scene: Scene, numerals: Numerals | None = None) -> Described:
     """
     numerals = numerals or Numerals.of(scene.let, scene.numbers)
     names = scene.names()
-    coordinates = Coordinates(scene, numerals, _seen(scene, numerals))
-    measures = Measures(coordinates)
+    seen = _seen(scene, numerals)
+    if one_sided and dimension_of(scene) == 2:
+        # Angles are coordinates of their own, so that turns are counted across every event.
+        seen = {name: what | {"turn"} if "direction" in what else what for name, what in seen.items()}
+    coordinates = Coordinates(scene, numerals, seen)
+    measures = Measures(coordinates, one_sided=one_sided)
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
     paths["clock"] = ()
     for i, (name, connection) in enumerate(zip(names, scene.connections, strict=True)):
@@ -99,7 +106,7 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
                 body = scene.bodies.get(place) if isinstance(place, str) else None
                 if body is not None and body.radius is not None:
                     see(place, "turn")
-        if kind == "rolling":
+        if kind in ("rolling", "contact"):
             for place in (connection.place, connection.a, connection.b):
                 see(place, "turn")
         if kind in _TURNED or (kind == "damper" and connection.measure == "turn"):
@@ -127,6 +134,8 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
         string(measures, name, connection, path)
     elif kind == "rolling":
         (rolling if measures.dimension == 2 else rolling_in_space)(measures, name, connection, path)
+    elif kind == "contact":
+        contact(measures, name, connection, path)
     elif kind == "track":
         measures.on_curve(name, point(connection.place, (*path, "place")), connection.on, path)
     elif kind in ("pin", "ball-joint", "weld", "slider", "rod"):

@@ -36,7 +36,7 @@ def parts(table: Table) -> list[list[int]]:
         for key in keys:
             join(key)
     for row in table.rows:
-        join(sorted({*row.rates, *variables(row.rates.values())}))
+        join(sorted({*row.rates, *row.drag, *variables(row.rates.values()), *variables(row.drag.values())}))
     groups: dict[int, list[int]] = {}
     for i in range(len(parent)):
         if timeless[i]:
@@ -79,7 +79,10 @@ def restricted(table: Table, indices: Sequence[int]) -> Table:
         rates = {
             number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.rates.items()
         }
-        new.rows.append(Row(row.name, renamed, rates, row.rate))
+        drag = {
+            number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.drag.items()
+        }
+        new.rows.append(Row(row.name, renamed, rates, row.rate, drag))
     return new
 
 
@@ -102,8 +105,9 @@ def accelerations(table: Table) -> tuple[list[Ball], list[int]]:
         entries[i][j] = entries[j][i] = value
     for k, r in enumerate(chosen):
         for j, value in lines[r].items():
-            entries[j][count + k] = -value
             entries[count + k][j] = value
+        for j, value in table.rows[r].pushed(table.q).items():
+            entries[j][count + k] = -value
     right = [*table.forces(), *(table.convective(table.rows[r]) for r in chosen)]
     try:
         solved = arb_mat(entries).solve(arb_mat([[x] for x in right])).entries()
@@ -238,7 +242,7 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
     pushed, given = table.inertial(acceleration), table.forces()
     lines: list[dict[int, Ball]] = [{} for _ in table.names]
     for r, row in enumerate(table.rows):
-        for j, value in row.line(table.q).items():
+        for j, value in row.pushed(table.q).items():
             lines[j][r] = value
     elimination = Elimination()
     for line, inertia, force in zip(lines, pushed, given, strict=True):

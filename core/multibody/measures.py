@@ -14,6 +14,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Coordinates, Point, Rate
 from core.multibody.polynomials import (
     ONE,
+    ZERO,
     Ball,
     Poly,
     combined,
@@ -100,10 +101,54 @@ class Limit:
     length: Poly | None = None
 
 
-class Measures:
-    """Adds the rows of connections to the table of the bodies."""
+@dataclass(frozen=True)
+class Unilateral:
+    """A measure that stays at or above zero: a contact, a stop, a string.
 
-    def __init__(self, coordinates: Coordinates) -> None:
+    Attributes
+    ----------
+    name : str
+        Of the connection, or of one part of a string.
+    gap : polynomial
+        Whose multiplier, while it is zero, is the force that keeps it there.
+    slip : linear form in the rates, or None
+        Rate of slip where there is friction; its multiplier is the friction.
+    static, kinetic, restitution : ball
+        Coefficients.
+    closes, opens : str
+        What the events are called.
+    rolls : bool
+        Whether sticking is rolling.
+    order : ball or None
+        Place in the order of simultaneous impacts.
+    """
+
+    name: str
+    gap: Poly
+    slip: Rate | None = None
+    static: Ball = ZERO
+    kinetic: Ball = ZERO
+    restitution: Ball = ZERO
+    closes: str = "touch"
+    opens: str = "lift-off"
+    rolls: bool = False
+    unit: str = "N"
+    order: Ball | None = None
+
+
+class Measures:
+    """Adds the rows of connections to the table of the bodies.
+
+    Parameters
+    ----------
+    coordinates : Coordinates
+    one_sided : bool
+        Whether strings may go slack: they are then no rows, but stand in `unilateral`.
+    """
+
+    def __init__(self, coordinates: Coordinates, *, one_sided: bool = False) -> None:
+        self.one_sided = one_sided
+        self.unilateral: list[Unilateral] = []
         self.coordinates, self.table = coordinates, coordinates.table
         self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
         self.forces: list[Force] = []

@@ -38,7 +38,7 @@ class Packed(NamedTuple):
     gyre, gyre_at : (p, 2) and (p, 3)
         Entries of B.
     lines, lines_at : (e, 2) and (e, 2)
-        Entries of W that are not identically zero: constant part, row and column.
+        Entries of W that are not identically zero: constant part, row and column; after them those of X.
     slopes, slopes_at : (p, 2) and (p, 2)
         Their dependence on the coordinates: factor, entry, coordinate.
     offset : (m, 2)
@@ -47,6 +47,8 @@ class Packed(NamedTuple):
         1 for a measure, 0 for a rate row.
     rate : (m, 2)
     group : (n,)
+    binds : (e,)
+        1 for an entry of W, 0 for one of X.
     """
 
     mass: Floats
@@ -65,6 +67,7 @@ class Packed(NamedTuple):
     held: Integers
     rate: Floats
     group: Integers
+    binds: Integers
 
 
 @dataclass(frozen=True)
@@ -104,6 +107,12 @@ def pair(ball: Ball, power: int) -> tuple[float, float]:
     scaled = ball.mul_2exp(power) if hasattr(ball, "mul_2exp") else ball * _two(power)
     high = float(scaled.mid())
     return high, float((scaled - high).mid())
+
+
+def nearest(ball: Ball) -> float:
+    """Return the double nearest to the middle of a ball."""
+    high, low = pair(ball, 0)
+    return high + low
 
 
 def _two(power: int) -> Ball:
@@ -183,6 +192,14 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
             held[number] = 1
             offset[number] = pair(row.measure.get((), ZERO), up)
         rate[number] = pair(row.rate, up + t)
+    binding = len(lines)
+    for number, r in enumerate(chosen):
+        row, up = table.rows[r], units.rows[r]
+        for j, poly in row.drag.items():
+            lines.append(pair(poly.get((), ZERO), s[j] + up))
+            lines_at.append((number, j))
+            slopes.extend(pair(x, s[j] + s[key[0]] + up) for key, x in poly.items() if key)
+            slopes_at.extend((len(lines) - 1, key[0]) for key in poly if key)
     return Packed(
         mass,
         load,
@@ -200,6 +217,7 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
         held,
         rate,
         np.array([GROUPS[unit] for unit in table.units], dtype=np.int64),
+        (np.arange(len(lines)) < binding).astype(np.int64),
     )
 
 

@@ -39,8 +39,12 @@ Forces that the scene does not determine are null. `outputs` may also ask when a
 `{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
 `{"extremes": "rod.force"}`, between the start and the latest of the times.
 
-Not covered yet: contact, friction, impacts, strings that become taut again, connections with `from` and `until`. They
-are refused, and a string that becomes slack ends the motion. It is not proven that all equilibria are found. A plan
+Contacts push and do not pull, with friction and restitution, in the plane; strings become slack and taut again. The
+answer lists the phases between the events, each with its own smallest model. What mechanics leaves undecided is an
+answer too: `problem` says what, and which assumption would decide it.
+
+Not covered yet: contacts in space, friction of held connections, connections with `from` and `until`. They are refused.
+It is not proven that all equilibria are found. A plan
 reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
 about three bodies. The paths of a motion in the plane, and its columns over time, are answered as a figure to
 `Accept: image/svg+xml`."""
@@ -87,7 +91,11 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
     answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
-    answer["events"] = found.events
+    answer["events"] = [fields_of(event) for event in found.events]
+    if found.phases is not None:
+        answer["phases"] = [fields_of(phase) for phase in found.phases]
+    if found.problem is not None:
+        answer["problem"] = fields_of(found.problem)
     if motion is not None:
         columns = {name: fields_of(column) for name, column in motion.columns.items()}
         answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}

@@ -162,7 +162,10 @@ HOSTILE: dict[str, tuple[Any, str]] = {
         {"gravity": [0, 0, -1], "bodies": {"p": {"at": [0, 0, 0], "body": {"kind": "ball", "mass": 1, "radius": -1}}}},
         "/bodies/p/body/radius",
     ),
-    "contact, not covered yet": (of_rod(kind="contact"), "/connections/0/kind"),
+    "a contact that names nothing to touch": (
+        PENDULUM | {"connections": [{"kind": "contact", "place": "p"}]},
+        "/connections/0",
+    ),
     "a blow, not covered yet": (of_rod(kind="impulse"), "/connections/0/kind"),
     "friction, not covered yet": (of_rod(friction=0.2), "/connections/0/friction"),
     "until, not covered yet": (of_rod(until=2), "/connections/0/until"),
@@ -225,24 +228,48 @@ async def test_undetermined_forces_are_null_and_say_with_whom_they_are_shared() 
     assert "trajectory" not in answer
 
 
-async def test_a_string_that_becomes_slack_ends_the_motion() -> None:
+async def test_a_string_becomes_slack() -> None:
     """Thrown up from the side of a circle: v^2 = v0^2 - 2 g l sin a, slack where v^2 = g l sin a."""
     scene = {
         "gravity": [0, -10],
         "bodies": {"p": {"mass": 1, "at": [1, 0], "velocity": [0, "sqrt(15)"]}},
         "connections": [{"kind": "string", "through": [[0, 0], "p"]}],
-        "times": [0, 0.1, 5, 0.15, 6],
+        "times": [0, 0.1, 0.5, 0.15],
         "outputs": ["trajectory"],
     }
     answer = (await asked(scene)).json()
-    assert answer["ended"] == "slack"
+    assert answer["ended"] == "horizon"
     (event,) = answer["events"]
-    assert event["name"] == "string-1"
-    assert answer["trajectory"]["rows"] == [0, 1, 3]
-    assert answer["trajectory"]["time"] == [0.0, 0.1, 0.15]
+    assert (event["kind"], event["name"]) == ("slack", "string-1")
+    assert [phase["states"]["string-1"] for phase in answer["phases"]] == ["closed", "open"]
+    assert answer["trajectory"]["rows"] == [0, 1, 2, 3]
     end = (await asked(scene | {"times": [event["time"] * (1 - 1e-12)]})).json()
     (place,) = end["trajectory"]["columns"]["p.position"]["values"]
     assert place == pytest.approx([-np.sqrt(3) / 2, 0.5] if place[0] < 0 else [np.sqrt(3) / 2, 0.5], abs=1e-9)
+
+
+async def test_a_ball_bounces_and_mechanics_leaves_two_impacts_undecided() -> None:
+    ball = {"mass": 1, "inertia": 1, "radius": 0.1}
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"p": ball | {"at": [0, 5.1]}},
+        "connections": [{"kind": "contact", "name": "floor", "place": "p", "on": {"at": [0, 0]}, "restitution": 0.5}],
+        "times": [0.5, 1.25],
+    }
+    answer = (await asked(scene)).json()
+    assert [event["kind"] for event in answer["events"]] == ["touch"]
+    assert answer["events"][0]["time"] == 1.0
+    assert answer["events"][0]["impulses"] == {"normal": pytest.approx(15, rel=1e-15)}
+    assert answer["events"][0]["energy_loss"] == pytest.approx(37.5, rel=1e-15)
+    assert [(phase["start"], phase["end"]) for phase in answer["phases"]] == [(0.0, 1.0), (1.0, None)]
+    assert "problem" not in answer
+    scene["bodies"]["q"] = ball | {"at": [0, 0.1]}
+    scene["connections"][0]["place"] = "q"
+    scene["connections"].append({"kind": "contact", "name": "pair", "a": "p", "b": "q", "restitution": 1})
+    stopped = (await asked(scene | {"times": [0.5, 1.25]})).json()
+    assert stopped["ended"] == "simultaneous-impacts"
+    assert stopped["trajectory"]["rows"] == [0]
+    assert {candidate["order"] for candidate in stopped["problem"]["candidates"]} >= {"together"}
 
 
 async def test_figures_beyond_doubles_are_null_with_a_warning() -> None:

@@ -26,7 +26,7 @@ def test_what_is_thrown_is_its_centre_and_the_rest():
         found = modelled(read(DUMBBELL))
     names = [piece.table.names for piece in found.pieces]
     assert names == [["centre of a, b.x"], ["centre of a, b.y"], ["b.x - a.x", "b.y - a.y"]]
-    assert [motion.name for _, motion in found.whole.parts] == 2 * ["constant acceleration"] + ["one period"]
+    assert [motion.name for _, motion in found.whole.parts] == 2 * ["constant acceleration"] + ["uniform rotation"]
     assert [float(x) for x in found.whole.reduced.table.v][:2] == pytest.approx([2, 5], rel=1e-15)
 
 
