@@ -34,6 +34,10 @@ _CONVERGED = 1e-10
 _SETTLED = 1e-6
 """Largest last relative change of the multipliers: beside a length of zero they grow without bound."""
 _ENDED = 1e-13
+_FAR, _HARD = 1e6, 1e12
+"""Places and multipliers beyond which a start is given up."""
+_DWARFED = 1e4
+"""Multipliers so many times the forces, where the equations are nearly singular, are those beside a length of zero."""
 _SMALL = 1e-9
 
 
@@ -165,16 +169,17 @@ def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Fl
         q, multipliers = _followed(dense, q, multipliers)
         if not len(q):
             return []
-        step = _newton(dense, q, multipliers)
+        step, singular = _newton(dense, q, multipliers)
         left, measures = _residuals(dense, q, multipliers, dense.jacobian(q))
     # A step alone may be short where the equations are nearly singular and not solved.
     size = 1.0 + np.abs(q).max(axis=1)
-    terms = np.abs(dense.load).max(initial=0.0) + np.abs(q @ dense.stiffness.T).max(axis=1)
+    terms = _forces(dense, q)
     done = np.abs(step[:, :n]).max(axis=1) < _CONVERGED * size
     done &= np.abs(left).max(axis=1) <= _CONVERGED * terms
     done &= np.abs(measures).max(axis=1, initial=0.0) < _CONVERGED * size**2
     largest = np.abs(multipliers).max(axis=1, initial=0.0)
     done &= np.abs(step[:, n:]).max(axis=1, initial=0.0) <= _SETTLED * (largest + terms)
+    done &= ~(singular & (largest > _DWARFED * terms))
     q, multipliers = q[done], multipliers[done]
     found: list[tuple[Floats, Floats]] = []
     while len(q) and len(found) < MOST_FOUND:
@@ -184,20 +189,29 @@ def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Fl
     return found
 
 
+def _forces(dense: _Dense, q: Floats) -> Floats:
+    """Return the size of the forces at places, those of the connections apart."""
+    found: Floats = np.abs(dense.load).max(initial=0.0) + np.abs(q @ dense.stiffness.T).max(axis=1)
+    return found
+
+
 def _followed(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
     """Return where Newton's method leads, in the order of the starts; those that leave every bound are left out."""
     n = q.shape[1]
     order = np.arange(len(q))
     ended: list[tuple[Floats, Floats, np.ndarray]] = []
     for _ in range(_ROUNDS):
-        step = _newton(dense, q, multipliers)
+        (step, singular), left = _newton(dense, q, multipliers), _residuals(dense, q, multipliers, dense.jacobian(q))[0]
+        # Where the equations are nearly singular a step may be short though they are not solved.
+        solved = ~singular | (np.abs(left).max(axis=1) <= _ENDED * _forces(dense, q))
         q, multipliers = q + step[:, :n], multipliers + step[:, n:]
         largest = np.abs(q).max(axis=1)
-        good = np.isfinite(q).all(axis=1) & np.isfinite(multipliers).all(axis=1) & (largest < 1e6)
+        held = np.abs(multipliers).max(axis=1, initial=0.0)
+        good = (largest < _FAR) & (held < _HARD)
         # Beyond a step as short as this there is only rounding.
         short = np.abs(step[:, :n]).max(axis=1) <= _ENDED * (1.0 + largest)
-        held = np.abs(multipliers).max(axis=1, initial=0.0)
         short &= np.abs(step[:, n:]).max(axis=1, initial=0.0) <= _ENDED * (1.0 + held)
+        short &= solved
         there = good & short
         ended.append((q[there], multipliers[there], order[there]))
         go = good & ~short
@@ -227,10 +241,11 @@ def _saddle(w: Floats, first: Floats, second: Floats) -> Floats:
     system[:, :n, :n] = np.eye(n)
     system[:, :n, n:] = np.swapaxes(w, 1, 2)
     system[:, n:, :n] = w
-    return solutions(system, np.concatenate([first, second], axis=1))
+    return solutions(system, np.concatenate([first, second], axis=1))[0]
 
 
-def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> Floats:
+def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[Floats, np.ndarray]:
+    """Return the steps of places and multipliers, and which systems were nearly singular."""
     n, m = q.shape[1], multipliers.shape[1]
     w = dense.jacobian(q)
     system = np.zeros((len(q), n + m, n + m))

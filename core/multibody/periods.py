@@ -26,7 +26,7 @@ from core.multibody.numerical import (
     FINE_TOLERANCE,
     Run,
 )
-from core.multibody.packed import Floats, Units, packed, state, two_to, units_of
+from core.multibody.packed import Floats, Units, packed, pair, state, two_to, units_of
 from core.multibody.polynomials import BITS, Ball, is_zero
 from core.multibody.returns import Passage, Section, added, distance, followed
 from core.multibody.series_pairs import moved_pairs
@@ -38,7 +38,7 @@ CLOSED = 1e-20
 UNCERTAIN = 2.0**-54
 """Share of a period by which two runs may differ: beside a separatrix what brings a motion back is rounding."""
 
-_PARTS = 8
+_PARTS = 4
 
 
 @dataclass
@@ -106,7 +106,7 @@ class Periodic:
         return self._turns[count]
 
     def nodes(self, end: float) -> Floats:
-        """Return eight times a step, over one period or up to `end`."""
+        """Return four times a step, over one period or up to `end`."""
         starts = self.run.starts[:, 0]
         if self.half:
             starts = np.concatenate([starts, self.length[0] - starts[-2::-1]])
@@ -126,7 +126,8 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
     normal = np.zeros(len(q))
     at_rest = all(is_zero(x) for x in table.v)
     if at_rest:
-        start = np.array([float(x) for x in acceleration]) * np.array([two_to(-e) for e in units.lengths])
+        # In the units of the arrays it is of the order of one, however hard the pull.
+        start = np.array([pair(x, 2 * units.time - e)[0] for x, e in zip(acceleration, units.lengths, strict=True)])
         normal[free] = start[free] / max(np.max(np.abs(start)), 1e-300)
     else:
         normal[free] = v[free, 0]

@@ -8,14 +8,14 @@ from core.compiled import kernel
 from core.multibody.packed import Floats
 
 NEARLY_SINGULAR = 1e-9
-"""A pivot below this share of its row's largest entry leaves a system to its singular values."""
+"""A pivot below this share of the largest entry leaves a system to its singular values."""
 
 _CUT = 1e-13
 """Share of the largest singular value below which another counts as zero."""
 
 
-def solutions(systems: Floats, right: Floats) -> Floats:
-    """Return the solution of every system; where there is not one alone, the shortest of least squares.
+def solutions(systems: Floats, right: Floats) -> tuple[Floats, np.ndarray]:
+    """Return the solution of every system, and which are nearly singular: there it is the shortest of least squares.
 
     Parameters
     ----------
@@ -28,35 +28,31 @@ def solutions(systems: Floats, right: Floats) -> Floats:
     if np.any(singular):
         inverse = np.linalg.pinv(systems[singular], rcond=_CUT)
         found[singular] = np.einsum("cij,cj->ci", inverse, right[singular])
-    return found
+    return found, singular
 
 
 @kernel()
 def _eliminated(a: Floats, x: Floats) -> np.ndarray:
-    """Solve in place with scaled pivots; `a` is used up. Return which systems could be solved, shape (c,)."""
+    """Solve in place; `a` is used up. Return which systems have large enough pivots, shape (c,)."""
     n = a.shape[1]
     good = np.ones(a.shape[0], dtype=np.bool_)
-    scale = np.empty(n)
     for s in range(a.shape[0]):
+        least = 0.0
         for i in range(n):
-            largest = 0.0
             for j in range(n):
-                largest = max(largest, abs(a[s, i, j]))
-            scale[i] = 1.0 / largest if largest > 0.0 else 0.0
+                least = max(least, NEARLY_SINGULAR * abs(a[s, i, j]))
         for k in range(n):
             pivot, best = k, -1.0
             for i in range(k, n):
-                size = abs(a[s, i, k]) * scale[i]
-                if size > best:
-                    pivot, best = i, size
-            if not best > NEARLY_SINGULAR:
+                if abs(a[s, i, k]) > best:
+                    pivot, best = i, abs(a[s, i, k])
+            if not best > least:
                 good[s] = False
                 break
             if pivot != k:
                 for j in range(k, n):
                     a[s, k, j], a[s, pivot, j] = a[s, pivot, j], a[s, k, j]
                 x[s, k], x[s, pivot] = x[s, pivot], x[s, k]
-                scale[pivot] = scale[k]
             for i in range(k + 1, n):
                 if a[s, i, k] != 0.0:
                     factor = a[s, i, k] / a[s, k, k]
