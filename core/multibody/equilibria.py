@@ -38,6 +38,8 @@ _FAR, _HARD = 1e6, 1e12
 """Places and multipliers beyond which a start is given up."""
 _DWARFED = 1e4
 """Multipliers so many times the forces, where the equations are nearly singular, are those beside a length of zero."""
+_REMOTE = 1e3
+"""So far out, in the scene's own unit, nearly singular equations are those of forces that vanish at infinity."""
 _SMALL = 1e-9
 
 
@@ -166,7 +168,8 @@ def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Fl
         if m:
             pulls = q @ dense.stiffness.T - dense.load
             multipliers = _saddle(dense.jacobian(q), pulls, np.zeros((count, m)))[:, n:]
-        q, multipliers = _followed(dense, q, multipliers)
+        known = np.abs(multipliers).max(axis=1, initial=0.0) < _HARD
+        q, multipliers = _followed(dense, q[known], multipliers[known])
         if not len(q):
             return []
         step, singular = _newton(dense, q, multipliers)
@@ -179,7 +182,7 @@ def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Fl
     done &= np.abs(measures).max(axis=1, initial=0.0) < _CONVERGED * size**2
     largest = np.abs(multipliers).max(axis=1, initial=0.0)
     done &= np.abs(step[:, n:]).max(axis=1, initial=0.0) <= _SETTLED * (largest + terms)
-    done &= ~(singular & (largest > _DWARFED * terms))
+    done &= ~(singular & ((largest > _DWARFED * terms) | (size > _REMOTE)))
     q, multipliers = q[done], multipliers[done]
     found: list[tuple[Floats, Floats]] = []
     while len(q) and len(found) < MOST_FOUND:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import lstsq
 
 from core.compiled import kernel
 from core.multibody.packed import Floats
@@ -26,8 +27,13 @@ def solutions(systems: Floats, right: Floats) -> tuple[Floats, np.ndarray]:
     found = right.copy()
     singular = ~_eliminated(systems.copy(), found)
     if np.any(singular):
-        inverse = np.linalg.pinv(systems[singular], rcond=_CUT)
-        found[singular] = np.einsum("cij,cj->ci", inverse, right[singular])
+        try:
+            inverse = np.linalg.pinv(systems[singular], rcond=_CUT)
+            found[singular] = np.einsum("cij,cj->ci", inverse, right[singular])
+        except np.linalg.LinAlgError:
+            # Singular values are found by iteration, which rarely does not end; an orthogonal factorisation always does.
+            for s in np.flatnonzero(singular):
+                found[s] = lstsq(systems[s], right[s], cond=_CUT, lapack_driver="gelsy")[0]
     return found, singular
 
 
