@@ -44,7 +44,10 @@ export class PlaneView {
     for (const c of model.connections) this.ground(c);
     for (const c of model.connections) this.connection(c);
     for (const body of model.bodies) this.body(body);
-    for (const c of model.connections) if (c.kind === "pin" || c.kind === "weld") this.pin(c);
+    for (const c of model.connections) {
+      if (c.kind === "pin") this.pin(c);
+      else if (c.kind !== "slider") this.pegs([c.a, c.b, ...(c.through || [])]);
+    }
     if (this.showForces) this.arrows();
   }
 
@@ -71,7 +74,7 @@ export class PlaneView {
   trails() {
     for (const body of this.model.bodies) {
       const path = this.model.column(`${body.name}.position`);
-      if (path) this.line(path.slice(0, this.model.index + 1), "line", 1.5);
+      if (path) this.line(path.slice(0, this.model.index + 1), "soft", 1);
     }
   }
 
@@ -206,9 +209,15 @@ export class PlaneView {
     return Math.max(...this.model.bodies.map((body) => body.mass)) || 1;
   }
 
+  /** Ends and pegs that are fixed to the ground. */
+  pegs(references) {
+    for (const reference of references) {
+      if (reference && typeof reference !== "string") this.disc(this.model.place(reference).point, 0.009 * this.size, "panel", "soft", 2);
+    }
+  }
+
   pin(c) {
     const { point } = this.model.place(c.a);
-    if (c.kind === "weld") return;
     if (typeof c.b !== "string") {
       const s = 0.035 * this.size, corners = [point, add(point, [-s, -1.5 * s]), add(point, [s, -1.5 * s]), point];
       this.line(corners, "soft", 2);

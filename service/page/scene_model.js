@@ -167,7 +167,8 @@ export class SceneModel {
   bounds() {
     const points = [];
     for (const body of this.bodies) {
-      const reach = Math.max(body.radius || 0, ...Object.values(body.places).map((p) => norm(p)), 0);
+      const solid = body.moments && body.mass ? Math.sqrt((3 * Math.max(...body.moments)) / body.mass) : 0;
+      const reach = Math.max(body.radius || 0, solid, ...Object.values(body.places).map((p) => norm(p)), 0);
       const path = this.column(`${body.name}.position`) || [body.start];
       for (let i = 0; i < path.length; i += Math.max(1, Math.floor(path.length / 100))) {
         points.push(path[i].map((x) => x - reach), path[i].map((x) => x + reach));
