@@ -41,7 +41,7 @@ export class Worker {
     this.panel = panel;
     this.running = null;
     this.text = panel.querySelector("span");
-    panel.querySelector("button").onclick = () => this.running?.abort(new DOMException("cancelled", "AbortError"));
+    panel.querySelector("button").addEventListener("click", () => this.running?.abort(new DOMException("cancelled", "AbortError")));
   }
 
   /** Run `work(signal)`; returns null if newer work or the reader cancelled it. */

@@ -104,7 +104,7 @@ async function answerState() {
     const { answer } = await ask("/v1/rotation/trajectory", question, signal);
     return { surface: surface.answer, answer, question, surfaceQuestion, stop, center: mass?.answer.center_of_mass || [0, 0, 0] };
   });
-  if (!result) return;
+  if (!result) return complain([{ pointer: "", detail: "Cancelled: the picture is of the answer before" }]);
   complain([]);
   show(result);
 }

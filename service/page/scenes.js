@@ -122,7 +122,7 @@ async function answerState() {
     }
     return { answer: asked.answer, text, path };
   });
-  if (!result) return;
+  if (!result) return complain([{ pointer: "", detail: "Cancelled: the picture is of the answer before" }]);
   complain([]);
   show(result);
 }

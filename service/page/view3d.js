@@ -20,11 +20,6 @@ export class View {
     this.labels = new Map();
     this.painters = [];
     this.onView = [];
-    try {
-      this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
-    } catch {
-      frame.append(make("p", { className: "soft fallback", textContent: "This browser draws no pictures in space (WebGL is off). Numbers and curves are below." }));
-    }
     this.light = new DirectionalLight(0xffffff, 2.2);
     this.scene.add(new AmbientLight(0xffffff, 1.6), this.light);
     this.render = oncePerFrame(() => this.draw());
@@ -109,7 +104,18 @@ export class View {
     return { origin, direction: this.camera.getWorldDirection(new Vector3()) };
   }
 
+  /** Made with the first picture, so that questions to the service are on their way before. */
+  makeRenderer() {
+    try {
+      return new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+    } catch {
+      this.frame.append(make("p", { className: "soft fallback", textContent: "This browser draws no pictures in space (WebGL is off). Numbers and curves are below." }));
+      return null;
+    }
+  }
+
   draw() {
+    if (this.renderer === undefined) this.renderer = this.makeRenderer();
     this.width = this.canvas.clientWidth || 1;
     this.height = this.canvas.clientHeight || 1;
     const wide = Math.max(1, this.width / this.height), high = Math.max(1, this.height / this.width);

@@ -1,8 +1,7 @@
-// What the page uses of three.js; `make vendor` builds three.js from this list.
+// What the pages use of three.js; `make vendor` builds three.js from this list.
 export {
-  AmbientLight, ArrowHelper, BoxGeometry, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide,
-  Float32BufferAttribute, Group, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, OrthographicCamera, Quaternion, Raycaster,
-  Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer,
+  AmbientLight, BoxGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, Group, Matrix4, Mesh, MeshBasicMaterial,
+  MeshLambertMaterial, OrthographicCamera, Quaternion, Scene, SphereGeometry, TorusGeometry, Vector3, WebGLRenderer,
 } from "three";
 export { Line2 } from "three/addons/lines/Line2.js";
 export { LineGeometry } from "three/addons/lines/LineGeometry.js";
