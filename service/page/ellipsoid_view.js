@@ -6,7 +6,7 @@ import { Color, CylinderGeometry, Matrix4, Mesh, MeshBasicMaterial, MeshLambertM
 const STABILITY = { stable: "stable", unstable: "unstable", neutral: "neutral" };
 
 export class EllipsoidView extends View {
-  /** `onSpin(w, finished)` is called with the angular velocity that the reader drags to. */
+  /** `onSpin(w)` is called with the angular velocity that the reader drags to. */
   constructor(frame, onSpin) {
     super(frame, "the ellipsoid");
     this.extent = 1.25;
@@ -98,7 +98,8 @@ export class EllipsoidView extends View {
   /** The angular velocity of the surface under a place on the frame, or nearest to it. */
   pick(x, y) {
     const { origin, direction } = this.ray(x, y);
-    const sizes = this.semiAxes.map((a) => a * this.scale);
+    // One drag moves over one ellipsoid: the answers of the meantime are rounded.
+    const { semiAxes, scale } = this.held || this, sizes = semiAxes.map((a) => a * scale);
     const inside = (v) => new Vector3(...this.columns.map((c, k) => v.dot(c) / sizes[k]));
     const o = inside(origin), d = inside(direction);
     const b = o.dot(d) / d.lengthSq();
@@ -106,7 +107,7 @@ export class EllipsoidView extends View {
     const u = o.addScaledVector(d, -b - Math.sqrt(Math.max(0, gap))).normalize();
     const w = new Vector3();
     this.columns.forEach((c, k) => w.addScaledVector(c, u.getComponent(k) * sizes[k]));
-    return w.divideScalar(this.scale).toArray();
+    return w.divideScalar(scale).toArray();
   }
 
   makeHandle() {
@@ -126,18 +127,25 @@ export class EllipsoidView extends View {
       const box = this.canvas.getBoundingClientRect();
       return [event.clientX - box.left, event.clientY - box.top];
     };
-    handle.addEventListener("pointerdown", (event) => handle.setPointerCapture(event.pointerId));
-    handle.addEventListener("pointermove", (event) => {
-      if (handle.hasPointerCapture(event.pointerId)) this.onSpin(this.pick(...place(event)), false);
+    handle.addEventListener("pointerdown", (event) => {
+      handle.setPointerCapture(event.pointerId);
+      this.held = { semiAxes: this.semiAxes, scale: this.scale };
     });
-    handle.addEventListener("pointerup", (event) => this.onSpin(this.pick(...place(event)), true));
+    handle.addEventListener("pointermove", (event) => {
+      if (handle.hasPointerCapture(event.pointerId)) this.onSpin(this.pick(...place(event)));
+    });
+    handle.addEventListener("pointerup", (event) => {
+      this.onSpin(this.pick(...place(event)));
+      this.held = null;
+    });
+    handle.addEventListener("pointercancel", () => { this.held = null; });
     const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     handle.addEventListener("keydown", (event) => {
       if (!ways[event.key]) return;
       event.preventDefault();
       const { x, y } = this.project(this.start);
       const step = event.shiftKey ? 1 : 6;
-      this.onSpin(this.pick(x + step * ways[event.key][0], y + step * ways[event.key][1]), true);
+      this.onSpin(this.pick(x + step * ways[event.key][0], y + step * ways[event.key][1]));
     });
   }
 }

@@ -83,6 +83,7 @@ export class Integrator {
 
   async run() {
     if (!this.method) return;
+    $("setting-fields").setAttribute("aria-busy", "true");
     const question = { ...this.question, method: this.method };
     try {
       await this.worker.run(async (signal) => {
@@ -97,6 +98,8 @@ export class Integrator {
       if (!(error instanceof Refusal)) throw error;
       $("trade").textContent = `The method fails here: ${error.errors[0].detail}.`;
       this.onRun(null);
+    } finally {
+      if (!this.worker.running) $("setting-fields").setAttribute("aria-busy", "false");
     }
   }
 

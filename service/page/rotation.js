@@ -18,8 +18,8 @@ const SAMPLES = 901;
 const state = { body: "t-handle", spin: [1, 10, 1], moments: [1, 2, 3], points: BODIES.points.points, window: null };
 let motion = null, facing = true, busy = false, again = false;
 
-const ellipsoid = new EllipsoidView($("ellipsoid-view"), (w, finished) => {
-  state.spin = w.map((x) => Number(x.toPrecision(finished ? 6 : 5)));
+const ellipsoid = new EllipsoidView($("ellipsoid-view"), (w) => {
+  state.spin = w.map((x) => Number(x.toPrecision(6)));
   spin.set(state.spin);
   refresh();
 });
@@ -69,7 +69,7 @@ function bodyOf() {
 /** Ask the service about the state; while an answer is on its way, only the newest state waits. */
 async function refresh() {
   if (busy) { again = true; return; }
-  busy = true;
+  setBusy(true);
   do {
     again = false;
     save();
@@ -81,7 +81,12 @@ async function refresh() {
       else complain([{ pointer: "", detail: `The service cannot be reached (${error.message}).` }]);
     }
   } while (again);
-  busy = false;
+  setBusy(false);
+}
+
+function setBusy(now) {
+  busy = now;
+  document.querySelector(".stage").setAttribute("aria-busy", String(now));
 }
 
 async function answerState() {

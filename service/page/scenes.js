@@ -73,7 +73,7 @@ function edited(text, own, rebuild = true) {
 
 async function refresh() {
   if (busy) { again = true; return; }
-  busy = true;
+  setBusy(true);
   do {
     again = false;
     save();
@@ -83,7 +83,7 @@ async function refresh() {
       complain(error instanceof Refusal ? error.errors : [{ pointer: "", detail: `The service cannot be reached (${error.message}).` }]);
     }
   } while (again);
-  busy = false;
+  setBusy(false);
 }
 
 /** The text with what the picture needs in place of `times` and `outputs`; numbers stay as they are written. */
@@ -104,6 +104,11 @@ function stopOf(value) {
   const { times } = value;
   const given = Array.isArray(times) ? Math.max(...times) : times?.stop;
   return given > 0 ? given : 2;
+}
+
+function setBusy(now) {
+  busy = now;
+  document.querySelector(".stage").setAttribute("aria-busy", String(now));
 }
 
 async function answerState() {

@@ -31,7 +31,7 @@ def pages(openapi: Callable[[], bytes]) -> tuple[GetRoute, ...]:
         lambda: Reply(openapi()),
         example=lambda: {"openapi": "3.1.0", "info": {"title": "Polhode", "version": VERSION}, "paths": {}},
     )
-    documents = [_file(path, FOLDER / name, *about) for path, (name, *about) in _PAGES.items()]
+    documents = [_file(path, FOLDER / name, operation, summary) for path, (name, operation, summary) in _PAGES.items()]
     files = sorted(file for file in FOLDER.rglob("*") if file.suffix in _MEDIA_TYPES and file.suffix != ".html")
     parts = [
         _file(f"/page/{file.relative_to(FOLDER).as_posix()}", file, "get_page_file", "A file of the pages", False)

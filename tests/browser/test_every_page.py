@@ -29,7 +29,10 @@ def test_axe_finds_no_violation(opened, path):
     for width, scheme in ((1280, "light"), (1280, "dark"), (390, "dark"), (390, "light")):
         page.set_viewport_size({"width": width, "height": 844})
         page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
-        page.wait_for_timeout(500)
+        # The viewer of the reference follows by a class.
+        theme = "html.dark-mode" if scheme == "dark" else "html:not(.dark-mode)"
+        page.wait_for_selector(f"{theme} body.docs, body:not(.docs)")
+        page.wait_for_timeout(700)
         results = Axe().run(page)
         assert results.violations_count == 0, results.generate_report()
         assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0

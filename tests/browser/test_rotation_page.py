@@ -8,6 +8,7 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 
 from tests.browser.serving import ROOT
+from tests.browser.waiting import settle
 
 REFUSED = ("422",)
 """Chromium writes every refused request to the console."""
@@ -34,12 +35,6 @@ def number_in(text):
 def request_of(page):
     first, _, body = page.locator("#request pre").inner_text().partition("\n")
     return first.removeprefix("POST "), json.loads(body)
-
-
-def settle(page):
-    """Wait until no request is on its way."""
-    page.wait_for_load_state("networkidle")
-    page.wait_for_timeout(150)
 
 
 def picture(page, name):

@@ -1,17 +1,13 @@
-"""The scenes page: every scene of the catalogue moves, numbers can be slid, a text can be edited with messages at its place."""
+"""The scenes page: every scene of the catalogue moves; sliders and an edited text change it, faults stand at their place."""
 
 import json
 from urllib.request import urlopen
 
 import pytest
 
+from tests.browser.waiting import settle
+
 REFUSED = ("422",)
-
-
-def settle(page):
-    page.wait_for_timeout(350)
-    page.wait_for_load_state("networkidle")
-    page.wait_for_timeout(150)
 
 
 def canvas(page):
