@@ -33,6 +33,7 @@ export class BodyView extends View {
 
   /** Show shapes, moved so that `center` is the origin, beside principal `axes` (columns) coloured by stability. */
   showBody(shapes, center, axes, stability) {
+    this.filled = true;
     this.shapes.clear();
     const reach = Math.max(...shapes.map((shape) => extentOf(shape, center)));
     for (const shape of shapes) this.shapes.add(this.meshOf(shape, center, reach));

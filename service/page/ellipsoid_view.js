@@ -32,6 +32,7 @@ export class EllipsoidView extends View {
 
   /** Show the surface with semi-axes along the columns of `axes`; `stability` says of each axis what a spin about it is. */
   showSurface(semiAxes, axes, stability) {
+    this.filled = true;
     this.semiAxes = semiAxes;
     this.scale = 1 / Math.max(...semiAxes);
     const columns = [0, 1, 2].map((k) => new Vector3(...axes.map((row) => row[k])));

@@ -282,5 +282,6 @@ await integrator.load();
 restore();
 await refresh();
 player.begin();
+await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
 document.body.dataset.ready = "yes";
 addEventListener("hashchange", () => { restore(); refresh(); });

@@ -244,5 +244,6 @@ $("scene").replaceChildren(...scenes.map(({ name }) => make("option", { value: n
 restore();
 await new Promise((done) => { const wait = () => (model || $("problem").textContent ? done() : setTimeout(wait, 20)); wait(); });
 player.begin();
+await new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)));
 document.body.dataset.ready = "yes";
 addEventListener("hashchange", restore);

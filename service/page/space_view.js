@@ -23,6 +23,7 @@ export class SpaceView extends View {
   show(model) {
     const fresh = this.model?.description !== model.description;
     this.model = model;
+    this.filled = true;
     const { low, high, size } = model.bounds();
     this.middle = low.map((x, k) => (x + high[k]) / 2);
     this.factor = 1.5 / Math.max(size, 1e-12);

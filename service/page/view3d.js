@@ -18,6 +18,7 @@ export class View {
     this.yaw = this.pitch = 0;
     this.basis = new Matrix4();
     this.labels = new Map();
+    this.filled = false;
     this.painters = [];
     this.onView = [];
     this.light = new DirectionalLight(0xffffff, 2.2);
@@ -107,7 +108,10 @@ export class View {
   /** Made with the first picture, so that questions to the service are on their way before. */
   makeRenderer() {
     try {
-      return new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+      const renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+      // Asking whether a shader compiled waits until it has.
+      renderer.debug.checkShaderErrors = false;
+      return renderer;
     } catch {
       this.frame.append(make("p", { className: "soft fallback", textContent: "This browser draws no pictures in space (WebGL is off). Numbers and curves are below." }));
       return null;
@@ -115,6 +119,7 @@ export class View {
   }
 
   draw() {
+    if (!this.filled) return;
     if (this.renderer === undefined) this.renderer = this.makeRenderer();
     this.width = this.canvas.clientWidth || 1;
     this.height = this.canvas.clientHeight || 1;
