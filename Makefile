@@ -7,18 +7,24 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check environment openapi judge plans record peers peers-scenes newest clean browser pictures vendor
+.PHONY: serve test check kernels environment openapi judge plans record peers peers-scenes newest clean
+.PHONY: browser pictures vendor
 
 serve: $(ENV)/runs
 	@$(BIN)/python -m service
 
-test: environment check
+test: environment
+	@$(MAKE) --no-print-directory -j2 check kernels
 	$(BIN)/python -m pytest -q -n 2 --dist worksteal
 
 check: environment
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+# Otherwise both processes of the tests would compile all of them.
+kernels: environment
+	$(BIN)/python -c 'from service.app import app; app.answering.warm()'
 
 environment: $(ENV)/made
 
@@ -39,6 +45,7 @@ $(ENV)/made: requirements-dev.lock | $(ENV)/bin/python
 
 openapi: environment
 	$(BIN)/python -m service --openapi > docs/openapi.json
+	$(BIN)/python clients/python/generate.py
 
 judge: environment
 	$(BIN)/python -m tests.core.certified.judge 100000

@@ -14,7 +14,14 @@ classes to HTTP responses in one table; no status code appears here.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 Path = tuple[str | int, ...]
+
+
+def pointer_of(path: Iterable[str | int]) -> str:
+    """Return steps as an RFC 6901 JSON pointer."""
+    return "".join("/" + str(step).replace("~", "~0").replace("/", "~1") for step in path)
 
 
 class MechanicsError(Exception):

@@ -5,13 +5,14 @@ Documents follow RFC 9457. Nothing that a client sent is echoed, except a short 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import orjson
 
 from core import errors
+from core.errors import pointer_of
 
 MEDIA_TYPE = "application/problem+json"
 MOST_FAULTS = 20
@@ -304,11 +305,6 @@ def headline(faults: Sequence[Fault]) -> str:
     brief = first.remedy is not None and len(first.remedy) <= LONGEST_REMEDY and not first.remedy.startswith(KNOWN)
     advice = f" ({first.remedy})" if brief else ""
     return f"{first.sentence}{advice}" + (f", and {len(faults) - 1} more" if len(faults) > 1 else "")
-
-
-def pointer_of(path: Iterable[str | int]) -> str:
-    """Return steps as an RFC 6901 JSON pointer."""
-    return "".join("/" + str(step).replace("~", "~0").replace("/", "~1") for step in path)
 
 
 def registry() -> list[dict[str, Any]]:

@@ -11,6 +11,7 @@ axes                      largest difference of any entry of the projections on 
 set                       largest difference of any entry, in the best pairing of the members
 choice                    none: equal or not
 samples                   largest norm of the difference of any sample
+curve                     largest distance of any point of either closed curve from the other
 """
 
 from __future__ import annotations
@@ -26,15 +27,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.assessment.comparisons import Comparison, Interval, RelAbs
+from core.assessment.curves import separation
 from core.errors import InvalidParameter
 
 Form = Literal[
-    "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "none"
+    "number", "vector", "matrix", "angle", "attitude", "direction", "axes", "set", "choice", "samples", "curve", "none"
 ]
 Verdict = Literal["correct", "incorrect", "missing-unit", "wrong-unit", "not-gradable", "unreadable"]
 
+LEAST_OF_A_CURVE, MOST_OF_A_CURVE = 8, 2000
+"""Points of a submitted curve."""
+
 MOST_OF_A_SET = 6
 """Members of a set: all their orders are tried."""
+
+LARGEST = np.finfo(np.float64).max.item()
 
 Floats = NDArray[np.float64]
 
@@ -65,6 +72,8 @@ class Reference:
         What is to be subtracted to have the figure in which errors show: 1 for an axis ratio near 1.
     sensitive : str or None
         Name of that figure.
+    body_axis : int or None
+        1, 2 or 3: the body axis that the figure belongs to.
     """
 
     value: Any
@@ -77,6 +86,7 @@ class Reference:
     groups: tuple[tuple[int, ...], ...] = ()
     offset: float = 0.0
     sensitive: str | None = None
+    body_axis: int | None = None
     magnitude: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -190,10 +200,22 @@ def distance(reference: Reference, value: Any) -> float:
             apart = min(apart, 2.0 * pi - apart)
         return _bounded(apart)
     right: Floats = reference.value
-    if not isinstance(value, np.ndarray) or value.shape != right.shape:
-        raise InvalidParameter((), _shape(right))
+    curve = reference.form == "curve"
+    fits = isinstance(value, np.ndarray) and value.shape[curve:] == right.shape[curve:] and value.ndim == right.ndim
+    if not fits or (curve and not LEAST_OF_A_CURVE <= len(value) <= MOST_OF_A_CURVE):
+        rows = f"{LEAST_OF_A_CURVE} to {MOST_OF_A_CURVE} rows of {right.shape[-1]} numbers"
+        raise InvalidParameter((), f"be an array of {rows}" if curve else _shape(right))
     with np.errstate(over="ignore", invalid="ignore"):
         return _bounded(_DISTANCES[reference.form](value, right, reference))
+
+
+def exchanged(rows: Floats, right: Floats) -> str:
+    """Return how axes are exchanged in samples that are right but for their order, as a sentence."""
+    order = min(permutations(range(3)), key=lambda order: float(np.abs(rows - right[:, list(order)]).max()))
+    moved = [k + 1 for k in range(3) if order[k] != k]
+    if len(moved) == 2:
+        return f"Axes {moved[0]} and {moved[1]} are exchanged."
+    return f"The axes stand in the order {', '.join(str(k + 1) for k in order)}."
 
 
 def _entries(value: Floats, right: Floats, reference: Reference) -> float:
@@ -201,8 +223,24 @@ def _entries(value: Floats, right: Floats, reference: Reference) -> float:
 
 
 def _samples(value: Floats, right: Floats, reference: Reference) -> float:
-    apart = np.abs(value - right)
-    return float(apart.max(initial=0.0)) if apart.ndim < 2 else float(np.sqrt((apart**2).sum(axis=-1)).max(initial=0.0))
+    return float(norms(value - right if value.ndim > 1 else (value - right)[:, None]).max(initial=0.0))
+
+
+def norms(rows: Floats) -> Floats:
+    """Return the lengths of rows, at most the largest double: runs with far too long steps grow beyond all bounds."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = float(np.abs(rows).max(initial=0.0))
+        if 1e-100 < size < 1e100:
+            plain: Floats = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+            return plain
+        sizes = np.abs(rows).max(axis=1)
+        units = np.where(sizes > 0.0, sizes, 1.0)
+        lengths: Floats = np.nan_to_num(units * np.sqrt(((rows / units[:, None]) ** 2).sum(axis=1)), nan=LARGEST)
+    return lengths
+
+
+def _curve(value: Floats, right: Floats, reference: Reference) -> float:
+    return separation(value, right)
 
 
 def _direction(value: Floats, right: Floats, reference: Reference) -> float:
@@ -242,6 +280,7 @@ _DISTANCES = {
     "vector": _entries,
     "matrix": _entries,
     "samples": _samples,
+    "curve": _curve,
     "direction": _direction,
     "attitude": _attitude,
     "axes": _axes,
@@ -281,7 +320,7 @@ def _magnitude(value: Any, form: Form, scale: float) -> float:
 
 def _bounded(number: float) -> float:
     # A difference that overflows is as wrong as any number can be.
-    return number if isfinite(number) else np.finfo(np.float64).max.item()
+    return number if isfinite(number) else LARGEST
 
 
 def _finite(number: float) -> float | None:

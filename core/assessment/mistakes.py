@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from core.assessment.compare import Reference, compare, tolerance_of
+from core.assessment.compare import Floats, Reference, compare, tolerance_of
 from core.assessment.comparisons import Comparison, Interval
 from core.assessment.propagation import Evaluate
 from core.errors import InvalidParameter, Path
@@ -87,8 +88,31 @@ class Mistake:
     credit: float = 0.0
 
 
-Bands = list[tuple[Mistake, float, float]]
-"""Mistakes with their wrong numbers, and how near to each a number has to be."""
+SOME = 16
+"""Samples that are compared with those of every mistake before all samples are compared with the few left."""
+
+
+SHARE = 0.2
+"""Of the error of samples, that a mistake which explains them may leave."""
+
+
+class Band(NamedTuple):
+    """Wrong values of every mistake, and how near to each a value has to be.
+
+    Attributes
+    ----------
+    mistakes : tuple of Mistake
+    values : ndarray, shape (k,) or (k, n, m)
+        Numbers, or samples.
+    tolerances : ndarray, shape (k,)
+    some : ndarray of int
+        Samples that tell most of them apart.
+    """
+
+    mistakes: tuple[Mistake, ...]
+    values: Floats
+    tolerances: Floats
+    some: NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +127,7 @@ class WrongValues:
 
     figure: Figure
     catalogue: tuple[Mistake, ...]
-    bands: dict[Comparison | None, Bands] = field(default_factory=dict, init=False, repr=False)
+    bands: dict[Comparison | None, Band] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def entries(self) -> tuple[tuple[Mistake, Reference], ...]:
@@ -118,26 +142,58 @@ class WrongValues:
             for value in mistake.wrong(self.figure):
                 if value is None or (not isinstance(value, bool | str) and not np.isfinite(value).all()):
                     continue
-                wrong = replace(right, value=value, scale=right.scale, error=0.0, inherited=0.0)
+                # Of samples the scale is what the tolerance is a share of: nothing is near those that are far smaller.
+                least = min(right.scale, float(np.abs(value).max())) if right.form == "samples" else right.scale
+                wrong = replace(right, value=value, scale=least, error=0.0, inherited=0.0)
                 yield mistake, wrong
 
     def matching(self, value: Any, comparison: Comparison | None) -> tuple[Mistake, ...]:
         """Return the mistakes by which a value comes out that is not accepted, in the unit of the reference."""
         # Limits say nothing of how near two values are.
         near = None if isinstance(comparison, Interval) else comparison
-        if self.figure.reference.form in ("number", "angle"):
-            agreeing = (mistake for mistake, wrong, tolerance in self._bands(near) if abs(value - wrong) <= tolerance)
+        if self.figure.reference.form in ("number", "angle", "samples"):
+            agreeing = self._within(value, self.figure.right, self._band(near))
         else:
-            agreeing = (mistake for mistake, wrong in self.entries if _agree(wrong, value, near))
+            agreeing = [mistake for mistake, wrong in self.entries if _agree(wrong, value, near)]
         return tuple({mistake.tag: mistake for mistake in agreeing}.values())
 
-    def _bands(self, comparison: Comparison | None) -> Bands:
-        """Return the mistakes with their wrong numbers, and how near to each a number has to be."""
+    @staticmethod
+    def _within(value: Any, right: Any, band: Band) -> list[Mistake]:
+        if not band.mistakes:
+            return []
+        # Differences that overflow are not near, and those of infinite ones no number.
+        with np.errstate(over="ignore", invalid="ignore"):
+            if band.values.ndim == 1:
+                near = np.flatnonzero(np.abs(band.values - value) <= band.tolerances)
+            else:
+                near = np.flatnonzero(_largest(band.values[:, band.some] - value[band.some]) <= band.tolerances)
+                near = near[_largest(band.values[near] - value) <= band.tolerances[near]]
+                if near.size:
+                    # Samples that are hardly wrong are within the tolerance of much that is hardly wrong.
+                    error = _largest((value - right)[None])[0]
+                    near = near[_largest(band.values[near] - value) <= SHARE * error]
+        return [band.mistakes[k] for k in near]
+
+    def _band(self, comparison: Comparison | None) -> Band:
         if comparison not in self.bands:
-            self.bands[comparison] = [
-                (mistake, wrong.value, tolerance_of(wrong, comparison)) for mistake, wrong in self.entries
-            ]
+            mistakes = tuple(mistake for mistake, _ in self.entries)
+            values = np.array([wrong.value for _, wrong in self.entries], dtype=np.float64)
+            tolerances = np.array([tolerance_of(wrong, comparison) for _, wrong in self.entries])
+            count = values.shape[1] if values.ndim > 1 else 0
+            some = np.unique(np.linspace(0, max(0, count - 1), min(count, SOME)).astype(np.intp))
+            self.bands[comparison] = Band(mistakes, values, tolerances, some)
         return self.bands[comparison]
+
+
+def _largest(apart: Floats) -> Floats:
+    """Return the largest norm of any sample's difference, shape (k,), of differences (k, n, m) or (k, n)."""
+    sizes: Floats = np.abs(apart).max(axis=tuple(range(1, apart.ndim)), initial=0.0)
+    if apart.ndim < 3:
+        return sizes
+    # Squares of what is far from one would overflow, or vanish.
+    units = apart / np.where(sizes > 0.0, sizes, 1.0)[:, None, None]
+    largest: Floats = sizes * np.sqrt(np.einsum("knm,knm->kn", units, units).max(axis=1, initial=0.0))
+    return largest
 
 
 def _agree(wrong: Reference, value: Any, comparison: Comparison | None) -> bool:

@@ -25,9 +25,8 @@ HALF_ULP = 2.0**-53
 SEEN = 1e-7
 """Relative change in place of a smaller one, whose effect rounding would hide; the effect is scaled."""
 
-SETTINGS = frozenset(
-    {"times", "accuracy", "method", "measure", "input_uncertainty", "outputs", "round", "resolution", "seed", "count"}
-)
+SETTINGS = {"times", "accuracy", "method", "measure", "input_uncertainty", "outputs", "round", "resolution", "points"}
+SETTINGS |= {"seed", "count"}
 """Fields of questions that are no data."""
 
 Evaluate = Callable[[Any], Callable[[Path], Any]]

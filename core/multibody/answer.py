@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal
 
 from core.multibody.packed import Floats, Integers
@@ -202,22 +203,82 @@ class SceneTrajectory:
 
 @dataclass(frozen=True)
 class SceneEvent:
-    """Something that ends a scene.
+    """Something that ends a phase or a scene.
 
     Attributes
     ----------
-    kind : {"slack", "singular"}
+    kind : str
+        "touch", "lift-off", "slip", "stick", "roll", "settle" (bounces end), "taut", "slack", "stop", "release",
+        "singular", or the code of a problem.
     name : str
         The connection; "" where several make a place singular.
     time : float
     error : float
         Of the time (s).
+    impulses : mapping of str to float
+        Of an impact: "normal" and "friction" (N s).
+    energy_loss : float
+        Of an impact (J).
     """
 
     kind: str
     name: str
     time: float
     error: float
+    impulses: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    energy_loss: float = 0.0
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """A time at which a quantity takes a value.
+
+    Attributes
+    ----------
+    quantity : str
+    equals : float
+    unit : str
+    nth : int
+        Counted from one, after the start.
+    time : float
+    error : float
+        Of the time (s).
+    how : str
+        How the error of the quantity is known.
+    """
+
+    quantity: str
+    equals: float
+    unit: str
+    nth: int
+    time: float
+    error: float
+    how: How
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Least and largest value of a quantity, each with the time at which it is taken.
+
+    Attributes
+    ----------
+    error : float
+        Of both values.
+    until : float
+        End of the time that was searched, from the start (s).
+    periodic : bool
+        Whether that is a period, so that the extremes are those of all time.
+    """
+
+    quantity: str
+    unit: str
+    least: float
+    least_time: float
+    largest: float
+    largest_time: float
+    error: float
+    until: float
+    periodic: bool
 
 
 @dataclass(frozen=True)
@@ -246,6 +307,59 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
+class ScenePhase:
+    """A time in which no contact, stop or string changes its state.
+
+    Attributes
+    ----------
+    start : float
+    end : float or None
+        None where it lasts beyond the times asked for.
+    model, why : str
+    degrees_of_freedom : int
+    coordinates : int
+        Those that remain.
+    states : mapping of str to str
+        Of every contact, stop and string: open, closed, stick, slide, slide back.
+    """
+
+    start: float
+    end: float | None
+    model: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: int
+    states: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class SceneProblem:
+    """Something that mechanics does not decide.
+
+    Attributes
+    ----------
+    code : str
+        "no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "several-impacts", "no-impact",
+        "energy-gain" or "no-progress".
+    explanation : str
+    time : float
+    connections : tuple of str
+        Those between which it is undecided.
+    candidates : tuple of mapping
+        What is possible.
+    decided_by : str
+        Which further assumption would decide it.
+    """
+
+    code: str
+    explanation: str
+    time: float
+    connections: tuple[str, ...]
+    candidates: tuple[Mapping[str, str], ...]
+    decided_by: str
+
+
+@dataclass(frozen=True)
 class SceneAnswer:
     """The answer to a question about a scene; what was not asked for is None."""
 
@@ -258,3 +372,7 @@ class SceneAnswer:
     equilibria: tuple[Equilibrium, ...] | None
     events: tuple[SceneEvent, ...]
     ended: SceneEvent | None
+    occurrences: tuple[Occurrence, ...] | None = None
+    extremes: tuple[Extremes, ...] | None = None
+    phases: tuple[ScenePhase, ...] | None = None
+    problem: SceneProblem | None = None

@@ -10,7 +10,7 @@ from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.coordinates import Given
 from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.rank import Elimination, Line, independent
-from core.multibody.table import Table
+from core.multibody.table import Row, Table
 
 CLOSE = 1e-6
 """Relative mismatch of positions up to which rounded figures are taken to be meant as the connections say."""
@@ -57,7 +57,7 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
         lines = [row.line(table.q) for row in rows]
         chosen = independent(lines)
         residuals = [evaluated(rows[i].measure or {}, table.q) for i in chosen]
-        step = _least(table, [lines[i] for i in chosen], residuals)
+        step = least_change(table, [lines[i] for i in chosen], residuals)
         table.q = [q - d for q, d in zip(table.q, step, strict=True)]
         scale = max(float(abs(q)) for q in table.q)
         if max(float(abs(d)) for d in step) <= 2.0**-150 * scale:
@@ -72,7 +72,7 @@ def _newton(table: Table, paths: Mapping[str, Path]) -> None:
             )
 
 
-def _least(table: Table, lines: Sequence[Line], residuals: Sequence[Ball]) -> list[Ball]:
+def least_change(table: Table, lines: Sequence[Line], residuals: Sequence[Ball]) -> list[Ball]:
     """Return the smallest change that undoes residuals to first order."""
     count = len(lines)
     if not count:
@@ -98,8 +98,12 @@ def _least(table: Table, lines: Sequence[Line], residuals: Sequence[Ball]) -> li
     return step
 
 
-def assemble_rates(table: Table, given: Sequence[Given], paths: Mapping[str, Path]) -> list[str]:
+def assemble_rates(
+    table: Table, given: Sequence[Given], paths: Mapping[str, Path], wished: Sequence[Row] = ()
+) -> list[str]:
     """Set the rates at the start: those given, and of the others those of least kinetic energy.
+
+    The rows `wished` hold as far as the others leave them open.
 
     Raises
     ------
@@ -129,6 +133,8 @@ def assemble_rates(table: Table, given: Sequence[Given], paths: Mapping[str, Pat
                 remedy="leave it out, or change what it contradicts",
             )
         noticed.append("/".join(map(str, entry.path)))
+    for row in wished:
+        elimination.add(row.line(table.q), row.rate)
     table.v = _least_energy(table, elimination)
     return noticed
 

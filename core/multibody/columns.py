@@ -10,6 +10,7 @@ import numpy as np
 
 from core.multibody.answer import Column, How
 from core.multibody.measures import Force
+from core.multibody.momenta import momenta
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, WholeStates
 
@@ -45,6 +46,8 @@ class Columns:
                 found[f"{name}.axis"] = self._vector(frame.axis[1], "1", rates=False)
             elif frame.axes is not None:
                 found.update(self._attitude(name, frame.axes))
+            elif frame.turns is not None:
+                found[f"{name}.angular_velocity_in_space"] = self._vector(frame.turns, "rad/s", rates=True)
         return found
 
     def forces(self, chosen: Sequence[Force]) -> dict[str, Column]:
@@ -62,6 +65,20 @@ class Columns:
                 other = self.whole.force(force, *judged)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
             found[force.name] = Column(values, force.unit, error, self.how)
+        return found
+
+    def momenta(self) -> dict[str, Column]:
+        """Return momentum and angular momentum about the origin in time, of every body and of all."""
+        measures = self.whole.measures
+        found: dict[str, Column] = {}
+        for name, function in momenta(measures.table, measures.coordinates.frames).items():
+            values, size = function.at(self.states.q, self.states.v)
+            error = _SMALL * float(np.max(np.linalg.norm(size, axis=1), initial=0.0))
+            if self.states.reference is not None:
+                other = function.at(*self.states.reference)[0]
+                error += 4.0 * float(np.max(np.linalg.norm(values - other, axis=1), initial=0.0))
+            shown = values[:, 0] if values.shape[1] == 1 else values
+            found[name] = Column(shown, function.unit, error, self.how)
         return found
 
     def energy(self) -> dict[str, Column]:
@@ -240,6 +257,10 @@ def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> flo
     for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
         if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
             largest[unit] = max(largest.get(unit, 0.0), scale)
+    # Momenta and energies that are zero within their error have no scale; what they follow from has.
+    for unit in ("kg m/s", "kg m^2/s", "J"):
+        if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
+            largest[unit] = 0.0
     scales = {name: largest[columns[name].unit] for name in figures}
     return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
 

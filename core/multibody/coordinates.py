@@ -50,6 +50,10 @@ class Frame:
         In space, the components of each body axis.
     axis : tuple (int, list of int) or None
         Of a symmetric top: which body axis, and its components.
+    turns : tuple of int, or None
+        In space, of a body that rolls: three coordinates whose rates are its angular velocity in space.
+    start_axes : three lists of balls, or None
+        Of a ball, which has no other coordinates: the body axes at the start.
     """
 
     name: str
@@ -59,6 +63,8 @@ class Frame:
     turn: int | None = None
     axes: list[list[int]] | None = None
     axis: tuple[int, list[int]] | None = None
+    turns: tuple[int, ...] | None = None
+    start_axes: list[list[Ball]] | None = None
     spin_momentum: Ball = ZERO
     spin_energy: Ball = ZERO
     orients: bool = False
@@ -242,7 +248,10 @@ class Coordinates:
             vector: Any = body.angular_velocity
             omega = numerals.vector(vector, (*path, "angular_velocity"), 3)
         spots = [frame.places[spot] for spot in seen if spot in frame.places]
-        for k in symmetry_axes(tensor) if "orientation" not in seen else ():
+        if "turn" in seen and "orientation" not in seen and not spots and len(symmetry_axes(tensor)) == 3:
+            self._ball(frame, axes, tensor, omega)
+            return
+        for k in symmetry_axes(tensor) if not seen & {"orientation", "turn"} else ():
             if all(is_zero(xi[i]) for xi in spots for i in range(3) if i != k):
                 self._top(frame, k, axes, tensor, omega)
                 return
@@ -269,6 +278,33 @@ class Coordinates:
                 rate = _cross(space, axes[a])
                 for i in range(3):
                     self.given.append(Given({frame.axes[a][i]: ONE}, rate[i], (*path, "angular_velocity")))
+        if "turn" in seen and "orientation" not in seen:
+            self._turns(frame)
+
+    def _turns(self, frame: Frame) -> None:
+        """Add the coordinates whose rates are the angular velocity in space, half the sum of e x e'."""
+        table, name = self.table, frame.name
+        assert frame.axes is not None
+        frame.turns = tuple(table.coordinate(f"{name}.turn.{x}", "rad", ZERO) for x in "xyz")
+        for i, turn in enumerate(frame.turns):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            rates: Rate = {turn: constant(ONE)}
+            for axis in frame.axes:
+                rates[axis[k]] = {(axis[j],): -ONE / 2}
+                rates[axis[j]] = {(axis[k],): ONE / 2}
+            table.rows.append(Row(name, None, rates))
+
+    def _ball(self, frame: Frame, axes: Any, tensor: Any, omega: Any) -> None:
+        """Describe a ball with equal moments by its angular velocity in space alone: I w' is the torque."""
+        table, name = self.table, frame.name
+        frame.turns = tuple(table.coordinate(f"{name}.turn.{x}", "rad", ZERO) for x in "xyz")
+        frame.start_axes, frame.orients = axes, True
+        for i, turn in enumerate(frame.turns):
+            if not is_zero(tensor[0][0]):
+                table.add_mass(turn, turn, tensor[0][0])
+            if omega is not None:
+                value = sum((omega[a] * axes[a][i] for a in range(3)), ZERO)
+                self.given.append(Given({turn: ONE}, value, ("bodies", name, "angular_velocity", i)))
 
     def _top(self, frame: Frame, k: int, axes: Any, tensor: Any, omega: Any) -> None:
         """Describe a symmetric top by its axis n: I n'' = ... + p n x n', with p = I_3 omega_3 conserved."""

@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody import laws
+from core.multibody import attraction, laws
+from core.multibody.contacts import contact
 from core.multibody.coordinates import Coordinates, dimension_of
 from core.multibody.language import GROUND, Scene
-from core.multibody.measures import Measures, perpendicular
+from core.multibody.measures import Measures, Work, perpendicular
 from core.multibody.numerals import Numerals
-from core.multibody.polynomials import ONE, constant, difference, evaluated, is_zero
+from core.multibody.polynomials import ONE, Poly, constant, difference, evaluated, is_zero
 from core.multibody.rolling import rolling
+from core.multibody.rolling_in_space import rolling_in_space
 from core.multibody.strings import string
 
 _TURNED = ("torsion-spring", "motor", "torque")
@@ -29,8 +31,10 @@ class Described:
     paths: Mapping[str, Path]
 
 
-def described(scene: Scene, numerals: Numerals | None = None) -> Described:
+def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool = False) -> Described:
     """Return the table of a scene, its numbers read by `numerals` if given; the precision of balls is the caller's.
+
+    If it is `one_sided`, strings are no rows but unilateral measures, as contacts are.
 
     Raises
     ------
@@ -39,14 +43,31 @@ def described(scene: Scene, numerals: Numerals | None = None) -> Described:
     """
     numerals = numerals or Numerals.of(scene.let, scene.numbers)
     names = scene.names()
-    coordinates = Coordinates(scene, numerals, _seen(scene, numerals))
-    measures = Measures(coordinates)
+    seen = _seen(scene, numerals)
+    if one_sided and dimension_of(scene) == 2:
+        # Angles are coordinates of their own, so that turns are counted across every event.
+        seen = {name: what | {"turn"} if "direction" in what else what for name, what in seen.items()}
+    coordinates = Coordinates(scene, numerals, seen)
+    measures = Measures(coordinates, one_sided=one_sided)
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
     paths["clock"] = ()
     for i, (name, connection) in enumerate(zip(names, scene.connections, strict=True)):
         paths[name] = ("connections", i)
         _connect(measures, name, connection, ("connections", i))
+    if "gravity" not in paths:
+        measures.works.extend(_weight(measures))
     return Described(scene, measures, paths)
+
+
+def _weight(measures: Measures) -> list[Work]:
+    """Return what gravity does, where there is any."""
+    fall: Poly = {}
+    for frame in measures.coordinates.frames.values():
+        for i, pull in zip(frame.position, measures.coordinates.gravity, strict=True):
+            mass = measures.table.mass.get((i, i))
+            if mass is not None and not is_zero(pull):
+                fall[i,] = -mass * pull
+    return [Work("gravity", fall)] if fall else []
 
 
 def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
@@ -85,9 +106,9 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
                 body = scene.bodies.get(place) if isinstance(place, str) else None
                 if body is not None and body.radius is not None:
                     see(place, "turn")
-        if kind == "rolling":
+        if kind in ("rolling", "contact"):
             for place in (connection.place, connection.a, connection.b):
-                see(place, "turn", "orientation")
+                see(place, "turn")
         if kind in _TURNED or (kind == "damper" and connection.measure == "turn"):
             for place in (getattr(connection, "a", None), getattr(connection, "b", None)):
                 see(place, "turn")
@@ -112,7 +133,9 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
     if kind == "string":
         string(measures, name, connection, path)
     elif kind == "rolling":
-        rolling(measures, name, connection, path)
+        (rolling if measures.dimension == 2 else rolling_in_space)(measures, name, connection, path)
+    elif kind == "contact":
+        contact(measures, name, connection, path)
     elif kind == "track":
         measures.on_curve(name, point(connection.place, (*path, "place")), connection.on, path)
     elif kind in ("pin", "ball-joint", "weld", "slider", "rod"):
@@ -126,6 +149,10 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
         laws.spring(measures, name, connection, path)
     elif kind == "torsion-spring":
         laws.torsion_spring(measures, name, connection, path)
+    elif kind == "gravitation":
+        attraction.gravitation(measures, name, connection, path)
+    elif kind == "inverse-square":
+        attraction.inverse_square(measures, name, connection, path)
     elif kind == "damper":
         laws.damper(measures, name, connection, path)
     elif kind == "motor":

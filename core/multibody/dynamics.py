@@ -9,7 +9,7 @@ from flint import arb_mat
 
 from core.errors import InvalidParameter
 from core.multibody.measures import Force, Measures
-from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, entry, evaluated, is_zero, variables
+from core.multibody.polynomials import ONE, ZERO, Ball, entry, evaluated, is_zero, variables
 from core.multibody.rank import Elimination, independent
 from core.multibody.table import Row, Table
 
@@ -36,7 +36,7 @@ def parts(table: Table) -> list[list[int]]:
         for key in keys:
             join(key)
     for row in table.rows:
-        join(sorted({*row.rates, *variables(row.rates.values())}))
+        join(sorted({*row.rates, *row.drag, *variables(row.rates.values()), *variables(row.drag.values())}))
     groups: dict[int, list[int]] = {}
     for i in range(len(parent)):
         if timeless[i]:
@@ -79,7 +79,10 @@ def restricted(table: Table, indices: Sequence[int]) -> Table:
         rates = {
             number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.rates.items()
         }
-        new.rows.append(Row(row.name, renamed, rates, row.rate))
+        drag = {
+            number[j]: {tuple(number[i] for i in key): x for key, x in poly.items()} for j, poly in row.drag.items()
+        }
+        new.rows.append(Row(row.name, renamed, rates, row.rate, drag))
     return new
 
 
@@ -102,8 +105,9 @@ def accelerations(table: Table) -> tuple[list[Ball], list[int]]:
         entries[i][j] = entries[j][i] = value
     for k, r in enumerate(chosen):
         for j, value in lines[r].items():
-            entries[j][count + k] = -value
             entries[count + k][j] = value
+        for j, value in table.rows[r].pushed(table.q).items():
+            entries[j][count + k] = -value
     right = [*table.forces(), *(table.convective(table.rows[r]) for r in chosen)]
     try:
         solved = arb_mat(entries).solve(arb_mat([[x] for x in right])).entries()
@@ -158,9 +162,10 @@ def singular_row(table: Table, chosen: Sequence[int]) -> Row | None:
         for j in range(len(table.names)):
             column = {i: lines[i][j] for i in chosen if j in lines[i]}
             weights.add(column, lines[r].get(j, ZERO))
-        terms: list[tuple[Ball, Poly]] = [(ONE, measure)]
-        terms.extend((-weights.pivots[i][1], table.rows[i].measure or {}) for i in weights.pivots)
-        bend: Poly = {key: x for key, x in combined(*terms).items() if len(key) == 2}
+        bend = _slopes(table.rows[r], ONE)
+        for i in weights.pivots:
+            for key, x in _slopes(table.rows[i], -weights.pivots[i][1]).items():
+                bend[key] = entry(bend, key) + x
         for a, first in enumerate(directions):
             for second in directions[: a + 1]:
                 if not is_zero(_bilinear(bend, first, second)):
@@ -168,7 +173,14 @@ def singular_row(table: Table, chosen: Sequence[int]) -> Row | None:
     return None
 
 
-def _bilinear(form: Poly, first: dict[int, Ball], second: dict[int, Ball]) -> Ball:
+def _slopes(row: Row, factor: Ball) -> dict[tuple[int, int], Ball]:
+    """Return by how much the line of a row changes with each coordinate, times a factor."""
+    return {
+        (key[0], j): factor * value for j, poly in row.rates.items() for key, value in poly.items() if len(key) == 1
+    }
+
+
+def _bilinear(form: dict[tuple[int, int], Ball], first: dict[int, Ball], second: dict[int, Ball]) -> Ball:
     total = ZERO
     for key, x in form.items():
         i, j = key
@@ -230,7 +242,7 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
     pushed, given = table.inertial(acceleration), table.forces()
     lines: list[dict[int, Ball]] = [{} for _ in table.names]
     for r, row in enumerate(table.rows):
-        for j, value in row.line(table.q).items():
+        for j, value in row.pushed(table.q).items():
             lines[j][r] = value
     elimination = Elimination()
     for line, inertia, force in zip(lines, pushed, given, strict=True):

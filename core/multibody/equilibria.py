@@ -13,6 +13,7 @@ from scipy.linalg import null_space
 
 from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.answer import Equilibrium
+from core.multibody.coordinates import Frame
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
 from core.multibody.packed import Floats, Packed, Units, packed, state, two_to, units_of
@@ -42,17 +43,17 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
     Raises
     ------
     NotApplicable
-        For scenes that are driven, or held by rates that no measure gives: rolling on curves, and torsion springs or
-        drums beside a direction.
+        For scenes that are driven, or held by rates that no measure gives: rolling on curves, and drums.
     BudgetExceeded
         If the search would take too long.
     """
     small = reduced(found.measures.table, pinning=False)
     table = small.table
-    if any(row.measure is None for row in table.rows):
+    frames = found.measures.coordinates.frames
+    tied = [r for r, row in enumerate(table.rows) if row.measure is None]
+    if any(table.rows[r].name not in frames or frames[table.rows[r].name].turn is None for r in tied):
         raise NotApplicable(
-            "equilibria are not answered where rates are held that no measure gives: motors, rolling on curves, drums "
-            "and torsion springs beside a direction",
+            "equilibria are not answered where rates are held that no measure gives: motors, rolling on curves, drums",
             path=("outputs",),
         )
     if not table.names:
@@ -61,6 +62,9 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
     units = units_of(table, gains)
     arrays = packed(table, chosen, units)
     dense = _Dense(arrays)
+    for number, r in enumerate(chosen):
+        if r in tied:
+            dense.tie(number, found, small, units, frames[table.rows[r].name], two_to(units.rows[r]))
     start = state(table, units)[0][:, 0]
     places = _search(dense, start, len(table.names) - len(chosen))
     answers = []
@@ -90,7 +94,25 @@ class _Dense:
             r, j = arrays.lines_at[e]
             self.slopes[r, j, i] = x
         self.offset = arrays.offset[:, 0]
+        self.ties: list[tuple[int, list[tuple[Floats, float]], tuple[float, float], float]] = []
         self.gyration = [(*at, x) for at, x in zip(arrays.gyre_at.tolist(), arrays.gyre[:, 0], strict=True)]
+
+    def tie(self, row: int, found: Described, small: Reduced, units: Units, frame: Frame, factor: float) -> None:
+        """Let a row hold the angle of a body to its direction: its rate is that of an angle with full turns."""
+        assert frame.turn is not None
+        assert frame.direction is not None
+        up = np.array([two_to(e) for e in units.lengths])
+        forms, start = [], []
+        for i in (frame.turn, *frame.direction):
+            line, offset = np.zeros(len(up)), 0.0
+            for key, value in small.expressions[i].items():
+                if key:
+                    line[key[0]] = float(value) * up[key[0]]
+                else:
+                    offset = float(value)
+            forms.append((line, offset))
+            start.append(float(found.measures.table.q[i]))
+        self.ties.append((row, forms, (start[0], float(np.arctan2(start[2], start[1]))), factor))
 
     def jacobian(self, q: Floats) -> Floats:
         """Return W at places of shape (..., n)."""
@@ -100,6 +122,11 @@ class _Dense:
     def measures(self, q: Floats) -> Floats:
         """Return g at places of shape (..., n)."""
         found: Floats = self.offset + np.einsum("...rj,...j->...r", (self.lines + self.jacobian(q)) / 2, q)
+        for row, forms, (turn, angle), factor in self.ties:
+            now, cosine, sine = (q @ line + offset for line, offset in forms)
+            # The angle may differ from the direction by full turns: a spring that is wound up.
+            away = (now - turn) - (np.arctan2(sine, cosine) - angle)
+            found[..., row] = factor * (away - 2 * np.pi * np.round(away / (2 * np.pi)))
         return found
 
     def potential(self, q: Floats) -> float:

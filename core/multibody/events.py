@@ -8,6 +8,7 @@ from math import copysign
 import numpy as np
 
 from core.multibody.answer import SceneEvent
+from core.multibody.kepler import Kepler
 from core.multibody.measures import Limit
 from core.multibody.modes import Modes
 from core.multibody.numerical import Numerical
@@ -24,11 +25,17 @@ _NOISE = 2.0**-40
 def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEvent | None:
     """Return the first event between the start and `end`, which may be negative; None if there is none."""
     found: list[SceneEvent] = []
-    for _, motion in whole.parts:
+    for indices, motion in whole.parts:
         if isinstance(motion, Numerical):
             reached = motion.reach(end)
             if reached is not None:
                 found.append(SceneEvent("singular", "", reached, 1e-9 * abs(reached)))
+                end = reached
+        elif isinstance(motion, Kepler):
+            reached = motion.reach(end)
+            if reached is not None:
+                name = next((limit.name for limit in watched if _follows(whole, limit, indices)), "")
+                found.append(SceneEvent("singular", name, reached, 2.0**-52 * abs(reached)))
                 end = reached
     if not watched or end == 0.0:
         return found[0] if found else None
@@ -59,10 +66,19 @@ def _safe(whole: Whole, limit: Limit) -> bool:
         return False
     length = substituted(limit.length, whole.reduced.expressions)
     for indices, motion in whole.parts:
+        if isinstance(motion, Kepler) and _follows(whole, limit, indices):
+            # It falls into the centre, which is known, or never.
+            return True
         if isinstance(motion, Modes) and {key[0] for key in length if key} <= set(indices):
             number = {i: k for k, i in enumerate(indices)}
             return motion.lowest({tuple(number[i] for i in key): x for key, x in length.items()}) > 0.0
     return False
+
+
+def _follows(whole: Whole, limit: Limit, indices: Sequence[int]) -> bool:
+    """Return whether a length is one of a part."""
+    length = substituted(limit.length or {}, whole.reduced.expressions)
+    return bool(length) and {key[0] for key in length if key} <= set(indices)
 
 
 def _grid(whole: Whole, end: float) -> Floats:

@@ -166,13 +166,44 @@ class Track(Connection):
 
 
 @dataclass(frozen=True)
+class Contact(Connection):
+    """What touches pushes and does not pull, in the plane.
+
+    `place`, a point or a body with a rim, does not pass `on`: a face ``{at, slope}``, free on the left of its slope, or
+    a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. Or `a` does not pass `b`, of
+    which one has a rim at least. Or with `measure` "turn", the turn of `a` relative to `b` stays `at_least` or
+    `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order` says, where several
+    impacts at once leave their outcome open, in which order they happen.
+    """
+
+    place: Place | None = None
+    on: Mapping[str, Any] | None = None
+    a: Place | None = None
+    b: Place | None = None
+    measure: Literal["gap", "turn"] = "gap"
+    at_least: Number | None = None
+    at_most: Number | None = None
+    friction: Number | Sequence[Number] | None = None
+    restitution: Number | None = None
+    order: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "contact"
+
+
+@dataclass(frozen=True)
 class String(Connection):
-    """An inextensible string through places and over drums, taut; a drum without slip divides it."""
+    """An inextensible string through places and over drums; a drum without slip divides it.
+
+    It is taut at the start unless it is longer than its way. `restitution` is that of the jerk when it becomes taut;
+    where it is given, velocities may open or jerk the string at the start.
+    """
 
     through: Sequence[Place]
     sides: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     slips: Sequence[str] = ()
     length: Number | None = None
+    restitution: Number | None = None
+    order: Number | None = None
     name: str | None = None
     kind: ClassVar[str] = "string"
 
@@ -199,6 +230,28 @@ class TorsionSpring(Connection):
     rest_angle: Number | None = None
     name: str | None = None
     kind: ClassVar[str] = "torsion-spring"
+
+
+@dataclass(frozen=True)
+class Gravitation(Connection):
+    """Two bodies attract one another by their masses, as their centres do: constant m_a m_b/r^2."""
+
+    a: str
+    b: str
+    constant: Number = "6.6743e-11"
+    name: str | None = None
+    kind: ClassVar[str] = "gravitation"
+
+
+@dataclass(frozen=True)
+class InverseSquare(Connection):
+    """Two places attract one another by strength/r^2 (N m^2); a negative strength repels, as equal charges do."""
+
+    a: Place
+    b: Place
+    strength: Number
+    name: str | None = None
+    kind: ClassVar[str] = "inverse-square"
 
 
 @dataclass(frozen=True)
@@ -269,9 +322,12 @@ KINDS: Mapping[str, type[Any]] = MappingProxyType(
             Rod,
             Rolling,
             Track,
+            Contact,
             String,
             Spring,
             TorsionSpring,
+            Gravitation,
+            InverseSquare,
             Damper,
             Motor,
             SpinningFrame,
@@ -282,7 +338,7 @@ KINDS: Mapping[str, type[Any]] = MappingProxyType(
 )
 """The catalogue of connections."""
 
-NOT_YET = ("contact", "impulse")
+NOT_YET = ("impulse",)
 """Kinds that the language foresees and that no model answers yet."""
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Point
 from core.multibody.language import GROUND
-from core.multibody.measures import Force, Measures
+from core.multibody.measures import Force, Measures, Work
 from core.multibody.polynomials import (
     ONE,
     ZERO,
@@ -20,6 +20,7 @@ from core.multibody.polynomials import (
     entry,
     evaluated,
     is_zero,
+    product,
 )
 from core.multibody.rolling import rate_of, sum_of_rates
 from core.multibody.table import Row
@@ -41,13 +42,16 @@ def spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
                 raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
             for component in d:
                 _potential(measures, component, k)
+            measures.works.append(Work(name, combined(*((k / 2, product(x, x)) for x in d))))
             for axis, component in zip("xyz", d, strict=False):
                 measures.forces.append(Force(f"{name}.{axis}", "N", [], combined((k, component))))
             return
     index = measures.length(name, a, b, path)
     if rest is None:
         rest = measures.table.q[index]
-    _potential(measures, combined((ONE, coordinate(index)), (-rest, constant(ONE))), k)
+    stretch = combined((ONE, coordinate(index)), (-rest, constant(ONE)))
+    _potential(measures, stretch, k)
+    measures.works.append(Work(name, combined((k / 2, product(stretch, stretch)))))
     pull = combined((k, coordinate(index)), (-k * rest, constant(ONE)))
     measures.forces.append(Force(f"{name}.force", "N", [], pull))
 
@@ -62,6 +66,7 @@ def torsion_spring(measures: Measures, name: str, connection: Any, path: Path) -
         rest = measures.numerals.number(connection.rest_angle, (*path, "rest_angle"))
     away = combined((ONE, turn), (-rest, constant(ONE)))
     _potential(measures, away, k)
+    measures.works.append(Work(name, combined((k / 2, product(away, away)))))
     measures.forces.append(Force(f"{name}.torque", "N m", [], combined((-k, away))))
 
 
@@ -79,6 +84,7 @@ def damper(measures: Measures, name: str, connection: Any, path: Path) -> None:
     for i, x in slopes.items():
         for j, y in slopes.items():
             measures.table.add_damping(i, j, c * x * y)
+    measures.works.append(Work(name, square=(c, slopes)))
     suffix, sign = ("force", c) if unit == "N" else ("torque", -c)
     measures.forces.append(Force(f"{name}.{suffix}", unit, [], {}, {i: sign * x for i, x in slopes.items()}))
     measures.conservative = False
@@ -92,6 +98,8 @@ def motor(measures: Measures, name: str, connection: Any, path: Path) -> None:
         rates = sum_of_rates((constant(ONE), rates), (constant(-rate), {clock(measures): constant(ONE)}))
         measures.conservative = False
     row = measures.roll(name, rates)
+    if not is_zero(rate):
+        measures.works.append(Work(name, rows=[(row, constant(-rate))]))
     measures.force(f"{name}.torque", [(row, constant(ONE))], "N m")
 
 
@@ -131,7 +139,11 @@ def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -
     if measures.dimension == 3 and not all(is_zero(coordinates.gravity[i]) for i in planar):
         raise InvalidParameter((*path, "about"), "be about the z axis: gravity has to be along it")
     for frame in coordinates.frames.values():
-        if frame.axis is not None or (measures.dimension == 2 and frame.turn is not None and frame.direction is None):
+        if (
+            frame.axis is not None
+            or frame.turns is not None
+            or (measures.dimension == 2 and frame.turn is not None and frame.direction is None)
+        ):
             raise InvalidParameter(path, f'have no top or wheel whose spin is counted apart, as "{frame.name}" is')
         vectors = [frame.position]
         if frame.direction is not None:
@@ -156,6 +168,9 @@ def force(measures: Measures, name: str, connection: Any, path: Path) -> None:
         for key, x in component.items():
             if key and not is_zero(value):
                 measures.table.add_load(key[0], value * x)
+    measures.works.append(
+        Work(name, combined(*((-x, component) for x, component in zip(vector, point.at, strict=True))))
+    )
 
 
 def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
@@ -166,18 +181,23 @@ def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
         if isinstance(body, str) and body in measures.coordinates.frames:
             turn = measures.coordinates.turn_of(body, (*path, "body"))
             table.add_load(next(iter(turn))[0], value)
+            measures.works.append(Work(name, combined((-value, turn))))
             return
         raise InvalidParameter((*path, "body"), "name a body of the scene")
     frame = measures.coordinates.frames.get(body) if isinstance(body, str) else None
     if frame is None or frame.axes is None:
         raise InvalidParameter((*path, "body"), "name a rigid body of the scene")
     vector = measures.numerals.vector(connection.torque, (*path, "torque"), 3)
+    terms: list[tuple[Ball, int, int]] = []
     # The forces (torque x e)/2 on the three unit vectors have the torque as their moment, and no other effect.
     for axis in frame.axes:
         for i in range(3):
             j, k = (i + 1) % 3, (i + 2) % 3
             table.add_stiffness(axis[i], axis[k], -vector[j] / 2)
             table.add_stiffness(axis[i], axis[j], vector[k] / 2)
+            terms.append((-vector[j] / 2, axis[k], axis[i]))
+            terms.append((vector[k] / 2, axis[j], axis[i]))
+    measures.works.append(Work(name, terms=[(-factor, i, j) for factor, i, j in terms]))
     measures.conservative = False
 
 

@@ -14,6 +14,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Coordinates, Point, Rate
 from core.multibody.polynomials import (
     ONE,
+    ZERO,
     Ball,
     Poly,
     combined,
@@ -55,6 +56,30 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Work:
+    """What takes or brings energy: a potential, or a power.
+
+    Attributes
+    ----------
+    name : str
+    potential : polynomial or None
+        Whose fall is the work.
+    square : (ball, dict) or None
+        Of a damper: coefficient and the linear form in the rates whose square it takes.
+    terms : list of (ball, coordinate, rate)
+        Power as factor times coordinate times rate.
+    rows : list of (row, polynomial)
+        Power of what is driven: the multiplier of the row times less what the row says of the clock.
+    """
+
+    name: str
+    potential: Poly | None = None
+    square: tuple[Ball, dict[int, Ball]] | None = None
+    terms: list[tuple[Ball, int, int]] = field(default_factory=list)
+    rows: list[tuple[int, Poly]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
 class Limit:
     """Something that has to stay positive, and whose loss ends a scene.
 
@@ -76,17 +101,63 @@ class Limit:
     length: Poly | None = None
 
 
-class Measures:
-    """Adds the rows of connections to the table of the bodies."""
+@dataclass(frozen=True)
+class Unilateral:
+    """A measure that stays at or above zero: a contact, a stop, a string.
 
-    def __init__(self, coordinates: Coordinates) -> None:
+    Attributes
+    ----------
+    name : str
+        Of the connection, or of one part of a string.
+    gap : polynomial
+        Whose multiplier, while it is zero, is the force that keeps it there.
+    slip : linear form in the rates, or None
+        Rate of slip where there is friction; its multiplier is the friction.
+    static, kinetic, restitution : ball
+        Coefficients.
+    closes, opens : str
+        What the events are called.
+    rolls : bool
+        Whether sticking is rolling.
+    order : ball or None
+        Place in the order of simultaneous impacts.
+    """
+
+    name: str
+    gap: Poly
+    slip: Rate | None = None
+    static: Ball = ZERO
+    kinetic: Ball = ZERO
+    restitution: Ball = ZERO
+    closes: str = "touch"
+    opens: str = "lift-off"
+    rolls: bool = False
+    unit: str = "N"
+    order: Ball | None = None
+
+
+class Measures:
+    """Adds the rows of connections to the table of the bodies.
+
+    Parameters
+    ----------
+    coordinates : Coordinates
+    one_sided : bool
+        Whether strings may go slack: they are then no rows, but stand in `unilateral`.
+    """
+
+    def __init__(self, coordinates: Coordinates, *, one_sided: bool = False) -> None:
+        self.one_sided = one_sided
+        self.unilateral: list[Unilateral] = []
         self.coordinates, self.table = coordinates, coordinates.table
         self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
         self.forces: list[Force] = []
         self.limits: list[Limit] = []
+        self.works: list[Work] = []
         self.potential = ONE - ONE
         self.conservative = True
         self._lengths: dict[Any, int] = {}
+        self._inverses: dict[int, int] = {}
 
     def hold(self, name: str, measure: Poly) -> int:
         """Add a measure that stays zero and return the number of its row."""
@@ -151,6 +222,14 @@ class Measures:
         self.limits.append(Limit("singular", name, length=coordinate(index)))
         self._lengths[key] = index
         return index
+
+    def inverse(self, name: str, length: int) -> int:
+        """Return the coordinate that is one over a length, made once for each."""
+        if length not in self._inverses:
+            index = self.table.coordinate(f"{name}.inverse", "1/m", 1 / self.table.q[length])
+            self.hold(name, {(length, index): ONE, (): -ONE})
+            self._inverses[length] = index
+        return self._inverses[length]
 
     def aligned(self, name: str, a: str | None, b: str | None, components: Sequence[Ball], path: Path) -> list[int]:
         """Hold a direction of body `a`, given in space at the start, in body `b`."""

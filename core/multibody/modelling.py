@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.balls import precision
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, NotApplicable
 from core.multibody.assembly import assemble_places, assemble_rates
 from core.multibody.description import Described, described
 from core.multibody.dynamics import accelerations, parts, restricted, singular_row
+from core.multibody.euler_poisson import EulerPoisson
+from core.multibody.free_body import freely_turning
 from core.multibody.generic_equation import SceneSystem, scene_system
+from core.multibody.kepler import keplerian
 from core.multibody.language import Scene
 from core.multibody.modes import Modes
 from core.multibody.motion import Motion, Rest
@@ -19,6 +22,8 @@ from core.multibody.passes import reduced
 from core.multibody.periods import repeating
 from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
 from core.multibody.table import Table
+from core.multibody.turning import turning
+from core.multibody.turning_body import turning_body
 from core.multibody.uniform import Uniform
 from core.multibody.vertical_symmetry import precessing
 from core.multibody.whole import Whole
@@ -77,13 +82,26 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
     Raises
     ------
     InvalidParameter
-        For a scene that cannot be, with the path to the fault.
+        For a scene that cannot be, with the path to the fault; `SlackAtStart` where a string is too long to be taut.
+    NotApplicable
+        For a scene with contacts.
     """
     found = described(scene, numerals)
     table = found.measures.table
+    if found.measures.unilateral:
+        raise NotApplicable(
+            "contacts change the equations of motion at every event: such a scene is answered by its own phases alone",
+            path=("connections", found.paths[found.measures.unilateral[0].name][-1]),
+            remedy="leave out the method, or hold what touches by a connection of another kind",
+        )
     moved = assemble_places(table, found.paths)
     fitted = assemble_rates(table, found.measures.coordinates.given, found.paths)
-    small = reduced(table, pinning=True)
+    return models_of(found, moved, fitted)
+
+
+def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
+    """Return the models of a table whose start meets its rows."""
+    small = reduced(found.measures.table, pinning=True)
     pieces = [_piece(found, small.table, indices) for indices in parts(small.table)]
     gains: list[Ball] = [ZERO] * len(small.table.names)
     for piece in pieces:
@@ -134,7 +152,18 @@ def _motion(piece: Piece) -> Motion:
         return Uniform(part, gain)
     if linear and not part.gyration:
         return Modes.of(part, chosen)
-    found: Motion | None = repeating(part, gain, chosen) or precessing(part, gain, chosen)
+    rubs = any(row.drag for row in part.rows)
+    free_turn = turning(part, chosen)
+    if free_turn is not None:
+        return free_turn
+    body = None if rubs else turning_body(part)
+    if body is not None:
+        about = freely_turning(part, body) or EulerPoisson.about(part, body, gain)
+        if about is not None:
+            return about
+    found: Motion | None = None
+    if not rubs:
+        found = keplerian(part) or repeating(part, gain, chosen) or precessing(part, gain, chosen)
     if found is not None:
         return found
     free = piece.freedom

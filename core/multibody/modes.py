@@ -84,7 +84,9 @@ class Modes:
             entries[i][j] = entries[j][i] = value
         for k, r in enumerate(chosen):
             for j, value in table.rows[r].line(table.q).items():
-                entries[j][n + k], entries[n + k][j] = -value, value
+                entries[n + k][j] = value
+            for j, value in table.rows[r].pushed(table.q).items():
+                entries[j][n + k] = -value
         # Columns: the response to K, to D and to the constant load, all at once.
         right = [[ZERO] * (2 * n + 1) for _ in range(n + m)]
         for (i, j), value in table.stiffness.items():

@@ -55,7 +55,7 @@ class Numerals:
     doubles : bool
         Whether a number that arrives as a double is that double exactly, and not the shortest decimal that reads as it.
     moved : collection of paths
-        Numbers that are read as larger by the share `SHIFT` of themselves.
+        Numbers that are read as larger by the share `share` of themselves.
     read : dict
         Filled with the numbers other than zero by their paths, as they are read; formulas are none.
     """
@@ -63,11 +63,16 @@ class Numerals:
     let: Mapping[str, Ball]
     doubles: bool = False
     moved: Collection[Path] = ()
+    share: float = SHIFT
     read: dict[Path, Ball] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(
-        cls, let: Any, numbers: Literal["decimals", "doubles"] = "decimals", moved: Collection[Path] = ()
+        cls,
+        let: Any,
+        numbers: Literal["decimals", "doubles"] = "decimals",
+        moved: Collection[Path] = (),
+        share: float = SHIFT,
     ) -> Numerals:
         """Evaluate a list of definitions, each of which may use those before it.
 
@@ -83,7 +88,7 @@ class Numerals:
         if len(let) > MOST_NAMES:
             raise InvalidParameter("let", f"have at most {MOST_NAMES} names, not {len(let)}")
         known: dict[str, Ball] = {}
-        found = cls(known, numbers == "doubles", moved)
+        found = cls(known, numbers == "doubles", moved, share)
         for name, number in let.items():
             plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
             if not plain or name in (*_FUNCTIONS, "pi"):
@@ -112,7 +117,7 @@ class Numerals:
         found = _decimal(repr(value)) if plain else _ball(_exact(value, path))
         if found != 0:
             self.read[path] = found
-        return found + found * SHIFT if path in self.moved else found
+        return found + found * self.share if path in self.moved else found
 
     def angle(self, value: Any, path: Path) -> tuple[Ball, Ball]:
         """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""

@@ -75,8 +75,12 @@ class Numerical:
         found = self._runs.get(key)
         if found is not None and (abs(found.end) >= abs(end) or found.singular):
             return found
-        self._runs[key] = integrate(self.table, self.arrays, self.units, kind, end)
+        self._runs[key] = self.steps(kind, end)
         return self._runs[key]
+
+    def steps(self, kind: str, end: float) -> Run:
+        """Take steps to a time in the units of the arrays."""
+        return integrate(self.table, self.arrays, self.units, kind, end)
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, and how far they are from a run in pairs."""
@@ -130,7 +134,7 @@ class Numerical:
         Raises
         ------
         AccuracyUnreachable
-            Where pairs lose them too, but elsewhere.
+            Where pairs lose them too, but elsewhere; or beside a collision, but that of Kepler's problem.
         """
         scaled = end * two_to(-self.units.time)
         run = self.run("doubles", scaled)
@@ -140,6 +144,19 @@ class Numerical:
         if not judge.singular:
             self.lost_to_doubles = True
             return None
+        near = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
+        if near:
+            # A collision cannot be told from a pass so close that the connections are lost to rounding.
+            at = judge.end * two_to(self.units.time)
+            apart = 1.0 / float(np.max(np.abs(evaluate(judge, np.array([judge.end]))[0][0, near, 0])))
+            raise AccuracyUnreachable(
+                None,
+                np.inf,
+                f"bodies that attract or repel come within {apart * two_to(-self.units.lengths[near[0]]):.2g} m of one "
+                f"another at {at:.10g} s, where even pairs of doubles lose them",
+                path=("times",),
+                remedy="ask for earlier times",
+            )
         if judge.end == 0.0 or abs(judge.end - run.end) > _SAME_PLACE * abs(judge.end):
             raise AccuracyUnreachable(
                 None,

@@ -21,7 +21,7 @@ from core.multibody.table import Table
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-GROUPS = {"1": 0, "m": 1, "rad": 2, "s": 3}
+GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 4}
 """Coordinates of one unit share the scale by which steps are chosen."""
 
 
@@ -38,7 +38,7 @@ class Packed(NamedTuple):
     gyre, gyre_at : (p, 2) and (p, 3)
         Entries of B.
     lines, lines_at : (e, 2) and (e, 2)
-        Entries of W that are not identically zero: constant part, row and column.
+        Entries of W that are not identically zero: constant part, row and column; after them those of X.
     slopes, slopes_at : (p, 2) and (p, 2)
         Their dependence on the coordinates: factor, entry, coordinate.
     offset : (m, 2)
@@ -47,6 +47,8 @@ class Packed(NamedTuple):
         1 for a measure, 0 for a rate row.
     rate : (m, 2)
     group : (n,)
+    binds : (e,)
+        1 for an entry of W, 0 for one of X.
     """
 
     mass: Floats
@@ -65,6 +67,7 @@ class Packed(NamedTuple):
     held: Integers
     rate: Floats
     group: Integers
+    binds: Integers
 
 
 @dataclass(frozen=True)
@@ -106,6 +109,12 @@ def pair(ball: Ball, power: int) -> tuple[float, float]:
     return high, float((scaled - high).mid())
 
 
+def nearest(ball: Ball) -> float:
+    """Return the double nearest to the middle of a ball."""
+    high, low = pair(ball, 0)
+    return high + low
+
+
 def _two(power: int) -> Ball:
     return (ZERO + 2) ** power
 
@@ -124,17 +133,21 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         times.append(-turn)
     if spin is not None:
         times.append(-(spin // 2))
-    if size is None and rate is not None and pull is not None:
-        size = 2 * rate - pull
-    if size is None and times and (rate is not None or pull is not None):
-        size = rate + min(times) if rate is not None else (pull or 0) + 2 * min(times)
+    if size is None:
+        # What starts at the origin is measured by how far it comes until it turns back, or something else has turned.
+        ways = []
+        if rate is not None and pull is not None:
+            ways.append(2 * rate - pull)
+        if times and (rate is not None or pull is not None):
+            ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
+        size = min(ways, default=None)
     size = 0 if size is None else size
     if rate is not None:
         times.append(size - rate)
     if pull is not None:
         times.append((size - pull) // 2)
     time = min(times, default=0)
-    lengths = [{"1": 0, "rad": 0, "m": size, "s": time}[unit] for unit in table.units]
+    lengths = [{"1": 0, "rad": 0, "m": size, "1/m": -size, "s": time}[unit] for unit in table.units]
     masses = [e + lengths[i] + lengths[j] for (i, j), x in table.mass.items() if (e := exponent(x)) is not None]
     rows = []
     for row in table.rows:
@@ -179,6 +192,14 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
             held[number] = 1
             offset[number] = pair(row.measure.get((), ZERO), up)
         rate[number] = pair(row.rate, up + t)
+    binding = len(lines)
+    for number, r in enumerate(chosen):
+        row, up = table.rows[r], units.rows[r]
+        for j, poly in row.drag.items():
+            lines.append(pair(poly.get((), ZERO), s[j] + up))
+            lines_at.append((number, j))
+            slopes.extend(pair(x, s[j] + s[key[0]] + up) for key, x in poly.items() if key)
+            slopes_at.extend((len(lines) - 1, key[0]) for key in poly if key)
     return Packed(
         mass,
         load,
@@ -196,6 +217,7 @@ def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
         held,
         rate,
         np.array([GROUPS[unit] for unit in table.units], dtype=np.int64),
+        (np.arange(len(lines)) < binding).astype(np.int64),
     )
 
 

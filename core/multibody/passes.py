@@ -2,14 +2,16 @@
 
 *Integrate*: rates in constant proportion are a measure. *Combine*: measures whose quadratic parts depend on one another
 leave a linear one. *Linear*: a measure of degree one gives a coordinate away. *Factor*: a difference of two squares is
-the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants; this pass
-serves the motion from the given start only, never questions about its surroundings.
+the factor that vanishes. *Pin*: coordinates at rest whose equations vanish wherever they stay are constants.
+*Separate*: what nothing ties to a place falls as its centre of mass does. The last two serve the motion from the given
+start only, never questions about its surroundings.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from core.multibody.centre_of_mass import centred, free_shift
 from core.multibody.dynamics import undetermined, weightless
 from core.multibody.polynomials import (
     ONE,
@@ -21,6 +23,7 @@ from core.multibody.polynomials import (
     degree,
     entry,
     evaluated,
+    gradient,
     is_zero,
     product,
     substituted,
@@ -61,8 +64,9 @@ def reduced(table: Table, *, pinning: bool) -> Reduced:
         changed = _combine(state) or changed
         changed = _factor(state) or changed
         changed = _linear(state) or changed
+        changed = _straighten(state) or changed
         if not changed and pinning:
-            changed = _pin(state)
+            changed = _pin(state) or _separate(state)
         if not changed:
             return state
 
@@ -71,7 +75,7 @@ def _integrate(table: Table) -> bool:
     """Turn rates in constant proportion that stay zero into measures."""
     changed = False
     for number, row in enumerate(table.rows):
-        if row.measure is None and row.rate == 0 and row.constant:
+        if row.measure is None and row.rate == 0 and row.constant and not row.drag:
             measure: Poly = {(j,): poly[()] for j, poly in row.rates.items()}
             measure = combined((ONE, measure), (-evaluated(measure, table.q), constant(ONE)))
             table.rows[number] = Row.held(row.name, measure)
@@ -85,7 +89,7 @@ def _combine(state: Reduced) -> bool:
     rows: list[Row] = []
     changed = False
     for row in state.table.rows:
-        if row.measure is None or degree(row.measure) < 2:
+        if row.measure is None or degree(row.measure) < 2 or row.drag:
             rows.append(row)
             continue
         rest = row.measure
@@ -118,7 +122,9 @@ def _factor(state: Reduced) -> bool:
     """Replace a measure that is a product by the factor that vanishes."""
     changed = False
     for number, row in enumerate(state.table.rows):
-        if row.measure is None or degree(row.measure) < 2 or len(variables([row.measure])) > _MOST_FACTORED:
+        if row.measure is None or degree(row.measure) < 2 or row.drag:
+            continue
+        if len(variables([row.measure])) > _MOST_FACTORED:
             continue
         factors = _factors(row.measure)
         if factors is None:
@@ -174,7 +180,7 @@ def _completed(poly: Poly, index: int | None = None) -> tuple[Poly, Poly] | None
 def _linear(state: Reduced) -> bool:
     """Give one coordinate away for every measure of degree one."""
     table = state.table
-    linear = [row for row in table.rows if row.measure is not None and degree(row.measure) <= 1]
+    linear = [row for row in table.rows if _gives_away(row)]
     if not linear:
         return False
     elimination = Elimination([_readiness(table, i) for i in range(len(table.names))])
@@ -183,7 +189,7 @@ def _linear(state: Reduced) -> bool:
         line = {key[0]: value for key, value in measure.items() if key}
         if elimination.add(line, -entry(measure, ())) is not None:
             state.steps.append(f"{row.name}: follows from other measures")
-    table.rows = [row for row in table.rows if row.measure is None or degree(row.measure) > 1]
+    table.rows = [row for row in table.rows if not _gives_away(row)]
     expressions: list[Poly | None] = [None] * len(table.names)
     for i, (line, value) in elimination.pivots.items():
         expression: Poly = {(k,): -y for k, y in line.items()}
@@ -194,11 +200,79 @@ def _linear(state: Reduced) -> bool:
     return True
 
 
+def _straighten(state: Reduced) -> bool:
+    """Make a coordinate of the gap of a rubbing contact, and drop its square from other measures.
+
+    Such a measure of degree one cannot give its coordinate away: the friction needs its multiplier. But the gap w stays
+    zero, so that w^2 has no part in the gradient of any other measure.
+    """
+    table = state.table
+    closed = {next(iter(row.rates)) for row in table.rows if row.drag and _is_gap(row)}
+    for row in table.rows:
+        if row.measure is None or degree(row.measure) != 1 or not row.drag:
+            continue
+        line = {key[0]: x for key, x in row.measure.items() if key}
+        free = [i for i in line if i not in closed]
+        if (len(line) == 1 and () not in row.measure) or not free:
+            continue
+        pivot = max(free, key=lambda i: (_readiness(table, i), abs(float(line[i]))))
+        away = _across(table, line, pivot)
+        if len(free) < len(line):
+            # The gaps of others stay what they are.
+            away = {i: 1 / line[i] if i == pivot else ZERO for i in line}
+        expressions = identity(len(table.names))
+        gap: Poly = {(i,): -x / line[pivot] for i, x in line.items() if i != pivot}
+        if () in row.measure:
+            gap[()] = -row.measure[()] / line[pivot]
+        for i in line:
+            if i != pivot and away[i] != 0:
+                expressions[i] = {(i,): ONE, (pivot,): away[i]}
+        expressions[pivot] = {**gap, (pivot,): away[pivot]}
+        unit = table.units[pivot]
+        changed = table.changed(expressions, range(len(table.names)))
+        changed.names[pivot], changed.units[pivot] = f"{row.name}.gap", unit
+        changed.q[pivot] = changed.v[pivot] = ZERO
+        state.table = changed
+        state.expressions = [substituted(expression, expressions) for expression in state.expressions]
+        state.steps.append(f"{row.name}: its gap is a coordinate")
+        return True
+    changed_any = False
+    for number, row in enumerate(table.rows):
+        if row.measure is None or _is_gap(row):
+            continue
+        kept = {
+            key: x for key, x in row.measure.items() if not (len(key) == 2 and key[0] == key[1] and key[0] in closed)
+        }
+        if len(kept) < len(row.measure):
+            table.rows[number] = Row(row.name, kept, gradient(kept), ZERO, row.drag)
+            changed_any = True
+    return changed_any
+
+
+def _across(table: Table, line: dict[int, Ball], pivot: int) -> dict[int, Ball]:
+    """Return the direction in which a gap opens by one: across its level by the masses, so that these stay apart."""
+    masses = {i: table.mass.get((i, i)) for i in line}
+    coupled = any(i != j and (i in line or j in line) for i, j in table.mass)
+    if coupled or any(mass is None for mass in masses.values()):
+        return {i: 1 / line[i] if i == pivot else ZERO for i in line}
+    total = sum((x * x / masses[i] for i, x in line.items()), ZERO)
+    return {i: x / masses[i] / total for i, x in line.items()}
+
+
+def _is_gap(row: Row) -> bool:
+    return row.measure is not None and len(row.measure) == 1 and degree(row.measure) == 1
+
+
+def _gives_away(row: Row) -> bool:
+    """Return whether a row is a measure of degree one whose multiplier nothing else needs, as friction would."""
+    return row.measure is not None and degree(row.measure) <= 1 and not row.drag
+
+
 def _readiness(table: Table, i: int) -> int:
     """Return how readily a coordinate is given away: lengths and positions first, time never."""
     if table.units[i] == "m" and (i, i) not in table.mass:
         return 6
-    return {"s": 0, "1": 1, "rad": 2, "m": 3}[table.units[i]]
+    return {"s": 0, "1": 1, "1/m": 1, "rad": 2, "m": 3}[table.units[i]]
 
 
 def _substitute(state: Reduced, expressions: list[Poly | None]) -> None:
@@ -211,6 +285,11 @@ def _substitute(state: Reduced, expressions: list[Poly | None]) -> None:
             final.append({(number[i],): ONE})
         else:
             final.append({tuple(number[k] for k in key): value for key, value in expression.items()})
+    _recast(state, final, fresh)
+
+
+def _recast(state: Reduced, final: list[Poly], fresh: list[int]) -> None:
+    """Write the table in new coordinates, of which the present ones are affine functions."""
     state.table = state.table.changed(final, fresh)
     state.table.rows = [row for row in state.table.rows if row.rates or (row.measure is None and row.rate != 0)]
     state.expressions = [substituted(expression, final) for expression in state.expressions]
@@ -232,7 +311,7 @@ def _pin(state: Reduced) -> bool:
         live = [
             row
             for row in table.rows
-            if any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
+            if row.drag or any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
         ]
         leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
         if not leave:
@@ -249,6 +328,24 @@ def _pin(state: Reduced) -> bool:
     for i in pinned:
         expressions[i] = constant(table.q[i])
     _substitute(state, expressions)
+    return True
+
+
+def _separate(state: Reduced) -> bool:
+    """Split off a coordinate of the centre of mass of what nothing ties to a place: it falls freely by itself."""
+    shift = free_shift(state.table)
+    if shift is None:
+        return False
+    expressions, start, name = centred(state.table, shift)
+    pivot = min(shift)
+    old = state.table
+    _recast(state, expressions, list(range(len(old.names))))
+    table = state.table
+    for j in shift:
+        table.q[j], table.v[j] = (x[j] - shift[j] / shift[pivot] * x[pivot] for x in (old.q, old.v))
+        table.names[j] = f"{old.names[j]} - {old.names[pivot]}"
+    (table.q[pivot], table.v[pivot]), table.names[pivot] = start, name
+    state.steps.append(f"{name} moves by itself")
     return True
 
 
@@ -278,8 +375,9 @@ def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
 def _stays(table: Table, i: int, pinned: set[int], coupled: list[tuple[int, ...]], live: list[Row]) -> bool:
     """Return whether the equation of a pinned coordinate vanishes, the multipliers of idle rows being zero."""
     for row in live:
-        if i in row.rates and not _vanishes(table, row.rates[i], pinned):
-            return False
+        for line in (row.rates, row.drag):
+            if i in line and not _vanishes(table, line[i], pinned):
+                return False
     push: Ball = entry(table.load, i)
     carried: dict[int, Ball] = {}
     for key in coupled:

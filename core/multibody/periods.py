@@ -162,7 +162,7 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
 
 
 def _conservative(table: Table) -> bool:
-    if any(row.rate != 0 for row in table.rows):
+    if any(row.rate != 0 or row.drag for row in table.rows):
         return False
     zero = arb(0)
     return all(is_zero(x - table.stiffness.get((j, i), zero)) for (i, j), x in table.stiffness.items())

@@ -41,7 +41,7 @@ def _connection(entry: Any, path: Path) -> Any:
     kind = entry.get("kind")
     if kind in NOT_YET:
         raise InvalidParameter(
-            (*path, "kind"), "be a connection that holds, pulls or drives; contacts and blows are not answered yet"
+            (*path, "kind"), "be a connection that holds, pushes, pulls or drives; blows are not answered yet"
         )
     if not isinstance(kind, str) or kind not in KINDS:
         raise InvalidParameter((*path, "kind"), f"be one of {', '.join(KINDS)}")

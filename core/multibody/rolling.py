@@ -1,4 +1,4 @@
-"""Rolling without slip: a rim on a face or a circle of the ground or of a body, and bodies on one another."""
+"""Rolling without slip in the plane: a rim on a face or a circle, and bodies on one another."""
 
 from __future__ import annotations
 
@@ -34,8 +34,6 @@ def rolling(measures: Measures, name: str, connection: Any, path: Path) -> None:
     InvalidParameter
         Where it names no rim, or both or neither of its two forms.
     """
-    if measures.dimension != 2:
-        raise InvalidParameter((*path, "kind"), "be used in the plane: rolling in space is not answered yet")
     if connection.place is not None and connection.on is not None and connection.a is None and connection.b is None:
         _on_ground_or_face(measures, name, connection, path)
     elif connection.a is not None and connection.b is not None and connection.place is None and connection.on is None:

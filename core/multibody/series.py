@@ -165,7 +165,7 @@ def step_size(q: Floats, group: Integers, tolerance: float) -> float:
     """Return the step at which the last terms of the series are `tolerance` of what they are added to."""
     n, order = q.shape[0], q.shape[1] - 1
     best = np.inf
-    for g in range(3):
+    for g in range(4):
         last, before, first, second, zeroth = 0.0, 0.0, 0.0, 0.0, 0.0
         for i in range(n):
             if group[i] == g:

@@ -1,6 +1,7 @@
 """The Taylor series of `core.multibody.series` in pairs of doubles: the judge of the doubles, and the finer answer.
 
-Every array of numbers has a last axis (value, tail); the steps are the same.
+Every array of numbers has a last axis (value, tail); the steps are the same. Friction, the part X of the force of a
+multiplier that is no gradient, is known here alone.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def entries_of_lines_pairs(table: Packed, q: Floats, lines: Floats) -> None:
 
 @kernel()
 def saddle_inverse_pairs(table: Packed, lines: Floats, work: Floats, inverse: Floats) -> bool:
-    """Fill in the inverse of [M -W^T; W 0]; return whether there is one."""
+    """Fill in the inverse of [M -(W + X)^T; W 0]; return whether there is one."""
     n = table.load.shape[0]
     work[:] = 0.0
     for i in range(n):
@@ -35,8 +36,9 @@ def saddle_inverse_pairs(table: Packed, lines: Floats, work: Floats, inverse: Fl
             work[i, j, 0], work[i, j, 1] = table.mass[i, j, 0], table.mass[i, j, 1]
     for e in range(lines.shape[0]):
         r, j = table.lines_at[e, 0], table.lines_at[e, 1]
-        work[j, n + r, 0], work[j, n + r, 1] = -lines[e, 0], -lines[e, 1]
-        work[n + r, j, 0], work[n + r, j, 1] = lines[e, 0], lines[e, 1]
+        if table.binds[e] == 1:
+            work[n + r, j, 0], work[n + r, j, 1] = lines[e, 0], lines[e, 1]
+        work[j, n + r, 0], work[j, n + r, 1] = dd_add(work[j, n + r, 0], work[j, n + r, 1], -lines[e, 0], -lines[e, 1])
     return invert_pairs(work, inverse)
 
 
@@ -89,6 +91,8 @@ def coefficients_pairs(table: Packed, inverse: Floats, order: int, q: Floats, mu
             for a in range(k):
                 sh, sl = gathered(sh, sl, multipliers[r, a, 0], multipliers[r, a, 1], w[e, k - a, 0], w[e, k - a, 1])
             right[j, 0], right[j, 1] = sh, sl
+            if table.binds[e] == 0:
+                continue
             sh, sl = 0.0, 0.0
             for a in range(1, k + 2):
                 sh, sl = gathered(sh, sl, w[e, a, 0], w[e, a, 1], u[j, k + 1 - a, 0], u[j, k + 1 - a, 1])
@@ -122,6 +126,8 @@ def correct_pairs(table: Packed, inverse: Floats, lines: Floats, q: Floats, v: F
     for r in range(m):
         residual[r, 0], residual[r, 1] = -table.offset[r, 0], -table.offset[r, 1]
     for e in range(lines.shape[0]):
+        if table.binds[e] == 0:
+            continue
         r, j = table.lines_at[e, 0], table.lines_at[e, 1]
         sh, sl = dd_add(lines[e, 0], lines[e, 1], table.lines[e, 0], table.lines[e, 1])
         residual[r, 0], residual[r, 1] = gathered(
@@ -139,6 +145,8 @@ def correct_pairs(table: Packed, inverse: Floats, lines: Floats, q: Floats, v: F
     for r in range(m):
         residual[r, 0], residual[r, 1] = table.rate[r, 0], table.rate[r, 1]
     for e in range(lines.shape[0]):
+        if table.binds[e] == 0:
+            continue
         r, j = table.lines_at[e, 0], table.lines_at[e, 1]
         residual[r, 0], residual[r, 1] = gathered(
             residual[r, 0], residual[r, 1], -lines[e, 0], -lines[e, 1], v[j, 0], v[j, 1]
@@ -279,6 +287,8 @@ def multipliers_pairs(table: Packed, q: Floats, v: Floats, acceleration: Floats,
             right[i, 0], right[i, 1] = gathered(right[i, 0], right[i, 1], table.gyre[p, 0], table.gyre[p, 1], ph, pl)
         for p in range(table.slopes.shape[0]):
             e, l = table.slopes_at[p, 0], table.slopes_at[p, 1]  # noqa: E741
+            if table.binds[e] == 0:
+                continue
             r, j = n + table.lines_at[e, 0], table.lines_at[e, 1]
             ph, pl = dd_mul(v[s, l, 0], v[s, l, 1], v[s, j, 0], v[s, j, 1])
             right[r, 0], right[r, 1] = gathered(

@@ -2,47 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
 
 from core.balls import precision
 from core.errors import BudgetExceeded, InvalidParameter
-from core.multibody.answer import (
-    BodyAcceleration,
-    Energy,
-    ForceAnswer,
-    PartModel,
-    SceneAnswer,
-    SceneEvent,
-    SceneModel,
-    SceneTrajectory,
-)
-from core.multibody.description import Described
-from core.multibody.dynamics import (
-    ForceAtStart,
-    Multipliers,
-    forces_at_start,
-    kinetic,
-    multipliers_at_start,
-    potential,
-)
+from core.multibody.answer import SceneAnswer, SceneEvent, SceneTrajectory
+from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equilibria import equilibria_of
 from core.multibody.language import Scene
-from core.multibody.modelling import Modelled, modelled
-from core.multibody.modes import Modes
+from core.multibody.modelling import modelled
+from core.multibody.occurrences import ExtremesOf, When, check_search
 from core.multibody.packed import Floats
-from core.multibody.periods import Periodic
-from core.multibody.polynomials import BITS, ZERO, Ball, is_zero
-from core.multibody.trajectories import AskedMotion, trajectory_of
-from core.multibody.vertical_symmetry import Shifted, Steady
+from core.multibody.phase_answer import ANSWERED, answer_in_phases
+from core.multibody.phases import one_sided
+from core.multibody.polynomials import BITS
+from core.multibody.start import accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
+from core.multibody.strings import SlackAtStart
+from core.multibody.trajectories import AskedMotion, Searched, trajectory_of
 from core.quantities import Uncertainty, check_value
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
 
-Output = Literal["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "equilibria"]
+Output = Literal[
+    "accelerations",
+    "forces",
+    "energy",
+    "trajectory",
+    "forces-in-time",
+    "energy-in-time",
+    "momenta-in-time",
+    "work-in-time",
+    "paths-in-time",
+    "equilibria",
+]
 OUTPUTS: tuple[Output, ...] = (
     "accelerations",
     "forces",
@@ -50,6 +46,9 @@ OUTPUTS: tuple[Output, ...] = (
     "trajectory",
     "forces-in-time",
     "energy-in-time",
+    "momenta-in-time",
+    "work-in-time",
+    "paths-in-time",
     "equilibria",
 )
 DEFAULT_OUTPUTS: tuple[Output, ...] = ("accelerations", "forces", "energy", "trajectory")
@@ -61,7 +60,7 @@ MOST_NUMBERS = 5_000_000
 def solve_scene(
     scene: Scene,
     times: Sequence[float] | Floats = (),
-    outputs: Sequence[Output] = DEFAULT_OUTPUTS,
+    outputs: Sequence[Output | When | ExtremesOf] = DEFAULT_OUTPUTS,
     accuracy: float = 1e-9,
     *,
     method: AbstractMethod | None = None,
@@ -76,8 +75,8 @@ def solve_scene(
     scene : Scene
     times : sequence of float
         Seconds from the given state, of either sign and in any order.
-    outputs : sequence of str
-        Some of `OUTPUTS`.
+    outputs : sequence of str, When and ExtremesOf
+        Some of `OUTPUTS`, and what is to be searched between the start and the latest time.
     accuracy : float
         Largest error of any column, relative to its largest value, that is tolerated.
     method : AbstractMethod, optional
@@ -103,7 +102,11 @@ def solve_scene(
     """
     moments = _times(times)
     for i, output in enumerate(outputs):
-        if output not in OUTPUTS:
+        if isinstance(output, (When, ExtremesOf)):
+            check_search(output, i)
+            if not np.max(moments, initial=0.0) > 0.0:
+                raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
+        elif not isinstance(output, str) or output not in OUTPUTS:
             raise InvalidParameter(("outputs", i), f"be one of {', '.join(OUTPUTS)}")
     if not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InvalidParameter("accuracy", "be greater than 0 and less than 1")
@@ -128,141 +131,50 @@ def _times(times: Any) -> Floats:
 
 
 def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
-    found = modelled(scene)
+    if one_sided(scene):
+        return answer_in_phases(scene, asked)
+    try:
+        found = modelled(scene)
+    except SlackAtStart:
+        if asked.method is not None:
+            raise
+        return answer_in_phases(scene, asked)
     table, outputs = found.described.measures.table, asked.outputs
     if len(asked.times) * 4 * len(table.names) > MOST_NUMBERS:
         most = MOST_NUMBERS // (4 * len(table.names))
         raise BudgetExceeded("samples", len(asked.times), most, path=("times",), remedy="ask for fewer times")
     multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
     forces = forces_at_start(found.described.measures, multipliers)
-    noticed = _noticed(found, forces, multipliers)
-    model = _model(found, noticed, multipliers.rank)
+    noticed = noticed_of(found, forces, multipliers)
+    model = scene_model(found, noticed, multipliers.rank)
     trajectory: SceneTrajectory | None = None
     events: tuple[SceneEvent, ...] = ()
+    searched = Searched()
     if len(asked.times):
-        trajectory, events = trajectory_of(scene, found, [value.value is not None for value in forces], asked)
+        determined = [value.value is not None for value in forces]
+        trajectory, events, searched = trajectory_of(scene, found, determined, asked)
+    if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(asked):
+        # Slack strings become taut again: the scene has further phases.
+        return answer_in_phases(scene, asked)
     motions = found.whole.parts
     periods = [motion.period for _, motion in motions if motion.name != "rest"]
     single = periods[0] if len(periods) == 1 else None
     return SceneAnswer(
         model,
-        _accelerations(found.described, found.whole.acceleration) if "accelerations" in outputs else None,
-        _forces(found.described, forces) if "forces" in outputs else None,
-        _energy(found.described) if "energy" in outputs else None,
+        accelerations_of(found.described, found.whole.acceleration) if "accelerations" in outputs else None,
+        forces_of_start(found.described, forces) if "forces" in outputs else None,
+        energy_of(found.described) if "energy" in outputs else None,
         trajectory,
         None if single is None else float(single),
         equilibria_of(found.described) if "equilibria" in outputs else None,
         events,
         next((event for event in events if event.time >= 0.0), None),
+        searched.occurrences,
+        searched.extremes,
     )
 
 
-def _noticed(found: Modelled, forces: list[ForceAtStart], multipliers: Multipliers) -> list[str]:
-    measures = found.described.measures
-    bodies = set(found.described.scene.bodies)
-    said = []
-    if found.moved:
-        said.append(f"positions were moved by rounding's width so that {', '.join(found.moved)} hold exactly")
-    if found.fitted:
-        said.append(f"{', '.join(found.fitted)} were taken as rounded: the velocities follow from the connections")
-    still = [name for name in found.whole.reduced.pinned if name.split(".")[0] in bodies]
-    if still:
-        said.append(f"nothing ever moves {', '.join(still)}")
-    for name, others in multipliers.redundant().items():
-        beside = f" beside {', '.join(others)}" if others else ""
-        said.append(f"{name} holds more than it has to{beside}: forces that it shares are not determined")
-    for force, value in zip(measures.forces, forces, strict=True):
-        if value.value is None:
-            said.append(f"{force.name} is not determined by the scene")
-    for limit in measures.limits:
-        if limit.force is not None:
-            tension = forces[limit.force].value
-            if tension is not None and tension < 0:
-                said.append(f"{limit.name} would have to push from the start: it is slack, and the scene another one")
-    return said
-
-
-def _model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
-    table = found.described.measures.table
-    apart = []
-    for piece, (_, motion) in zip(found.pieces, found.whole.parts, strict=True):
-        modes: tuple[tuple[float, float], ...] = ()
-        if isinstance(motion, Modes):
-            modes = tuple((float(mode.frequency), float(mode.growth)) for mode in motion.modes)
-        period = motion.period
-        winding = motion.winding if isinstance(motion, (Periodic, Steady, Shifted)) and motion.winding else None
-        apart.append(
-            PartModel(
-                motion.name,
-                motion.why,
-                piece.freedom,
-                tuple(piece.table.names),
-                None if period is None else float(period),
-                winding,
-                modes,
-            )
-        )
-    kinds = {part.name for part in apart}
-    if not apart:
-        name, why = "rest", "the connections hold everything where it is"
-    elif len(kinds) == 1:
-        name, why = apart[0].name, apart[0].why
-    else:
-        name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
-    return SceneModel(
-        name,
-        why,
-        sum(part.degrees_of_freedom for part in apart),
-        len(table.names) - rank,
-        len(found.whole.reduced.table.names),
-        sum(len(piece.chosen) for piece in found.pieces),
-        (len(table.names), len(table.rows)),
-        tuple(apart),
-        tuple(noticed),
-    )
-
-
-def _accelerations(found: Described, full: Sequence[Ball]) -> Mapping[str, BodyAcceleration]:
-    table, answer = found.measures.table, {}
-    for name, frame in found.measures.coordinates.frames.items():
-        angular: float | tuple[float, ...] | None = None
-        if frame.turn is not None:
-            angular = float(full[frame.turn])
-        elif frame.direction is not None:
-            c, s = frame.direction
-            angular = float(table.q[c] * full[s] - table.q[s] * full[c])
-        elif frame.axes is not None:
-            # Half the sum of e x e'' is the rate of the angular velocity in space.
-            space = [ZERO] * 3
-            for axis in frame.axes:
-                for i in range(3):
-                    j, k = axis[(i + 1) % 3], axis[(i + 2) % 3]
-                    space[i] = space[i] + (table.q[j] * full[k] - table.q[k] * full[j]) / 2
-            angular = tuple(
-                float(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
-            )
-        answer[name] = BodyAcceleration(tuple(float(full[i]) for i in frame.position), angular)
-    return answer
-
-
-def _forces(found: Described, forces: Sequence[ForceAtStart]) -> Mapping[str, ForceAnswer]:
-    return {
-        force.name: ForceAnswer(
-            None if value.value is None else _double(value.value),
-            force.unit,
-            value.value is not None,
-            value.shared_with,
-        )
-        for force, value in zip(found.measures.forces, forces, strict=True)
-    }
-
-
-def _double(ball: Ball) -> float:
-    return 0.0 if is_zero(ball) else float(ball)
-
-
-def _energy(found: Described) -> Energy:
-    measures = found.measures
-    spin = sum((frame.spin_energy for frame in measures.coordinates.frames.values()), ZERO)
-    moving, resting = kinetic(measures.table) + spin, potential(measures.table) + measures.potential
-    return Energy(_double(moving), _double(resting), _double(moving + resting), measures.conservative)
+def _has_phases(asked: AskedMotion) -> bool:
+    """Return whether what is asked can be answered through events."""
+    forward = bool(np.min(asked.times) >= 0.0)
+    return forward and asked.method is None and all(output in ANSWERED for output in asked.outputs)

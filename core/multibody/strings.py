@@ -13,10 +13,11 @@ from itertools import pairwise, product
 from typing import Any
 
 from core.errors import InvalidParameter, Path
+from core.multibody.contacts import bounciness
 from core.multibody.coordinates import Point, Rate
-from core.multibody.measures import Limit, Measures
+from core.multibody.measures import Limit, Measures, Unilateral
 from core.multibody.numerals import member
-from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, coordinate, difference, evaluated
+from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, coordinate, difference, dot, evaluated
 from core.multibody.rolling import rate_of, sum_of_rates
 from core.multibody.table import Row
 
@@ -24,6 +25,8 @@ SIDES: Mapping[str, tuple[int, int]] = {"left": (0, -1), "right": (0, 1), "below
 """A side of a drum: which component of the way from its centre to the tangent point, and the sign it has."""
 
 MOST_THROUGH = 50
+SLACK = 1e-9
+"""Share of its length by which a string may be longer than its way and still be meant as taut."""
 
 
 @dataclass
@@ -69,7 +72,7 @@ def string(measures: Measures, name: str, connection: Any, path: Path) -> None:
         raise InvalidParameter((*path, "length"), "be left out: what is wound on a drum has no part in it")
     for number, run in enumerate(runs):
         part = name if len(runs) == 1 else f"{name}.{number + 1}"
-        _run(measures, name, part, run, connection.length, path)
+        _run(measures, name, part, run, connection, path)
     for knot in knots[1:-1]:
         if knot.radius is not None and knot.senses[0] != knot.senses[1]:
             raise InvalidParameter(
@@ -126,8 +129,9 @@ def _sides(value: Any, count: int, path: Path) -> list[str | None]:
     return list(listed)
 
 
-def _run(measures: Measures, name: str, part: str, run: list[Knot], length: Any, path: Path) -> None:
+def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: Any, path: Path) -> None:
     """Add the rows of what lies between two ends or drums: the sum of its lengths does not change."""
+    length = connection.length
     total: Poly = {}
     rates: Rate = {}
     straight = True
@@ -138,7 +142,7 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], length: Any,
                 total = combined((ONE, total), (ONE, constant(measures.squared(d).sqrt())))
                 continue
             if len(run) == 2:
-                _single(measures, part, a, b, length, path)
+                _single(measures, part, a, b, connection, path)
                 return
             index = measures.length(name, a.point, b.point, b.at)
             total = combined((ONE, total), (ONE, coordinate(index)))
@@ -150,15 +154,58 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], length: Any,
         raise InvalidParameter((*path, "through"), "pass something that moves")
     if straight:
         held = evaluated(total, measures.table.q) if length is None else _length(measures, length, path)
-        row = measures.hold(name, combined((ONE, total), (-held, constant(ONE))))
+        longer = combined((ONE, total), (-held, constant(ONE)))
+        if measures.one_sided:
+            measures.unilateral.append(_at_most(measures, part, longer, connection, path))
+            return
+        _require_taut(evaluated(total, measures.table.q), held, path)
+        row = measures.hold(name, longer)
+    elif measures.one_sided:
+        # What the string lacks to be taut is a coordinate: it follows from rates that no measure gives.
+        lack = measures.table.coordinate(f"{part}.slack", "m", ZERO)
+        measures.roll(part, _joined(rates, {lack: constant(ONE)}))
+        measures.unilateral.append(_at_most(measures, part, {(lack,): -ONE}, connection, path))
+        return
     else:
         row = measures.roll(name, rates)
     force = measures.force(f"{part}.tension", [(row, constant(-ONE))])
     measures.limits.append(Limit("slack", part, force=force))
 
 
-def _single(measures: Measures, part: str, a: Knot, b: Knot, length: Any, path: Path) -> None:
+def _at_most(measures: Measures, part: str, longer: Poly, connection: Any, path: Path) -> Unilateral:
+    """Return the measure of a string: what it is longer than its way."""
+    restitution, order = bounciness(measures, connection, path)
+    gap = combined((-ONE, longer))
+    return Unilateral(part, gap, restitution=restitution, closes="taut", opens="slack", order=order)
+
+
+class SlackAtStart(InvalidParameter):
+    """A string is longer than its way: the scene begins with it slack."""
+
+
+def _require_taut(way: Ball, length: Ball, path: Path) -> None:
+    if length - way > SLACK * length:
+        raise SlackAtStart(
+            (*path, "length"), f"be {float(way):.10g} m here, where a string has to be taut", remedy="leave it out"
+        )
+
+
+def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, path: Path) -> None:
     """Hold two points at a distance, as long as that takes a pull."""
+    length = connection.length
+    if measures.one_sided:
+        d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
+        square = measures.squared(d) if length is None else _length(measures, length, path) ** 2
+        if not square > 0:
+            raise InvalidParameter((*path, "through"), "pass places that are apart")
+        half = 1 / (2 * square.sqrt())
+        longer = combined((half, dot(d, d)), (-half * square, constant(ONE)))
+        measures.unilateral.append(_at_most(measures, part, longer, connection, path))
+        return
+    if length is not None:
+        d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
+        way = measures.squared(d)
+        _require_taut(way.sqrt() if way > 0 else ZERO, _length(measures, length, path), path)
     measures.rod(part, a.point, b.point, length, path)
     rod = measures.forces.pop()
     force = measures.force(f"{part}.tension", rod.terms)

@@ -1,9 +1,9 @@
 """The table of quadratics that every scene becomes, in balls.
 
-    M q'' = b - K q - D q' + B(q, q') + W(q)^T lambda,     W(q) q' = r,
+    M q'' = b - K q - D q' + B(q, q') + (W(q) + X(q))^T lambda,     W(q) q' = r,
 
-with constant M, b, K, D, B and with W affine in q. A row is either a measure that stays zero, a polynomial of
-degree two at most whose gradient is its line of W, or a rate row that is the derivative of nothing.
+with constant M, b, K, D, B and with W and X affine in q; X is friction. A row is either a measure that stays zero, a
+polynomial of degree two at most whose gradient is its line of W, or a rate row that is the derivative of nothing.
 """
 
 from __future__ import annotations
@@ -42,12 +42,16 @@ class Row:
         Its line of W.
     rate : ball
         The right-hand side r.
+    drag : Rates
+        Its line of X: where its multiplier pushes beside the line of W. That of a sliding contact is -sigma mu times
+        the rate of slip.
     """
 
     name: str
     measure: Poly | None
     rates: Rates
     rate: Ball = ZERO
+    drag: Rates = field(default_factory=dict)
 
     @classmethod
     def held(cls, name: str, measure: Poly) -> Row:
@@ -56,28 +60,42 @@ class Row:
 
     @property
     def constant(self) -> bool:
-        """Whether the line of W does not depend on the coordinates."""
-        return all(degree(poly) <= 0 for poly in self.rates.values())
+        """Whether the lines of W and X do not depend on the coordinates."""
+        return all(degree(poly) <= 0 for part in (self.rates, self.drag) for poly in part.values())
 
     def line(self, q: Sequence[Ball]) -> dict[int, Ball]:
         """Return the line of W at a state."""
         found = {j: evaluated(poly, q) for j, poly in self.rates.items()}
         return {j: value for j, value in found.items() if not is_zero(value)}
 
+    def pushed(self, q: Sequence[Ball]) -> dict[int, Ball]:
+        """Return the line of W + X at a state: the force of a multiplier one."""
+        found = {j: evaluated(poly, q) for j, poly in self.rates.items()}
+        for j, poly in self.drag.items():
+            found[j] = found.get(j, ZERO) + evaluated(poly, q)
+        return {j: value for j, value in found.items() if not is_zero(value)}
+
     def along(self, expressions: Sequence[Poly]) -> Row:
         """Return the row in other coordinates, of which the present ones are affine functions."""
+        drag = _along(self.drag, expressions)
         if self.measure is not None:
-            return Row.held(self.name, substituted(self.measure, expressions))
-        rates: Rates = {}
-        for j, poly in self.rates.items():
-            changed = substituted(poly, expressions)
-            for key, value in expressions[j].items():
-                if key:
-                    into = rates.setdefault(key[0], {})
-                    for monomial, factor in changed.items():
-                        into[monomial] = into.get(monomial, ZERO) + value * factor
-        cleaned = {j: {key: x for key, x in poly.items() if 0 not in x} for j, poly in rates.items()}
-        return Row(self.name, None, {j: poly for j, poly in cleaned.items() if poly}, self.rate)
+            measure = substituted(self.measure, expressions)
+            return Row(self.name, measure, gradient(measure), ZERO, drag)
+        return Row(self.name, None, _along(self.rates, expressions), self.rate, drag)
+
+
+def _along(line: Rates, expressions: Sequence[Poly]) -> Rates:
+    """Return a line of W or X in other coordinates."""
+    found: Rates = {}
+    for j, poly in line.items():
+        changed = substituted(poly, expressions)
+        for key, value in expressions[j].items():
+            if key:
+                into = found.setdefault(key[0], {})
+                for monomial, factor in changed.items():
+                    into[monomial] = into.get(monomial, ZERO) + value * factor
+    cleaned = {j: {key: x for key, x in poly.items() if 0 not in x} for j, poly in found.items()}
+    return {j: poly for j, poly in cleaned.items() if poly}
 
 
 @dataclass
@@ -87,7 +105,7 @@ class Table:
     Attributes
     ----------
     names, units : list of str
-        Of the coordinates; units are "m", "1", "rad" or "s".
+        Of the coordinates; units are "m", "1", "rad", "1/m" or "s".
     mass : dict
         Upper triangle of M.
     load, stiffness, damping, gyration : dict

@@ -8,14 +8,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import AccuracyUnreachable, MechanicsError, NotApplicable
-from core.multibody.answer import Column, How, SceneAccuracy, SceneEvent, SceneTrajectory
+from core.multibody.along import Along
+from core.multibody.answer import Column, Extremes, How, Occurrence, SceneAccuracy, SceneEvent, SceneTrajectory
 from core.multibody.columns import Columns, apart, relative, worst
 from core.multibody.events import first_event
 from core.multibody.generic_equation import SceneSystem
-from core.multibody.inherited import changes, horizon, looks
+from core.multibody.inherited import Derived, changes, horizon, looks
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.numerical import Numerical
+from core.multibody.occurrences import (
+    ExtremesOf,
+    Sampler,
+    When,
+    component,
+    extremes,
+    occurrences,
+    unknown,
+)
 from core.multibody.packed import Floats
 from core.multibody.shortened import shortened
 from core.multibody.whole import Whole, WholeStates
@@ -37,12 +47,16 @@ LOST = 1e-3
 """A motion that is known no better than this measures nothing."""
 
 
+_GROUPS = ("trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
+"""Outputs that are columns of the state, in the order in which they are answered."""
+
+
 @dataclass(frozen=True)
 class AskedMotion:
     """What is asked about a motion; the attributes are the parameters of `core.multibody.solve.solve_scene`."""
 
     times: Floats
-    outputs: Sequence[str]
+    outputs: Sequence[str | When | ExtremesOf]
     accuracy: float
     method: AbstractMethod | None
     input_uncertainty: float | None
@@ -50,10 +64,18 @@ class AskedMotion:
     budget: Budget
 
 
+@dataclass(frozen=True)
+class Searched:
+    """What was searched for along the motion; None where nothing was."""
+
+    occurrences: tuple[Occurrence, ...] | None = None
+    extremes: tuple[Extremes, ...] | None = None
+
+
 def trajectory_of(
     scene: Scene, found: Modelled, determined: Sequence[bool], asked: AskedMotion
-) -> tuple[SceneTrajectory, tuple[SceneEvent, ...]]:
-    """Return the samples up to the events that end the motion, and these events.
+) -> tuple[SceneTrajectory, tuple[SceneEvent, ...], Searched]:
+    """Return the samples up to the events that end the motion, these events, and what was searched for.
 
     Parameters
     ----------
@@ -76,17 +98,27 @@ def trajectory_of(
             columns = sampling.answered(asked.accuracy)
         elif isinstance(method, ClosedFormEvaluation):
             columns, work = sampling.exact(asked.accuracy), Work(len(times))
+        elif sampling.follows:
+            raise NotApplicable(
+                "what is summed up or searched along the way is told of the motion itself, not of a method",
+                path=("method",),
+                remedy="leave the method out",
+            )
         else:
             with inside_field("method"):
                 states, work = _integrated(found.whole, times, method, asked.budget)
             columns = sampling.measured(states)
+        searched = sampling.searched(
+            min((event.time for event in events if event.time >= 0.0), default=np.inf), asked.times
+        )
         stated = SceneAccuracy(asked.accuracy, worst(columns), sampling.how(method))
         if asked.input_uncertainty is not None and len(times):
-            columns, stated = _with_inherited(scene, found, times, columns, stated, asked.input_uncertainty)
+            follow = sampling.following
+            columns, stated = _with_inherited(scene, found, times, columns, stated, asked.input_uncertainty, follow)
     warnings = () if method is None else _warnings(stated, method)
     kind = None if method is None else method.kind
     trajectory = SceneTrajectory(times, rows, columns, stated, kind, work, warnings)
-    return trajectory if asked.digits is None else shortened(trajectory, asked.digits), events
+    return trajectory if asked.digits is None else shortened(trajectory, asked.digits), events, searched
 
 
 def _with_inherited(
@@ -96,16 +128,20 @@ def _with_inherited(
     columns: dict[str, Column],
     stated: SceneAccuracy,
     uncertainty: float,
+    follow: Derived,
 ) -> tuple[dict[str, Column], SceneAccuracy]:
     """Add what the uncertainty of the inputs does, or why that is not known."""
     try:
-        known = changes(scene, found, np.concatenate([times, looks(times)]))
+        known = changes(scene, found, np.concatenate([times, looks(times)]), follow)
         moved = known.of_columns(np.arange(len(times)))
     except MechanicsError as fault:
         return columns, replace(stated, why=fault.detail)
     own = {name: column for name, column in columns.items() if name in moved}
     if not own:
-        return columns, replace(stated, why="it is propagated to places and rates alone, and none were asked for")
+        return columns, replace(
+            stated, why="it is not propagated to what is summed up along the motion, and there is nothing else"
+        )
+    moved = {name: moved[name] for name in own}
     share = uncertainty * relative(moved, own)
     until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
     why = None if until is not None else "the change stays below the accuracy at all of the times"
@@ -132,8 +168,11 @@ def _until(whole: Whole, determined: Sequence[bool], times: Floats) -> tuple[np.
 class _Sampling:
     """What is answered of a motion at some times."""
 
-    def __init__(self, whole: Whole, determined: Sequence[bool], times: Floats, outputs: Sequence[str]) -> None:
+    def __init__(
+        self, whole: Whole, determined: Sequence[bool], times: Floats, outputs: Sequence[str | When | ExtremesOf]
+    ) -> None:
         self.whole, self.determined, self.times, self.outputs = whole, determined, times, outputs
+        self.finer = False
         self.numerical = any(isinstance(motion, Numerical) for _, motion in whole.parts)
         self.closed = all(motion.how == "closed form" for _, motion in whole.parts)
 
@@ -158,7 +197,9 @@ class _Sampling:
         """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""
         columns = self.columns(finer=False)
         if self.numerical and worst(columns) > accuracy:
+            self.finer = True
             columns = self.columns(finer=True)
+        columns |= self.along()
         _require_known(columns)
         reached = worst(columns)
         if reached > accuracy:
@@ -185,13 +226,76 @@ class _Sampling:
         """Return the columns of any states."""
         columns = Columns(self.whole, self.times, states, how)
         found: dict[str, Column] = {}
-        if "trajectory" in self.outputs:
-            found.update(columns.trajectory())
-        if "forces-in-time" in self.outputs and len(self.times):
-            forces = self.whole.measures.forces
-            found.update(columns.forces([f for f, known in zip(forces, self.determined, strict=True) if known]))
-        if "energy-in-time" in self.outputs:
-            found.update(columns.energy())
+        for group in _GROUPS:
+            if group in self.outputs and (len(self.times) or group != "forces-in-time"):
+                found.update(self._group(columns, group))
+        return found
+
+    @property
+    def follows(self) -> bool:
+        """Whether something is asked that needs the motion between the samples."""
+        return any(
+            output in ("work-in-time", "paths-in-time") or not isinstance(output, str) for output in self.outputs
+        )
+
+    def along(self) -> dict[str, Column]:
+        """Return the columns that are summed up along the motion."""
+        sums = Along(self.whole, self.times, self.how(None), finer=self.finer)
+        found = sums.works() if "work-in-time" in self.outputs else {}
+        return found | sums.paths() if "paths-in-time" in self.outputs else found
+
+    def searched(self, ended: float, times: Floats) -> Searched:
+        """Return when quantities take values and how large they become, between the start and the latest time."""
+        if all(isinstance(output, str) for output in self.outputs):
+            return Searched()
+        end = min(ended, float(np.max(times)))
+        times_found: list[Occurrence] = []
+        ranges: list[Extremes] = []
+        for index, output in enumerate(self.outputs):
+            if isinstance(output, When):
+                times_found.extend(occurrences(self.whole, self._sampler(output, index), output, end))
+            elif isinstance(output, ExtremesOf):
+                ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, end))
+        return Searched(tuple(times_found), tuple(ranges))
+
+    def _sampler(self, asked: When | ExtremesOf, index: int) -> Sampler:
+        """Return the samples of a quantity, from the columns among which it is."""
+
+        def of(group: str, times: Floats) -> dict[str, Column]:
+            states = self.whole.states(times, finer=self.finer)
+            return self._group(Columns(self.whole, times, states, self.how(None)), group)
+
+        known: list[str] = []
+        for group in _GROUPS:
+            columns = of(group, np.zeros(1))
+            known.extend(columns)
+            if component(columns, asked.quantity) is not None:
+
+                def sampled(times: Floats, group: str = group) -> Column:
+                    found = component(of(group, np.asarray(times, dtype=np.float64)), asked.quantity)
+                    assert found is not None
+                    return found
+
+                return sampled
+        raise unknown(asked, index, known)
+
+    def _group(self, columns: Columns, group: str) -> dict[str, Column]:
+        if group == "trajectory":
+            return columns.trajectory()
+        if group == "energy-in-time":
+            return columns.energy()
+        if group == "momenta-in-time":
+            return columns.momenta()
+        forces = columns.whole.measures.forces
+        return columns.forces([f for f, known in zip(forces, self.determined, strict=True) if known])
+
+    def following(self, whole: Whole, times: Floats, states: WholeStates) -> dict[str, Column]:
+        """Return the columns that were asked for and that follow from the states of a scene like this one."""
+        columns = Columns(whole, times, states, "closed form")
+        found: dict[str, Column] = {}
+        for group in _GROUPS[1:]:
+            if group in self.outputs:
+                found.update(self._group(columns, group))
         return found
 
     def measured(self, states: WholeStates) -> dict[str, Column]:

@@ -118,16 +118,20 @@ class Whole:
         nothing = np.zeros(q.shape[:2])
         return WholeStates(q, v, nothing, nothing, None)
 
-    def in_pairs(self, times: Floats) -> tuple[Floats, Floats]:
-        """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2)."""
+    def in_pairs(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
+        """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2).
+
+        The kind is that of the runs of parts without a closed form, "fine" or the coarser "check".
+        """
         shape = (len(times), len(self.reduced.table.names), 2)
         z, w = np.zeros(shape), np.zeros(shape)
         for indices, motion in self.parts:
             if isinstance(motion, Numerical):
-                z[:, list(indices)], w[:, list(indices)] = motion.by("fine", times)
+                z[:, list(indices)], w[:, list(indices)] = motion.by(kind, times)
             else:
                 found = motion.states(times)
-                z[:, list(indices)], w[:, list(indices)] = found.q, found.v
+                own = (found.q, found.v) if kind == "fine" or found.reference is None else found.reference
+                z[:, list(indices)], w[:, list(indices)] = own
         slopes, offsets = self._affine
         return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w)
 
@@ -159,17 +163,28 @@ class Whole:
         AccuracyUnreachable
             At a place where the connections lose their rank.
         """
-        arrays, units, chosen = self._arrays
-        down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
-        m = len(chosen)
-        acceleration, found = np.zeros_like(q), np.zeros((len(q), m, 2))
-        done = multipliers_pairs(arrays, q * down, v * (down * two_to(units.time)), acceleration, found)
-        if done < len(q):
-            raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
+        _, units, chosen = self._arrays
+        found = self._solved(q, v)[1]
         total = np.zeros((len(q), len(self.measures.table.rows)))
         for k, r in enumerate(chosen):
             total[:, r] = found[:, k, 0] * two_to(units.multiplier(r))
         return total
+
+    def accelerations(self, q: Floats, v: Floats) -> Floats:
+        """Return the acceleration of every coordinate at states, shape (t, n); it raises as `multipliers` does."""
+        units = self._arrays[1]
+        up = np.array([two_to(e - 2 * units.time) for e in units.lengths])
+        found: Floats = self._solved(q, v)[0][..., 0] * up
+        return found
+
+    def _solved(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+        arrays, units, chosen = self._arrays
+        down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
+        acceleration, found = np.zeros_like(q), np.zeros((len(q), len(chosen), 2))
+        done = multipliers_pairs(arrays, q * down, v * (down * two_to(units.time)), acceleration, found)
+        if done < len(q):
+            raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
+        return acceleration, found
 
     def force(self, force: Force, q: Floats, v: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
         """Return a force at every state, and the sum of the magnitudes of its terms, each of shape (t,)."""
@@ -203,9 +218,14 @@ def _spread(slopes: Floats, offsets: Floats, z: Floats) -> Floats:
     for s in range(z.shape[0]):
         for i in range(count):
             sh, sl = offsets[i, 0], offsets[i, 1]
+            size = abs(sh)
             for j in range(n):
                 if slopes[i, j, 0] != 0.0:
                     ph, pl = dd_mul(slopes[i, j, 0], slopes[i, j, 1], z[s, j, 0], z[s, j, 1])
                     sh, sl = dd_add(sh, sl, ph, pl)
+                    size += abs(ph)
+            # What is below the rounding of its terms is zero: the velocity of a body beside that of its centre of mass.
+            if abs(sh) <= 2.0**-104 * size:
+                sh, sl = 0.0, 0.0
             out[s, i, 0], out[s, i, 1] = sh, sl
     return out

@@ -8,10 +8,9 @@ from typing import Any
 
 import orjson
 
-from core.errors import Path
+from core.errors import Path, pointer_of
 from core.notices import Notice
 from core.systems.budget import Budget
-from service.problems import pointer_of
 from service.requests.request_reader import Limits, Reader
 from service.routing import Answer, PostRoute
 from service.schemas import SIGNATURE

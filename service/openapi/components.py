@@ -57,8 +57,9 @@ def _tidy_field(name: str, field: dict[str, Any]) -> None:
         kind, items = member.get("type"), member.get("items", {})
         if kind == "object" or "enum" in member:
             member["title"] = title
-        elif kind == "array" and "enum" in items:
-            items["title"] = title.removesuffix("s")
+        elif kind == "array" and any("enum" in one for one in items.get("anyOf", [items])):
+            named_values = next(one for one in items.get("anyOf", [items]) if "enum" in one)
+            named_values["title"] = title.removesuffix("s")
         elif kind == "array" and {"type": "null"} not in members and len(members) > 1:
             member["title"] = f"{title}List"
     plain = members[0].get("type") in ("number", "integer", "string", "array") and "enum" not in members[0]

@@ -16,12 +16,18 @@ from typing import Annotated, Any, Literal, Self, Union, get_args, get_origin, g
 from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
+from core.errors import InvalidParameter, Path
 from core.multibody import language
+from core.multibody.numerals import member
+from core.multibody.occurrences import MOST_FOUND, ExtremesOf, When
 from core.multibody.reading import scene_from
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
 from service.schemas import ROUND, Request, Rounding, Times
+
+MOST_OUTPUTS = 30
+"""Outputs of one question, among them searches along the motion."""
 
 
 class AngleInDegrees(Request):
@@ -100,6 +106,33 @@ ConnectionReadByCore: Any = _by_core(SceneConnection)
 SCENE_FIELDS = tuple(entry.name for entry in fields(language.Scene))
 
 
+class WhenQuestion(Request):
+    """A quantity, and the value that it is to take."""
+
+    quantity: str = Field(
+        description="A column, such as rod.angle or s.tension; of a vector a component, such as ball.position.x, or "
+        "its length, such as ball.velocity.length.",
+        max_length=100,
+    )
+    equals: float = Field(description="In the unit of the quantity.")
+    nth: int | None = Field(
+        default=None, ge=1, le=MOST_FOUND, description="Which time after the start; every one if left out."
+    )
+
+
+class SearchOutput(Request):
+    """A search between the start and the latest of the times: one of its two fields is given."""
+
+    when: WhenQuestion | None = Field(default=None, description="At which times a quantity takes a value.")
+    extremes: str | None = Field(
+        default=None, max_length=100, description="Of which quantity the least and the largest value are wanted."
+    )
+
+
+AskedOutput = Annotated[Output | SearchOutput, SkipValidation()]
+"""What may be asked for; core says what is wrong with it, with one place for each fault."""
+
+
 class SceneDescription(Request):
     """Bodies, and what connects them."""
 
@@ -159,9 +192,40 @@ class DescribedSceneRequest(SceneDescription):
     input_uncertainty: Uncertainty | None = Field(
         default=None,
         description="Relative uncertainty of every number of the description, 1.1e-16 for numbers known as doubles. "
-        "If it is given, accuracy.inherited says what it does to places and rates. Formulas are exact.",
+        "If it is given, accuracy.inherited says what it does to the samples. Formulas are exact.",
     )
     round: Rounding | None = ROUND
-    outputs: list[Output] | None = Field(
-        default=None, min_length=1, description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}."
+    outputs: list[AskedOutput] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=MOST_OUTPUTS,
+        description=f"What to answer; default: {', '.join(DEFAULT_OUTPUTS)}. work-in-time: what gravity, springs, "
+        "dampers, motors and forces have done; paths-in-time: lengths of paths; momenta-in-time: momenta and, about "
+        "the origin, angular momenta.",
     )
+
+    def asked(self) -> tuple[Output | When | ExtremesOf, ...]:
+        """Return the outputs as core takes them."""
+        outputs = DEFAULT_OUTPUTS if self.outputs is None else self.outputs
+        return tuple(_searched(output, ("outputs", i)) for i, output in enumerate(outputs))
+
+
+def _searched(output: Any, path: Path) -> Any:
+    """Return an output as core takes it: a name, or a search along the motion."""
+    if not isinstance(output, Mapping):
+        return output
+    if set(output) == {"extremes"}:
+        return ExtremesOf(output["extremes"])
+    if set(output) != {"when"}:
+        raise InvalidParameter(path, 'be a name, {"when": {"quantity", "equals", "nth"}} or {"extremes": quantity}')
+    asked = output["when"]
+    if not isinstance(asked, Mapping):
+        raise InvalidParameter((*path, "when"), "be an object")
+    for key in asked:
+        if key not in WhenQuestion.model_fields:
+            known = ", ".join(WhenQuestion.model_fields)
+            raise InvalidParameter(member((*path, "when"), key), f"be left out; the fields here are {known}")
+    for key in ("quantity", "equals"):
+        if key not in asked:
+            raise InvalidParameter((*path, "when", key), "be given")
+    return When(asked["quantity"], asked["equals"], asked.get("nth"))

@@ -8,10 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from service.problems import Fault, Refusal, pointer_of
+from core.errors import pointer_of
+from service.problems import Fault, Refusal
 
 _KEY_END = re.compile(rb'"[ \t\r\n]*:')
 _KEY = re.compile(rb'"(\w*)"[ \t\r\n]*:')
+_NUMBERS = re.compile(rb"\[[-+0-9.eE, \t\r\n]*(?:\][ ,\t\r\n]*\[[-+0-9.eE, \t\r\n]*)*\]")
+"""Arrays of numbers that follow one another: the rows of a matrix."""
 _OTHER = bytes(set(range(256)) - set(b'"[]{}'))
 _STEP = np.zeros(256, np.int8)
 _STEP[list(b"[{")], _STEP[list(b"]}")] = 1, -1
@@ -76,9 +79,13 @@ def require_distinct_keys(body: bytes) -> None:
     names = _KEY.findall(body)
     if len(set(names)) != len(names) or len(names) != body.count(b":"):
         try:
-            json.loads(body, object_pairs_hook=_distinct)
+            # Arrays of numbers hold no key. With a number in place of each the document is read ten times faster;
+            # strings that differ in such a place may become equal, never equal ones different.
+            json.loads(_NUMBERS.sub(b"0", body), object_pairs_hook=_distinct)
         except _Twice:
-            path = _repeated(json.loads(body, object_pairs_hook=_Pairs)) or ()
+            path = _repeated(json.loads(body, object_pairs_hook=_Pairs))
+            if path is None:
+                return
             if path and len(str(path[-1])) > LONGEST_KEY_SHOWN:
                 path = path[:-1]
             fault = Fault(pointer_of(path), "is given twice in one object")

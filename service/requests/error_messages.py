@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any
 
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, pointer_of
 from core.quantities import RADIANS
-from service.problems import KNOWN, MOST_FAULTS, Fault, code_of, pointer_of
+from service.problems import KNOWN, MOST_FAULTS, Fault, code_of
 from service.requests.document_limits import LONGEST_KEY_SHOWN
 from service.requests.suggestions import FORCES, STEPS, count_in_place_of_step, nearest, plain
 

@@ -83,8 +83,8 @@ class SceneColumn(View):
     error: Annotated[float, OwnUnit] = Field(description="Largest error of any row, as the length of a vector.")
     how: How
     inherited: Annotated[float | None, OwnUnit] = Field(
-        description="Largest change of any row by input_uncertainty, to first order; null for forces and energies, and "
-        "where it is not known."
+        description="Largest change of any row by input_uncertainty, to first order; null for what is summed up along "
+        "the motion, and where it is not known."
     )
 
 
@@ -97,12 +97,71 @@ class DescribedTrajectory(View):
 
 
 class EndEvent(View):
-    """Something that ends a motion."""
+    """Something that ends a phase of a motion, or the motion."""
 
-    kind: str = Field(description="slack: a string would have to push. singular: a length becomes zero.")
+    kind: str = Field(
+        description="touch, lift-off, slip, stick, roll, settle (bounces accumulate and end) of contacts; taut and "
+        "slack of strings; stop and release of turns; singular: a length becomes zero; or the code of a problem."
+    )
     name: str = Field(description="Of the connection; empty where several make a place singular.")
     time: Seconds[float]
     error: Seconds[float]
+    impulses: dict[str, Annotated[float, Unit("N s")]] = Field(
+        description="Of an impact: normal (of a stop, N m s), and friction where there is some."
+    )
+    energy_loss: Joules[float] = Field(description="Of an impact; of several at once, it stands with the first.")
+
+
+class MotionPhase(View):
+    """A time in which no contact, stop or string changes its state."""
+
+    start: Seconds[float]
+    end: Seconds[float] | None = Field(description="null for the last.")
+    model: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: int = Field(description="Coordinates that remain.")
+    states: dict[str, str] = Field(description="By contact, stop or string: open, closed, stick, slide, slide back.")
+
+
+class SceneProblem(View):
+    """Something that mechanics does not decide: the motion ends there."""
+
+    code: str = Field(
+        description="no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, "
+        "several-impacts, no-impact, energy-gain or no-progress."
+    )
+    explanation: str
+    time: Seconds[float]
+    connections: list[str] = Field(description="Between which it is undecided.")
+    candidates: list[dict[str, str]] = Field(description="What is possible.")
+    decided_by: str = Field(description="Which further assumption would decide it.")
+
+
+class SceneOccurrence(View):
+    """A time at which a quantity takes the value that was asked for."""
+
+    quantity: str
+    equals: Annotated[float, OwnUnit]
+    unit: str
+    nth: int = Field(description="Counted from 1, after the start.")
+    time: Seconds[float]
+    error: Seconds[float] = Field(description="Of the time.")
+    how: How = Field(description="How the error of the quantity is known.")
+
+
+class SceneExtremes(View):
+    """Least and largest value of a quantity."""
+
+    quantity: str
+    unit: str
+    least: Annotated[float, OwnUnit]
+    least_time: Seconds[float]
+    largest: Annotated[float, OwnUnit]
+    largest_time: Seconds[float] = Field(description="Near a smooth extreme known to half of the digits only.")
+    error: Annotated[float, OwnUnit] = Field(description="Of both values.")
+    until: Seconds[float] = Field(description="End of what was searched, from the start.")
+    periodic: bool = Field(description="Whether that is a period, so that the extremes are those of all time.")
 
 
 class SceneEquilibrium(View):
@@ -125,7 +184,7 @@ class DescribedAccuracy(View):
         "measured against closed form: of a method, the difference from it with its bound added."
     )
     inherited: Ratio[float] | None = Field(
-        description="Largest change of any column of places and rates by input_uncertainty, to first order, relative "
+        description="Largest change of any column by input_uncertainty, to first order, relative "
         "to the largest value in its unit; null where it is not asked for or not known."
     )
     horizon: Seconds[float] | None = Field(
@@ -149,6 +208,12 @@ class DescribedSceneAnswer(Envelope):
         description="horizon, or the kind of the event that ended the motion; null without times."
     )
     events: list[EndEvent]
+    phases: list[MotionPhase] | None = Field(
+        default=None, description="Of a scene with contacts, stops, or strings that become slack."
+    )
+    problem: SceneProblem | None = Field(default=None, description="If mechanics leaves something undecided.")
     trajectory: DescribedTrajectory | None = None
+    occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was asked for, in its order.")
+    extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were asked for.")
     equilibria: list[SceneEquilibrium] | None = None
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

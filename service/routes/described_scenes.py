@@ -13,7 +13,7 @@ from core.errors import BudgetExceeded
 from core.multibody.answer import SceneModel
 from core.multibody.generic_equation import weight_of
 from core.multibody.inherited import MOST_INPUTS
-from core.multibody.solve import DEFAULT_OUTPUTS, OUTPUTS, solve_scene
+from core.multibody.solve import OUTPUTS, solve_scene
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.from_scipy import FromSciPy
@@ -35,10 +35,16 @@ SUMMARY = "A scene of your own: bodies and what connects them, answered by the s
 DESCRIPTION = """Two components mean the plane, three space. A number is the decimal that is written, with all its
 digits; it may also be a formula in quotes over the names in `let`, such as `"sqrt(2)/2"`, or `{"degrees": 30}`; a
 vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are left out follow from the connections.
-Forces that the scene does not determine are null.
+Forces that the scene does not determine are null. `outputs` may also ask when a quantity takes a value,
+`{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
+`{"extremes": "rod.force"}`, between the start and the latest of the times.
 
-Not covered yet: contact, friction, impacts, strings that become taut again, connections with `from` and `until`. They
-are refused, and a string that becomes slack ends the motion. It is not proven that all equilibria are found. A plan
+Contacts push and do not pull, with friction and restitution, in the plane; strings become slack and taut again. The
+answer lists the phases between the events, each with its own smallest model. What mechanics leaves undecided is an
+answer too: `problem` says what, and which assumption would decide it.
+
+Not covered yet: contacts in space, friction of held connections, connections with `from` and `until`. They are refused.
+It is not proven that all equilibria are found. A plan
 reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
 about three bodies. The paths of a motion in the plane, and its columns over time, are answered as a figure to
 `Accept: image/svg+xml`."""
@@ -52,6 +58,9 @@ QUICK = 10.0
 SEARCHED = 10_000.0
 """Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
+FOLLOWED = 2000
+"""Samples that a search along the motion takes, or a sum."""
+
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
 
@@ -59,11 +68,10 @@ LONGEST = 4000.0
 def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     """Answer a question about a described scene."""
     times = () if question.times is None else sample_times(question.times, budget)
-    outputs = DEFAULT_OUTPUTS if question.outputs is None else question.outputs
     found = solve_scene(
         question.scene(),
         times,
-        outputs,
+        question.asked(),
         question.accuracy,
         method=question.method,
         input_uncertainty=question.input_uncertainty,
@@ -83,11 +91,17 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
     answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
-    answer["events"] = found.events
+    answer["events"] = [fields_of(event) for event in found.events]
+    if found.phases is not None:
+        answer["phases"] = [fields_of(phase) for phase in found.phases]
+    if found.problem is not None:
+        answer["problem"] = fields_of(found.problem)
     if motion is not None:
         columns = {name: fields_of(column) for name, column in motion.columns.items()}
         answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}
         answer["accuracy"] = motion.accuracy
+    if found.occurrences is not None:
+        answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
         answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
     return answer
@@ -124,7 +138,8 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         "connections times pairs of bodies": connections * bodies**2,
     }
     if question.times is not None:
-        samples = sample_count(question.times, budget)
+        # What is searched or summed up along the motion looks at it as often as thousands of samples do.
+        samples = sample_count(question.times, budget) + FOLLOWED * len(_along(question))
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
         coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
         found |= {
@@ -142,6 +157,12 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     if "equilibria" in (question.outputs or ()):
         found |= {"searches": bodies, "searches of pairs": bodies**2}
     return found
+
+
+def _along(question: DescribedSceneRequest) -> list[Any]:
+    """Return the outputs that need the motion between the samples."""
+    summed = ("work-in-time", "paths-in-time")
+    return [one for one in question.outputs or () if not isinstance(one, str) or one in summed]
 
 
 def _of_method(question: DescribedSceneRequest, bodies: float, connections: float) -> dict[str, float]:
@@ -178,7 +199,10 @@ def probed(question: DescribedSceneRequest, budget: Budget) -> PlanningProbe:
     few = instants[few_of(instants.size)]
     reach = min(NEAR, FEW_STEPS * getattr(question.method, "step", NEAR))
     near = few * min(1.0, reach / max(reach, float(np.abs(few).max())))
-    changes = {"times": near.tolist(), "input_uncertainty": None}
+    changes: dict[str, Any] = {"times": near.tolist(), "input_uncertainty": None}
+    if question.outputs is not None:
+        along = _along(question)
+        changes["outputs"] = [one for one in question.outputs if one not in along] or ["trajectory"]
     fields = _without_long_searches(question.model_copy(update=changes), budget)
     if hasattr(question.method, "step"):
         _require_affordable(question, fields["model"], budget)
@@ -217,6 +241,8 @@ DESCRIBED_SCENES = (
         solved,
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
+        # A heavy body about a point has kernels of its own.
+        warming=(scene_catalogue()["kovalevskaya-top"].question,),
         description=DESCRIPTION,
         representations={SVG: drawn},
     ),

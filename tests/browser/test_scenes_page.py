@@ -1,4 +1,4 @@
-"""The scenes page: every scene of the catalogue moves; sliders and an edited text change it, with faults at their place."""
+"""The scenes page: every scene of the catalogue moves; sliders and the text change it, faults stand at their place."""
 
 import json
 from urllib.request import urlopen

@@ -13,13 +13,14 @@ import numpy as np
 import pytest
 
 from core.assessment.catalogue import MISTAKES
+from core.assessment.figures import steps_of
 from core.assessment.mistakes import Figure, WrongValues
 from core.systems.budget import Budget
 from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.assessments.assessed_question import AssessedQuestion, steps_of
+from service.routes.assessments.route_source import asked_question
 
 ROUTES = {route.path: route for route in questions()}
 HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
@@ -143,7 +144,7 @@ def drawn(index: int) -> tuple[tuple[Question, WrongValues], ...]:
     read = lambda body: HANDLER.read(ROUTES[path], body)  # noqa: E731
     for _ in range(EACH):
         request = draw(chance)
-        asked = AssessedQuestion(ROUTES[path], read, request, Budget(), None)
+        asked = asked_question(ROUTES[path], read, request, Budget(), None)
         reference = asked.reference(steps_of(pointer))
         assert reference is not None
         figure = Figure(path.removeprefix("/v1/"), request, steps_of(pointer), reference, asked.evaluate)

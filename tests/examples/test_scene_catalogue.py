@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 SCENES = scene_catalogue()
 PLANE = [name for name, one in SCENES.items() if len(next(iter(one.question["bodies"].values()))["at"]) != 3]
 
-MASSES = ("mass", "inertia", "moments", "stiffness", "coefficient")
+MASSES = ("mass", "inertia", "moments", "stiffness", "coefficient", "strength")
 MIRRORED = {"left": "right", "right": "left"}
 
 
@@ -68,6 +68,9 @@ def test_its_model_is_found_and_four_times_the_mass_under_other_names_moves_alik
         other["bodies"][f"z-{body}"] = heavier
     for i, fields in enumerate(question.get("connections", [])):
         stiffer = {key: times_four(value) if key in MASSES else renamed(value) for key, value in fields.items()}
+        if "constant" in fields:
+            # Attraction grows with the square of the masses.
+            stiffer["constant"] = f"({fields['constant']})/4"
         other["connections"].append({"name": f"{fields['kind']}-{i + 1}"} | stiffer)
     second = solved(other)
     assert second.model.name == first.model.name

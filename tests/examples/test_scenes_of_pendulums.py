@@ -47,6 +47,27 @@ def test_the_simple_pendulum(answer_of):
     agree(answer, swinging(answer, "2.5", "9.81", lambda a: {"bob.position": below(a)}))
 
 
+def test_the_timed_pendulum(answer_of):
+    """m = 2, l = 1: the third passage after 5/4 of the period, the pull m g (3 cos(theta) - 2 cos(2.5)), the arc."""
+    answer = answer_of("scenes/pendulum-timed")
+    states = [swing("2.5", "9.81", t) for t in times(answer)]
+    with mp.workdps(30):
+        quarter = ellipk(mp_sin(mpf("1.25")) ** 2) / mp_sqrt(mpf("9.81"))
+        arcs = []
+        for t, (angle, _) in zip(times(answer), states, strict=True):
+            swings = int(mpf(t) / (2 * quarter))
+            arcs.append(5 * swings + abs(angle - (-1) ** swings * mpf("2.5")))
+        fallen = [2 * mpf("9.81") * (mp_cos(angle) - mp_cos(mpf("2.5"))) for angle, _ in states]
+        momenta = [2 * rate for _, rate in states]
+        ends = [2 * mpf("9.81") * x for x in (mp_cos(mpf("2.5")), 3 - 2 * mp_cos(mpf("2.5")))]
+    agree(answer, {"bob.path": arcs, "gravity.work": fallen, "angular_momentum": momenta, "energy.kinetic": fallen})
+    (third,) = answer["occurrences"]
+    assert abs(third["time"] - 5 * quarter) <= third["error"] < 1e-13
+    (pull,) = answer["extremes"]
+    assert [pull["least"], pull["largest"]] == pytest.approx([float(x) for x in ends], abs=pull["error"])
+    assert pull["periodic"]
+
+
 def test_the_physical_pendulum(answer_of):
     """theta'' = -3 g/(2 l) sin(theta); the hinge by Newton's law, from angle and rate."""
     answer = answer_of("scenes/physical-pendulum")

@@ -397,6 +397,39 @@ def assessments() -> Named:
             yield f"{path}, {name}", {"question": {"path": path, "request": question}, "submissions": submissions}
 
 
+def variants() -> Named:
+    for path, (asked, share, _) in CLAIMED.items():
+        # Described scenes are varied within the magnitudes that are promised for bodies.
+        small, large = (1e-150, 1e150) if path == "/v1/scenes" else (SUBNORMAL, LARGEST)
+        ranges: tuple[dict[str, Any], ...] = (
+            {"min": small, "max": large, "distribution": "log-uniform"},
+            {"min": -large, "max": large},
+            {"min": max(small, 1e-300), "max": min(large, 1e300), "digits": 1},
+            {"values": [0.0, small, large]},
+        )
+        for name, question in list(asked())[:: 3 * share]:
+            pointer = _first_number(question)
+            for vary in ranges if pointer else ():
+                yield (
+                    f"{path}, {name}, {vary}",
+                    {
+                        "question": {"path": path, "request": question},
+                        "vary": {pointer: vary},
+                        "seed": 0,
+                        "count": 2,
+                        "draws": 5,
+                    },
+                )
+
+
+def _first_number(value: Any, pointer: str = "") -> str | None:
+    """Return the pointer of the first number of a request."""
+    if isinstance(value, dict | list):
+        entries = value.items() if isinstance(value, dict) else enumerate(value)
+        return next((found for key, one in entries if (found := _first_number(one, f"{pointer}/{key}"))), None)
+    return pointer if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
 QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/bodies/mass-properties": bodies,
     "/v1/rotation/trajectory": trajectories,
@@ -420,4 +453,5 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/scenes": described,
     "/v1/plan": plans,
     "/v1/assessments": assessments,
+    "/v1/variants": variants,
 }

@@ -11,7 +11,7 @@ import numpy as np
 
 from core.assessment.mistakes import Figure, Mistake
 
-SIGNED = ("number", "angle", "vector", "matrix", "samples", "set")
+SIGNED = ("number", "angle", "vector", "matrix", "samples", "set", "curve")
 """Forms in which a multiple of the right value is another value."""
 
 
@@ -51,7 +51,7 @@ def _permuted(figure: Figure) -> Iterator[Any]:
         for order in permutations(range(len(right))):
             if list(order) != sorted(order):
                 yield right[list(order)]
-    elif figure.reference.form in ("samples", "axes") and right.ndim == 2 and right.shape[1] in (2, 3):
+    elif figure.reference.form in ("samples", "axes", "curve") and right.ndim == 2 and right.shape[1] in (2, 3):
         for order in permutations(range(right.shape[1])):
             if list(order) != sorted(order):
                 yield right[:, list(order)]

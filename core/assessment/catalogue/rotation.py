@@ -15,6 +15,9 @@ PRECESSION, TRAJECTORY, WOBBLE, STABILITY = (
     f"rotation/{name}" for name in ("precession", "trajectory", "wobble", "stability")
 )
 Floats = NDArray[np.float64]
+TIME_SCALES = (60.0, 1.0 / 60.0, 1e3, 1e-3, 2.0 * pi, 0.5 / pi, 2.0, 0.5)
+"""Factors of times that are in another unit, or by which a rate is wrong."""
+
 MOST_STEPS = 10_000
 """Of an integration that is done wrongly."""
 
@@ -169,6 +172,13 @@ def _shifted(figure: Figure) -> Iterator[Any]:
             yield figure.asked({**figure.request, "times": moved.tolist()})
 
 
+def _time_scaled(figure: Figure) -> Iterator[Any]:
+    times = _of_samples(figure)
+    if times is not None:
+        for scale in TIME_SCALES:
+            yield figure.asked({**figure.request, "times": (scale * times).tolist()})
+
+
 def _slow_precession(figure: Figure) -> Iterator[Any]:
     """Yield the samples of a symmetric body at the rate (I3 - I)/I3 w3, and those one sample late."""
     times, body = _of_samples(figure), figure.request.get("body", {})
@@ -200,6 +210,11 @@ OF_ROTATION = (
         "samples-rate-over-axial-moment", "Samples of a symmetric body that precess at (I3 - I)/I3 w3.",
         "The motion precesses at a wrong rate: the difference of the moments is divided by the transverse moment.",
         _slow_precession, credit=0.25,
+    ),
+    Mistake(
+        "time-scaled", "Samples at other times than stated: minutes, milliseconds, turns, twice or half of them.",
+        "The motion is right, but runs too fast or too slowly: check the unit of time and factors in the rate.",
+        _time_scaled, credit=0.25,
     ),
     Mistake(
         "period-for-flip-interval", "The period for the interval between flips, or the reverse.",

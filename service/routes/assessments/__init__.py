@@ -2,52 +2,49 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
-from functools import cache
+from contextlib import suppress
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field
 
+from core.assessment.answer_key import Document, Terms, key_of
+from core.assessment.asked_question import VARIATIONS
 from core.assessment.catalogue import MISTAKES
-from core.assessment.compare import Form, Verdict
+from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
+from core.assessment.figures import steps_of
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
+from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
-from core.errors import InvalidParameter, MechanicsError, Path
+from core.assessment.results import reference_views, submission_view
+from core.errors import InvalidParameter, Path
 from core.notices import Notice
-from core.quantities import Quantity, Uncertainty, Unit
+from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
-from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
-from service.requests.suggestions import nearest_path
-from service.routes.assessments.assessed_question import VARIATIONS, AssessedQuestion, steps_of
-from service.routes.assessments.grading import MOST_IDENTIFIED, Grader
-from service.routes.assessments.submissions import LONGEST_POINTER, SubmissionList
+from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, AskedQuestion, QuestionTable
+from service.routes.assessments.submissions import SubmissionList
+from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
-from service.schemas import Envelope, RadiansPerSecond, Ratio, Request, Seconds, View
-from service.schemas import Fault as FaultView
-
-WITHIN: Path = ("question", "request")
-
-OwnUnit = Unit("as in the field unit")
+from service.schemas import Request
 
 FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
 
-SECONDS_OF_A_SUBMISSION = 5e-5
+SECONDS_OF_A_CLAIM, SECONDS_OF_SAMPLES = 2.5e-5, 1e-3
 
-SECONDS_OF_A_SEARCH = 1e-2
-"""For the method that samples come from."""
+SECONDS_OF_A_SEARCH, SECONDS_OF_SOLVERS = 5e-3, 0.15
+"""For the method that wrong samples come from, and for solvers that choose their steps at times of their own."""
+
+SECONDS_OF_A_COLUMN = 2e-2
+"""For the mistakes at some times."""
+
+CHANGED_BY_MISTAKES = 10
+"""Changed questions that the mistakes of a figure are computed from, about."""
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
-
-
-class AskedQuestion(Request):
-    """A request to another endpoint, whose answer is the reference."""
-
-    path: str = Field(max_length=200, description="Of the endpoint, for example /v1/rotation/precession.")
-    request: dict[str, Any] = Field(description="The body that it would be sent.")
 
 
 class AssessmentRequest(Request):
@@ -86,99 +83,6 @@ class AssessmentRequest(Request):
     )
 
 
-class RecognisedMistake(View):
-    """A mistake by which the submitted value comes out."""
-
-    tag: str = Field(description="Of an entry of GET /v1/mistakes.")
-    credit: Ratio[float] = Field(description="Share of the score.")
-    feedback: str = Field(description="For who made it; it gives no number.")
-
-
-class ClaimError(View):
-    """How far a claim is from the reference."""
-
-    absolute: Annotated[float, OwnUnit] | None = Field(description="null where the error has no size.")
-    relative: Ratio[float] | None = Field(description="To the largest magnitude of the reference; null if that is 0.")
-    in_tolerances: Ratio[float] | None = Field(description="Over the tolerance; null without one.")
-    tolerance: Annotated[float, OwnUnit] | None = Field(description="Largest error that is accepted.")
-    sensitive: Ratio[float] | None = Field(description="Relative error of the reference's sensitive figure.")
-    unit: str = Field(description="Of the absolute error and of the tolerance.")
-
-
-class ConsistentMethod(View):
-    """A method by which the samples come out, confirmed by running it."""
-
-    method: str = Field(description="Kind, as in GET /v1/methods; exact for samples as right as their digits.")
-    step: Seconds[float] | None = Field(description="Length of the steps; null for exact.")
-    unexplained: RadiansPerSecond[float] = Field(description="Largest norm of the difference that is left.")
-
-
-class SamplesError(View):
-    """How wrong samples of the angular velocity are."""
-
-    largest: RadiansPerSecond[float] = Field(description="Largest norm of the error of any sample.")
-    final: RadiansPerSecond[float] = Field(description="At the time farthest from the start.")
-    within_until: Seconds[float] | None = Field(
-        description="First time, outwards from the start, at which the error is beyond the tolerance."
-    )
-    energy_drift: Ratio[float] | None = Field(description="Largest relative change of the energy; null at rest.")
-    angular_momentum_drift: Ratio[float] | None = Field(description="The same of the angular momentum's magnitude.")
-    consistent_with: ConsistentMethod | None = Field(
-        description="null if no method explains the error, or a recognised mistake does."
-    )
-
-
-class ClaimResult(View):
-    """What becomes of one claim."""
-
-    pointer: str = Field(description="Of the figure in the answer.")
-    verdict: Verdict
-    correct: bool | None = Field(description="null if that cannot be said.")
-    score: Ratio[float] | None = Field(description="From 0 to 1.")
-    matches: list[RecognisedMistake] = Field(description="Mistakes by which the value comes out.")
-    feedback: str = Field(description="For who submitted it.")
-    error: ClaimError | None = Field(default=None, description="Left out unless the reference is revealed.")
-    samples: SamplesError | None = Field(
-        default=None, description="Of samples of the angular velocity that are not right; left out likewise."
-    )
-
-
-class SubmissionResult(View):
-    """What becomes of one submission."""
-
-    score: Ratio[float] | None = Field(description="Mean of its claims, from 0 to 1; null if it is not gradable.")
-    correct: bool | None = Field(description="Whether every claim is right; null if it is not gradable.")
-    gradable: bool = Field(description="Whether every claim could be read and judged.")
-    format_errors: list[FaultView] = Field(description="What cannot be read, by pointer into the document sent.")
-    tests: list[ClaimResult] = Field(description="Of the claims that can be read.")
-    matches: list[str] = Field(description="Tags of all recognised mistakes.")
-    feedback: str = Field(description="For who submitted it.")
-
-
-class ReferenceFigure(View):
-    """What is right, and how well it is known."""
-
-    pointer: str = Field(description="Into the answer of the question.")
-    value: Any = Field(description="As in the answer; null where there is no such figure.")
-    unit: str = Field(description="1 for pure numbers.")
-    form: Form = Field(description="How submitted values are compared with it.")
-    error: Annotated[float, OwnUnit] = Field(description="Numerical error; how says what it rests on.")
-    how: str = Field(description="closed form and measured ...: a bound; estimate ...: none.")
-    inherited: Annotated[float, OwnUnit] | None = Field(
-        description="Error propagated from the uncertainty of the question's numbers, to first order; null if unknown."
-    )
-    sensitive: str | None = Field(description="Figure in which errors show, where this one is near a constant.")
-
-
-class AssessmentAnswer(Envelope):
-    """Verdicts, in the order of the submissions."""
-
-    results: list[SubmissionResult] = Field(description="One for each submission.")
-    reference: list[ReferenceFigure] | None = Field(
-        default=None, description="Of every figure that was claimed; left out unless revealed."
-    )
-
-
 DESCRIPTION = """A claim is judged by the form of the figure: angles modulo whole turns, attitudes up to the sign of the
 quaternion, principal axes up to sign and, where moments are equal, up to rotation, eigenvalues as a set, samples at the
 times of the claim. Arrays count as wrong as their worst entry. Units are converted; for an angular rate 1 Hz is 2 pi
@@ -188,41 +92,23 @@ With `reveal: false` no mistakes are named and none gives credit: who knows that
 reference."""
 
 
-def assessing(routes: Sequence[PostRoute]) -> PostRoute:
-    """Return the route that assesses answers to questions to `routes`."""
-    table: Mapping[str, PostRoute] = {route.path: route for route in routes}
-
-    @cache
-    def reader(path: str) -> Reader[Any]:
-        # The document that holds the request has been held against the service's own limits.
-        return Reader(table[path].question, Limits(10**4, 10**9, 10**9, 10**9), table[path].elsewhere)
-
-    def routed(question: AssessmentRequest) -> PostRoute:
-        path = question.question.path
-        if path not in table:
-            near = nearest_path(path, table)
-            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
-            raise _refusal(Fault("/question/path", "must be the path of a question that can be assessed", remedy))
-        return table[path]
+def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> PostRoute:
+    """Return the route that assesses answers to questions to `routes`, some of which have proven digits, too."""
+    table = QuestionTable(routes, certified)
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
-        route = routed(question)
-        request = question.question.request
         uncertainty = _uncertainty(question)
-        try:
-            asked = AssessedQuestion(route, reader(route.path).read, request, budget, uncertainty)
-            warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
-        except Refusal as refusal:
-            raise _moved(refusal.problem) from None
-        except MechanicsError as error:
-            error.path = (*WITHIN, *error.path)
-            raise
-        credits = question.credits or {}
+        asked = table.answered(question.question, budget, uncertainty)
+        warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
+        credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
-        comparisons = question.comparisons or {}
-        grader = Grader(asked, question.comparison, comparisons, question.reveal, MISTAKES, credits, _names(question))
-        results = [grader.result(i, submission) for i, submission in enumerate(question.submissions)]
-        shown = {"reference": grader.references()} if question.reveal else {}
+        catalogue = credited(MISTAKES, credits)
+        grader = Grader(asked, question.comparison, comparisons, question.reveal, catalogue, _names(question))
+        results = [
+            submission_view(i, grader.judged(submission), reveal=question.reveal)
+            for i, submission in enumerate(question.submissions)
+        ]
+        shown = {"reference": reference_views(grader)} if question.reveal else {}
         warnings = warnings if question.reveal else []
         if grader.looked_for > MOST_IDENTIFIED:
             detail = f"the method is looked for in the first {MOST_IDENTIFIED} wrong samples of a request"
@@ -230,32 +116,30 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
         return {"results": results, **shown, "warnings": warnings}
 
     def price(question: AssessmentRequest, budget: Budget) -> float:
-        route = routed(question)
-        try:
-            once = route.price(reader(route.path).read(json.dumps(question.question.request).encode()), budget)
-        except Refusal as refusal:
-            raise _moved(refusal.problem) from None
-        except MechanicsError as error:
-            error.path = (*WITHIN, *error.path)
-            raise
+        once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
-        again = 1 + 2 * min(inputs, MOST_INPUTS) + len(MISTAKES)
-        again += VARIATIONS * min(1, _claims_with("formula", question.submissions))
-        timed = _claims_with("times", question.submissions)
-        methods = SECONDS_OF_A_SEARCH * min(timed, MOST_IDENTIFIED)
-        return (again + timed) * once + methods + SECONDS_OF_A_SUBMISSION * len(question.submissions)
+        again = 1 + min(inputs, MOST_INPUTS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
+        again += VARIATIONS * min(1, len(_claims_with("formula", question.submissions)))
+        # What is right is judged in a hundredth of the time; before it is judged nobody knows.
+        timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
+        columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
+        samples = SECONDS_OF_SAMPLES * len(timed) + SECONDS_OF_A_SEARCH * min(len(timed), MOST_IDENTIFIED)
+        samples += SECONDS_OF_SOLVERS * min(columns, MOST_SOLVED) + SECONDS_OF_A_COLUMN * columns
+        claims = sum(len(one) for one in question.submissions if isinstance(one, dict))
+        return (
+            SECONDS_OF_PROOF
+            + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
+            + samples
+            + SECONDS_OF_A_CLAIM * claims
+        )
 
     def small(question: AssessmentRequest) -> bool:
-        route = table.get(question.question.path)
-        if route is None or len(question.submissions) > FEW_SUBMISSIONS:
-            return route is None
-        if _claims_with("formula", question.submissions):
-            # The question is then asked in many variations.
+        if len(question.submissions) > FEW_SUBMISSIONS:
             return False
-        try:
-            return route.small(reader(route.path).read(json.dumps(question.question.request).encode()))
-        except (Refusal, MechanicsError):
-            return True
+        if _claims_with("formula", question.submissions) or _claims_with("times", question.submissions):
+            # The question is then asked in many variations, or methods are run.
+            return False
+        return table.small(question.question)
 
     return PostRoute(
         "/v1/assessments",
@@ -271,10 +155,36 @@ def assessing(routes: Sequence[PostRoute]) -> PostRoute:
     )
 
 
-def _claims_with(key: str, submissions: Sequence[Any]) -> int:
-    """Return how many claims have a key, such as times of their own."""
+def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body: bytes) -> Document:
+    """Return the answer key of the question of an assessment: of all its figures, and of what its submissions claim.
+
+    Raises
+    ------
+    Refusal, MechanicsError
+        For what an assessment is refused with.
+    """
+    question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
+    asked = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
+    _check_tags(question.credits or {})
+    claimed: list[str] = []
+    timed: list[tuple[str, tuple[float, ...]]] = []
+    for pointer, entry in (pair for one in question.submissions if isinstance(one, dict) for pair in one.items()):
+        # What cannot be read is no example of what students claim.
+        with suppress(InvalidParameter):
+            times = Claim.read(entry).times
+            steps_of(pointer)
+            if times is None:
+                claimed.append(pointer)
+            else:
+                timed.append((pointer, tuple(times.tolist())))
+    terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question))
+    return key_of(asked, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
+
+
+def _claims_with(key: str, submissions: Sequence[Any]) -> list[dict[str, Any]]:
+    """Return the claims that have a key, such as times of their own."""
     claims = (claim for one in submissions if isinstance(one, dict) for claim in one.values())
-    return sum(isinstance(claim, dict) and key in claim for claim in claims)
+    return [claim for claim in claims if isinstance(claim, dict) and key in claim]
 
 
 def _uncertainty(question: AssessmentRequest) -> float | dict[Path, float] | None:
@@ -315,15 +225,3 @@ def _check_tags(credits: Mapping[str, float]) -> None:
         if tag not in known:
             path = ("credits", tag) if len(tag) <= 40 else ("credits",)
             raise InvalidParameter(path, "be the tag of a recognised mistake", remedy="GET /v1/mistakes lists them")
-
-
-def _moved(problem: Problem) -> Refusal:
-    """Return the refusal of the question itself, with pointers into the document that holds it."""
-    faults = problem.faults or (Fault("", problem.detail),)
-    moved = [Fault("/question/request" + fault.pointer, fault.detail, fault.remedy) for fault in faults]
-    code = problem.type.code if problem.type.status == 422 else "invalid-parameter"
-    return Refusal(code, headline(moved), faults=moved, extra=problem.extra)
-
-
-def _refusal(fault: Fault) -> Refusal:
-    return Refusal("invalid-parameter", headline([fault]), faults=[fault])

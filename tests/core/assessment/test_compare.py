@@ -183,3 +183,12 @@ def test_no_error_is_infinite(right: float, value: float) -> None:
     judged = compare(Reference(right, scale=abs(right)), value)
     for figure in (judged.absolute, judged.relative, judged.in_tolerances, judged.tolerance):
         assert figure is None or math.isfinite(figure)
+
+
+@pytest.mark.parametrize("size", [1e-200, 1e-160, 1.0, 1e160, 1e200])
+def test_samples_are_as_wrong_at_any_magnitude(size: float) -> None:
+    right = size * np.array([[1.0, 2.0, 2.0], [2.0, 1.0, -2.0]])
+    reference = Reference(right, "rad s^-1", "samples", 3.0 * size)
+    found = compare(reference, right + size * np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]]))
+    assert found.verdict == "incorrect"
+    assert found.absolute == pytest.approx(0.5 * size)

@@ -158,3 +158,85 @@ def any_scene(seed: int) -> dict[str, Any]:
         lambda: pendulum_of_points(random, 1),
     )
     return kinds[seed % len(kinds)]()
+
+
+def stars(random: np.random.Generator, count: int) -> dict[str, Any]:
+    """Return bodies that attract one another, in the plane, with room between them."""
+    bodies = {}
+    for i in range(count):
+        turn, away = 2 * np.pi * i / count, decimal(random, 0.8, 1.5)
+        at = [float(f"{away * x:.4g}") for x in (np.cos(turn), np.sin(turn))]
+        bodies[f"s{i}"] = {
+            "mass": decimal(random, 0.2, 2),
+            "at": at,
+            "velocity": [decimal(random, -0.6, 0.6), decimal(random, -0.6, 0.6)],
+        }
+    pairs = [(i, j) for i in range(count) for j in range(i)]
+    pulls = [{"kind": "gravitation", "a": f"s{i}", "b": f"s{j}", "constant": decimal(random, 0.2, 1)} for i, j in pairs]
+    return {"bodies": bodies, "connections": pulls}
+
+
+def beside_charges(random: np.random.Generator) -> dict[str, Any]:
+    """Return a point beside two fixed charges of either sign."""
+    body = {
+        "mass": decimal(random, 0.5, 2),
+        "at": [decimal(random, -0.5, 0.5), decimal(random, 0.5, 1.5)],
+        "velocity": [decimal(random, -1, 1), decimal(random, -1, 1)],
+    }
+    charges = [
+        {"kind": "inverse-square", "a": "p", "b": [x, 0], "strength": decimal(random, -1, 1) + 0.01} for x in (-1, 1)
+    ]
+    return {"bodies": {"p": body}, "connections": charges}
+
+
+def ball(random: np.random.Generator, surface: str) -> dict[str, Any]:
+    """Return a ball that rolls, with a spin of its own about the normal where that is easily said."""
+    radius, mass = decimal(random, 0.05, 0.2), decimal(random, 0.3, 2)
+    angle = decimal(random, -3, 3)
+    fields: dict[str, Any] = {"mass": mass, "radius": radius, "moments": [decimal(random, 0.001, 0.01)] * 3}
+    speed = [decimal(random, -1, 1), decimal(random, -1, 1)]
+    if surface == "turntable":
+        fields |= {"at": [decimal(random, -1, 1), decimal(random, -1, 1), radius], "velocity": [*speed, 0]}
+        on = {"at": [0, 0, 0], "normal": [0, 0, 1], "rate": decimal(random, -4, 4)}
+        let = {}
+    else:
+        let = {"d": f"1 - {radius}", "c": f"cos({angle})", "s": f"sin({angle})"}
+        along = speed[1] if surface == "cylinder" else 0
+        # Tangents of the circle, and along the axis.
+        fields |= {"at": ["d*c", 0, "d*s"], "velocity": [f"-({speed[0]})*s", along, f"{speed[0]}*c"]}
+        on = {"at": [0, 0, 0], "radius": -1} | ({"direction": [0, 1, 0]} if surface == "cylinder" else {})
+        if surface == "sphere":
+            fields["velocity"][1] = speed[1]
+    rolling = {"kind": "rolling", "place": "ball", "on": on}
+    return {"gravity": [0, 0, -9.81], "let": let, "bodies": {"ball": fields}, "connections": [rolling]}
+
+
+def loaded_ball(random: np.random.Generator) -> dict[str, Any]:
+    """Return a ball whose centre of mass is beside its middle, on a level."""
+    a, b, c = (decimal(random, 0.01, 0.1) for _ in range(3))
+    radius, arm = decimal(random, 0.3, 0.5), [decimal(random, -0.1, 0.1) for _ in range(3)]
+    body = {
+        "mass": 1,
+        "radius": radius,
+        "moments": [f"{b}+{c}", f"{a}+{c}", f"{a}+{b}"],
+        "at": [f"-({arm[0]})", f"-({arm[1]})", f"{radius} - ({arm[2]})"],
+        "angular_velocity": [decimal(random, -4, 4) for _ in range(3)],
+        "places": {"middle": arm},
+    }
+    rolling = {"kind": "rolling", "place": "ball.middle", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+    return {"gravity": [0, 0, -9.81], "bodies": {"ball": body}, "connections": [rolling]}
+
+
+def attracted_or_rolling(seed: int) -> dict[str, Any]:
+    """Return the scene of a seed among those with attraction and with balls, the kinds in turn."""
+    random = np.random.default_rng(seed)
+    kinds = (
+        lambda: stars(random, 3),
+        lambda: beside_charges(random),
+        lambda: ball(random, "turntable"),
+        lambda: ball(random, "cylinder"),
+        lambda: ball(random, "sphere"),
+        lambda: loaded_ball(random),
+        lambda: stars(random, 4),
+    )
+    return kinds[seed % len(kinds)]()

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
+import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.solve import solve_scene
@@ -99,6 +102,85 @@ def test_places_beside_a_spring_of_no_length_are_no_equilibria() -> None:
         # Across each rod: the spring against the weight.
         assert (pull * d[0]) * -left[1] + (pull * d[1] - 9.81) * left[0] == pytest.approx(0, abs=1e-11)
         assert -(pull * d[0]) * -right[1] - (pull * d[1] + 9.81) * (right[0] - 1) == pytest.approx(0, abs=1e-11)
+
+
+def test_a_rod_on_a_torsion_spring_stands_in_three_ways() -> None:
+    """k phi = m g l/2 sin(phi) with k = 4: upright, unstable, and bent to either side; I phi'' by the second slope."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "rod": {
+                "mass": 1,
+                "inertia": "1/12",
+                "at": ["0.5*sin(0.1)", "0.5*cos(0.1)"],
+                "angle": "pi/2 - 0.1",
+                "places": {"foot": [-0.5, 0]},
+            }
+        },
+        "connections": [
+            {"kind": "pin", "a": "rod.foot", "b": [0, 0]},
+            {"kind": "torsion-spring", "a": "rod", "stiffness": 4, "rest_angle": "pi/2"},
+        ],
+    }
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+    bent = brentq(lambda x: 4 * x - 4.905 * math.sin(x), 0.5, 2, xtol=1e-15)
+    angles = sorted((math.pi / 2 - one.angles["rod"], one.stable, one.modes) for one in found)
+    assert [one[0] for one in angles] == pytest.approx([-bent, 0, bent], abs=1e-12)
+    assert [one[1] for one in angles] == [True, False, True]
+    frequency = math.sqrt((4 - 4.905 * math.cos(bent)) * 3)
+    assert angles[2][2] == (pytest.approx((frequency, 0.0), rel=1e-12),)
+    growth = math.sqrt(0.905 * 3)
+    assert angles[1][2] == (pytest.approx((0.0, growth), rel=1e-12),)
+
+
+@pytest.mark.parametrize(("spin", "grows"), [(108.49884, True), (108.49886, False)])
+def test_a_sleeping_top_is_held_by_a_spin_above_its_threshold(spin: float, grows: bool) -> None:
+    """I3 w3 = 2 sqrt(I1 M g l), w3 = 108.49884792015075 rad/s with M = 1, l = 0.1, I1 = 0.012, I3 = 0.002."""
+    top = {
+        "mass": 1,
+        "moments": [0.002, 0.002, 0.002],
+        "at": [0, 0, 0.1],
+        "angular_velocity": [0, 0, spin],
+        "places": {"tip": [0, 0, -0.1]},
+    }
+    scene = {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"top": top},
+        "connections": [{"kind": "pin", "a": "top.tip", "b": [0, 0, 0]}],
+    }
+    answer = solve_scene(read(scene), outputs=("equilibria",))
+    assert answer.model.name == "steady spin"
+    assert answer.equilibria is not None
+    upright = next(one for one in answer.equilibria if one.positions["top"][2] > 0)
+    assert (max(growth for _, growth in upright.modes) > 1e-3) is grows
+
+
+def test_a_weak_torsion_spring_may_be_wound_up() -> None:
+    """k phi = m g l sin(phi), k small: windings of more than a turn are equilibria, too."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "bar": {"mass": 1, "inertia": 0.1, "at": [0, -1], "angle": {"degrees": -90}, "places": {"top": [-1, 0]}}
+        },
+        "connections": [
+            {"kind": "pin", "a": "bar.top", "b": [0, 0]},
+            {"kind": "torsion-spring", "a": "bar", "stiffness": 1},
+        ],
+    }
+    found = solve_scene(read(scene), outputs=("equilibria",)).equilibria
+    assert found is not None
+
+    def torque(x: float) -> float:
+        return x + 9.81 * math.sin(x)
+
+    grid = np.linspace(-10, 10.001, 20001)
+    exact = [brentq(torque, a, b, xtol=1e-14) for a, b in pairwise(grid) if torque(a) * torque(b) < 0]
+    # Angles are those of the direction; what is wound up differs in its frequency.
+    squares = sorted((1 + 9.81 * math.cos(x)) / 1.1 for x in exact)
+    assert len(found) == len(exact) == 5
+    own = sorted(w * w - g * g for one in found for w, g in one.modes)
+    assert own == pytest.approx(squares, rel=1e-9)
 
 
 def test_searches_that_would_take_minutes_and_gigabytes_are_refused() -> None:

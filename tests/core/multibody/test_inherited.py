@@ -131,11 +131,46 @@ def test_what_two_equal_numbers_let_move_has_no_inherited_error() -> None:
     assert "exactly what it is" in str(found.why)
 
 
-def test_forces_and_energies_have_none() -> None:
-    answer = solve_scene(read(DOUBLE), [1.0], ("energy-in-time",), input_uncertainty=1e-9)
+def test_the_pull_of_a_weight_changes_with_its_mass_and_with_gravity() -> None:
+    """At rest: m g, and the potential energy m g y; both to the share of both, and of the height."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": 2, "at": [0, -3]}},
+        "connections": [{"kind": "rod", "name": "r", "a": "bob", "b": [0, 0]}],
+    }
+    answer = solve_scene(read(scene), [0.0, 5.0], ("forces-in-time", "energy-in-time"), input_uncertainty=1e-6)
+    assert column(answer, "r.force").inherited == pytest.approx(2e-6 * 2 * 9.81, rel=2e-5)
+    assert column(answer, "energy.potential").inherited == pytest.approx(3e-6 * 2 * 9.81 * 3, rel=2e-5)
+    assert answer.trajectory is not None
+    assert answer.trajectory.accuracy.inherited == pytest.approx(3e-6, rel=2e-5)
+
+
+def test_what_is_summed_up_along_the_motion_has_none() -> None:
+    answer = solve_scene(read(DOUBLE), [1.0], ("work-in-time", "paths-in-time"), input_uncertainty=1e-9)
     assert answer.trajectory is not None
     assert answer.trajectory.accuracy.inherited is None
-    assert "places and rates" in str(answer.trajectory.accuracy.why)
+    assert "summed up" in str(answer.trajectory.accuracy.why)
+
+
+@pytest.mark.parametrize("seed", range(11))
+def test_no_number_of_a_random_scene_changes_a_force_or_an_energy_more(seed: int) -> None:
+    """One number of each description, changed by 4e-10 of itself and run anew as another scene."""
+    scene, share = any_scene(seed), 4e-10
+    asked = ("forces-in-time", "energy-in-time", "momenta-in-time")
+    paths = numbers_of({name: scene[name] for name in scene if name != "numbers"})
+    path = paths[int(np.random.default_rng(seed).integers(len(paths)))]
+    changed = copy.deepcopy(scene)
+    place: Any = changed
+    for step in path[:-1]:
+        place = place[step]
+    place[path[-1]] *= 1 + share
+    answer = solve_scene(read(scene), [0.4, 0.8], asked, 1e-6, input_uncertainty=share)
+    other = solve_scene(read(changed), [0.4, 0.8], asked, 1e-10)
+    assert answer.trajectory is not None
+    for name, one in answer.trajectory.columns.items():
+        two = column(other, name)
+        scale = float(np.abs(one.values).max())
+        assert apart(one, two) <= 1.001 * one.inherited + one.error + two.error + 1e-14 * scale
 
 
 def numbers_of(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:

@@ -1,0 +1,76 @@
+"""Results of submissions, for graders of learning platforms: from a service, or from a folder that needs no network.
+
+Copy this file beside the grader that imports it. It needs Python's standard library alone; the folder needs numpy.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path
+from typing import Any
+
+ENTRY = re.compile(r"\s*(\[.*\]|true\b|false\b|[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
+"""What a student types as a value, and the unit behind it."""
+
+
+def results(folder: Path, question: str, submissions: list[Any]) -> list[dict[str, Any]]:
+    """Return the results of submissions to a question, as POST /v1/assessments answers them.
+
+    Parameters
+    ----------
+    folder : Path
+        Where `bundle` is, as ``python -m clients.offline`` writes it; or, if the environment variable POLHODE_URL names
+        a service, where `questions` is, with the requests that such a bundle is written from.
+    question : str
+        Name of a file in either, without its ending.
+    """
+    service = os.environ.get("POLHODE_URL")
+    if service:
+        request = json.loads((folder / "questions" / f"{question}.json").read_text(encoding="utf-8"))
+        body = json.dumps(request | {"submissions": submissions}).encode()
+        sent = urllib.request.Request(f"{service}/v1/assessments", body, {"Content-Type": "application/json"})
+        with urllib.request.urlopen(sent, timeout=60) as answer:
+            found: list[dict[str, Any]] = json.load(answer)["results"]
+            return found
+    request = json.dumps({"question": question, "submissions": submissions})
+    command = [sys.executable, "-I", str(folder / "bundle")]
+    done = subprocess.run(command, input=request, capture_output=True, text=True, check=True, timeout=60)
+    found = json.loads(done.stdout)["results"]
+    return found
+
+
+def claim(entry: Any, unit: str | None = None) -> dict[str, Any]:
+    """Return the claim that an entry makes: a number, an array, ``4.9 s``, or anything else as a formula.
+
+    Parameters
+    ----------
+    entry : Any
+        What was typed, or a value.
+    unit : str, optional
+        Of what has none of its own.
+    """
+    if not isinstance(entry, str):
+        return {"value": entry} | ({"unit": unit} if unit else {})
+    found = ENTRY.fullmatch(entry)
+    # A formula may begin with a number: 2*pi.
+    if found is None or re.match(r"[-+*/^(]", found[2]):
+        return {"formula": entry.strip()}
+    try:
+        value = json.loads(found[1]) if found[1][0] in "[tf" else float(found[1])
+    except ValueError:
+        return {"formula": entry.strip()}
+    if isinstance(value, float) and not math.isfinite(value):
+        return {"formula": entry.strip()}
+    return {"value": value} | ({"unit": found[2].strip() or unit} if found[2].strip() or unit else {})
+
+
+def feedback(result: dict[str, Any]) -> str:
+    """Return what is shown of a result: the feedback, or what could not be read."""
+    faults = [f"{fault['detail']}" for fault in result["format_errors"]]
+    return " ".join(faults) or str(result["feedback"])

@@ -1,0 +1,599 @@
+"""Every operation of the service as a method.
+
+Written by clients/python/generate.py from docs/openapi.json; do not edit.
+"""
+
+# ruff: noqa: E501, D1
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, NamedTuple, Unpack
+
+from polhode_client import documents
+
+
+class Operation(NamedTuple):
+    """Method, path and summary."""
+
+    method: str
+    path: str
+    summary: str
+
+
+OPERATIONS: Mapping[str, Operation] = {
+    "mass_properties": Operation(
+        "POST",
+        "/v1/bodies/mass-properties",
+        "Mass, centre of mass, inertia, principal axes, symmetry and validity of a body",
+    ),
+    "rotation_trajectory": Operation(
+        "POST",
+        "/v1/rotation/trajectory",
+        "The free rotation of a body: angular velocity and, if requested, attitude at given times",
+    ),
+    "rotation_ensemble": Operation(
+        "POST", "/v1/rotation/ensemble", "Many free rotations of one body, from given starts or a sample of one energy"
+    ),
+    "precession": Operation(
+        "POST", "/v1/rotation/precession", "Rates, period, flip interval and cones of a free rotation"
+    ),
+    "stability": Operation(
+        "POST",
+        "/v1/rotation/stability",
+        "Every equilibrium of a free body: eigenvalues, kind, stability and the reason",
+    ),
+    "energy_ellipsoid": Operation(
+        "POST",
+        "/v1/rotation/energy-ellipsoid",
+        "The energy ellipsoid as a mesh or a grid, with polhodes and separatrix",
+    ),
+    "initial_states": Operation(
+        "POST", "/v1/rotation/initial-states", "Starts of one energy, drawn uniformly over the scaled sphere"
+    ),
+    "wobble": Operation(
+        "POST", "/v1/rotation/wobble", "The free wobble of a planet: asymmetry, ellipticity and period"
+    ),
+    "work_precision": Operation(
+        "POST", "/v1/work-precision", "What error each method buys for which work, on a motion of your own"
+    ),
+    "scene_unwinding_shafts": Operation(
+        "POST",
+        "/v1/scenes/unwinding-shafts",
+        "Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound",
+    ),
+    "scene_rod_in_hole": Operation(
+        "POST",
+        "/v1/scenes/rod-in-hole",
+        "A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall",
+    ),
+    "scene_chain_on_wedge": Operation(
+        "POST",
+        "/v1/scenes/chain-on-wedge",
+        "An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end",
+    ),
+    "list_scenes": Operation(
+        "GET", "/v1/scenes", "Every named scene and what it answers, and examples of described ones"
+    ),
+    "described_scene": Operation(
+        "POST",
+        "/v1/scenes",
+        "A scene of your own: bodies and what connects them, answered by the smallest model that suffices",
+    ),
+    "certified_rotation_trajectory": Operation(
+        "POST",
+        "/v1/certified/rotation/trajectory",
+        "The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven",
+    ),
+    "certified_precession": Operation(
+        "POST",
+        "/v1/certified/rotation/precession",
+        "Rates, period, flip interval and cones of a free rotation; every digit proven",
+    ),
+    "certified_stability": Operation(
+        "POST",
+        "/v1/certified/rotation/stability",
+        "Every equilibrium of a free body: eigenvalues, kind, stability and the reason; every digit proven",
+    ),
+    "certified_energy_ellipsoid": Operation(
+        "POST",
+        "/v1/certified/rotation/energy-ellipsoid",
+        "The energy ellipsoid as a mesh or a grid, with polhodes and separatrix; every digit proven",
+    ),
+    "certified_scene_unwinding_shafts": Operation(
+        "POST",
+        "/v1/certified/scenes/unwinding-shafts",
+        "Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven",
+    ),
+    "certified_scene_rod_in_hole": Operation(
+        "POST",
+        "/v1/certified/scenes/rod-in-hole",
+        "A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven",
+    ),
+    "certified_scene_chain_on_wedge": Operation(
+        "POST",
+        "/v1/certified/scenes/chain-on-wedge",
+        "An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven",
+    ),
+    "plan": Operation(
+        "POST", "/v1/plan", "Model, method, cost, error and refusals of any other question, which is not answered"
+    ),
+    "assess": Operation(
+        "POST",
+        "/v1/assessments",
+        "Submitted answers to any other question, graded: verdict, error, recognised mistakes",
+    ),
+    "vary": Operation(
+        "POST",
+        "/v1/variants",
+        "Well-conditioned variants of any other question from a seed, each with its figures, their error and condition",
+    ),
+    "list_errors": Operation("GET", "/v1/errors", "Every problem that can be answered"),
+    "list_methods": Operation("GET", "/v1/methods", "Every method that can be chosen, and when to use it"),
+    "list_mistakes": Operation("GET", "/v1/mistakes", "Every mistake that is recognised in submitted answers"),
+    "get_health": Operation("GET", "/healthz", "Whether the process answers"),
+    "get_readiness": Operation("GET", "/readyz", "Whether every kernel is compiled and the compute processes are up"),
+    "get_metrics": Operation("GET", "/metrics", "Counters in Prometheus' text format"),
+    "get_openapi": Operation("GET", "/openapi.json", "The OpenAPI document"),
+    "get_start_page": Operation("GET", "/", "The energy ellipsoid and the polhode of a body, drawn"),
+    "get_documentation": Operation("GET", "/docs", "This documentation, to read and to try"),
+    "get_page_script": Operation("GET", "/page/polhode.js", "Script of the start page"),
+    "get_documentation_script": Operation("GET", "/page/docs.js", "Script of the documentation"),
+    "get_page_style": Operation("GET", "/page/style.css", "Style of the pages"),
+}
+
+
+class Operations(ABC):
+    """Methods of the blocking client."""
+
+    @abstractmethod
+    def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None) -> Any:
+        """Return what an operation answers, in a media type or as its document."""
+
+    def mass_properties(self, **question: Unpack[documents.MassPropertiesRequest]) -> documents.MassPropertiesAnswer:
+        """Mass, centre of mass, inertia, principal axes, symmetry and validity of a body."""
+        found: documents.MassPropertiesAnswer = self._ask("mass_properties", question, None)
+        return found
+
+    def rotation_trajectory(self, **question: Unpack[documents.TrajectoryRequest]) -> documents.TrajectoryAnswer:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times."""
+        found: documents.TrajectoryAnswer = self._ask("rotation_trajectory", question, None)
+        return found
+
+    def rotation_ensemble(self, **question: Unpack[documents.EnsembleRequest]) -> documents.EnsembleAnswer:
+        """Many free rotations of one body, from given starts or a sample of one energy."""
+        found: documents.EnsembleAnswer = self._ask("rotation_ensemble", question, None)
+        return found
+
+    def precession(self, **question: Unpack[documents.PrecessionRequest]) -> documents.PrecessionAnswer:
+        """Rates, period, flip interval and cones of a free rotation."""
+        found: documents.PrecessionAnswer = self._ask("precession", question, None)
+        return found
+
+    def stability(self, **question: Unpack[documents.StabilityRequest]) -> documents.StabilityAnswer:
+        """Every equilibrium of a free body: eigenvalues, kind, stability and the reason."""
+        found: documents.StabilityAnswer = self._ask("stability", question, None)
+        return found
+
+    def energy_ellipsoid(self, **question: Unpack[documents.EllipsoidRequest]) -> documents.EllipsoidAnswer:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix."""
+        found: documents.EllipsoidAnswer = self._ask("energy_ellipsoid", question, None)
+        return found
+
+    def energy_ellipsoid_svg(self, **question: Unpack[documents.EllipsoidRequest]) -> str:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix, as a drawing."""
+        found: str = self._ask("energy_ellipsoid", question, "image/svg+xml")
+        return found
+
+    def initial_states(self, **question: Unpack[documents.StatesRequest]) -> documents.StatesAnswer:
+        """Starts of one energy, drawn uniformly over the scaled sphere."""
+        found: documents.StatesAnswer = self._ask("initial_states", question, None)
+        return found
+
+    def wobble(self, **question: Unpack[documents.WobbleRequest]) -> documents.WobbleAnswer:
+        """The free wobble of a planet: asymmetry, ellipticity and period."""
+        found: documents.WobbleAnswer = self._ask("wobble", question, None)
+        return found
+
+    def work_precision(self, **question: Unpack[documents.WorkPrecisionRequest]) -> documents.WorkPrecisionAnswer:
+        """What error each method buys for which work, on a motion of your own."""
+        found: documents.WorkPrecisionAnswer = self._ask("work_precision", question, None)
+        return found
+
+    def work_precision_svg(self, **question: Unpack[documents.WorkPrecisionRequest]) -> str:
+        """What error each method buys for which work, on a motion of your own, as a drawing."""
+        found: str = self._ask("work_precision", question, "image/svg+xml")
+        return found
+
+    def scene_unwinding_shafts(
+        self, **question: Unpack[documents.UnwindingShaftsRequest]
+    ) -> documents.UnwindingShaftsAnswer:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound."""
+        found: documents.UnwindingShaftsAnswer = self._ask("scene_unwinding_shafts", question, None)
+        return found
+
+    def scene_rod_in_hole(self, **question: Unpack[documents.RodInHoleRequest]) -> documents.RodInHoleAnswer:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall."""
+        found: documents.RodInHoleAnswer = self._ask("scene_rod_in_hole", question, None)
+        return found
+
+    def scene_chain_on_wedge(self, **question: Unpack[documents.ChainOnWedgeRequest]) -> documents.ChainOnWedgeAnswer:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
+        found: documents.ChainOnWedgeAnswer = self._ask("scene_chain_on_wedge", question, None)
+        return found
+
+    def list_scenes(self) -> documents.SceneCatalogue:
+        """Every named scene and what it answers, and examples of described ones."""
+        found: documents.SceneCatalogue = self._ask("list_scenes", None, None)
+        return found
+
+    def described_scene(self, **question: Unpack[documents.DescribedSceneRequest]) -> documents.DescribedSceneAnswer:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices."""
+        found: documents.DescribedSceneAnswer = self._ask("described_scene", question, None)
+        return found
+
+    def described_scene_svg(self, **question: Unpack[documents.DescribedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices, as a drawing."""
+        found: str = self._ask("described_scene", question, "image/svg+xml")
+        return found
+
+    def certified_rotation_trajectory(
+        self, **question: Unpack[documents.CertifiedTrajectoryRequest]
+    ) -> documents.CertifiedTrajectoryAnswer:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven."""
+        found: documents.CertifiedTrajectoryAnswer = self._ask("certified_rotation_trajectory", question, None)
+        return found
+
+    def certified_precession(
+        self, **question: Unpack[documents.CertifiedPrecessionRequest]
+    ) -> documents.CertifiedPrecessionAnswer:
+        """Rates, period, flip interval and cones of a free rotation; every digit proven."""
+        found: documents.CertifiedPrecessionAnswer = self._ask("certified_precession", question, None)
+        return found
+
+    def certified_stability(
+        self, **question: Unpack[documents.CertifiedStabilityRequest]
+    ) -> documents.CertifiedStabilityAnswer:
+        """Every equilibrium of a free body: eigenvalues, kind, stability and the reason; every digit proven."""
+        found: documents.CertifiedStabilityAnswer = self._ask("certified_stability", question, None)
+        return found
+
+    def certified_energy_ellipsoid(
+        self, **question: Unpack[documents.CertifiedEllipsoidRequest]
+    ) -> documents.CertifiedEllipsoidAnswer:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix; every digit proven."""
+        found: documents.CertifiedEllipsoidAnswer = self._ask("certified_energy_ellipsoid", question, None)
+        return found
+
+    def certified_energy_ellipsoid_svg(self, **question: Unpack[documents.CertifiedEllipsoidRequest]) -> str:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix; every digit proven, as a drawing."""
+        found: str = self._ask("certified_energy_ellipsoid", question, "image/svg+xml")
+        return found
+
+    def certified_scene_unwinding_shafts(
+        self, **question: Unpack[documents.CertifiedUnwindingShaftsRequest]
+    ) -> documents.CertifiedUnwindingShaftsAnswer:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven."""
+        found: documents.CertifiedUnwindingShaftsAnswer = self._ask("certified_scene_unwinding_shafts", question, None)
+        return found
+
+    def certified_scene_rod_in_hole(
+        self, **question: Unpack[documents.CertifiedRodInHoleRequest]
+    ) -> documents.CertifiedRodInHoleAnswer:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven."""
+        found: documents.CertifiedRodInHoleAnswer = self._ask("certified_scene_rod_in_hole", question, None)
+        return found
+
+    def certified_scene_chain_on_wedge(
+        self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
+    ) -> documents.CertifiedChainOnWedgeAnswer:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven."""
+        found: documents.CertifiedChainOnWedgeAnswer = self._ask("certified_scene_chain_on_wedge", question, None)
+        return found
+
+    def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
+        """Model, method, cost, error and refusals of any other question, which is not answered."""
+        found: documents.PlanAnswer = self._ask("plan", question, None)
+        return found
+
+    def assess(self, **question: Unpack[documents.AssessmentRequest]) -> documents.AssessmentAnswer:
+        """Submitted answers to any other question, graded: verdict, error, recognised mistakes."""
+        found: documents.AssessmentAnswer = self._ask("assess", question, None)
+        return found
+
+    def vary(self, **question: Unpack[documents.VariantsRequest]) -> documents.VariantsAnswer:
+        """Well-conditioned variants of any other question from a seed, each with its figures, their error and condition."""
+        found: documents.VariantsAnswer = self._ask("vary", question, None)
+        return found
+
+    def list_errors(self) -> documents.ProblemRegistry:
+        """Every problem that can be answered."""
+        found: documents.ProblemRegistry = self._ask("list_errors", None, None)
+        return found
+
+    def list_methods(self) -> documents.MethodCatalogue:
+        """Every method that can be chosen, and when to use it."""
+        found: documents.MethodCatalogue = self._ask("list_methods", None, None)
+        return found
+
+    def list_mistakes(self) -> documents.MistakeCatalogue:
+        """Every mistake that is recognised in submitted answers."""
+        found: documents.MistakeCatalogue = self._ask("list_mistakes", None, None)
+        return found
+
+    def get_health(self) -> documents.Status:
+        """Whether the process answers."""
+        found: documents.Status = self._ask("get_health", None, None)
+        return found
+
+    def get_readiness(self) -> documents.Status:
+        """Whether every kernel is compiled and the compute processes are up."""
+        found: documents.Status = self._ask("get_readiness", None, None)
+        return found
+
+    def get_metrics(self) -> str:
+        """Counters in Prometheus' text format."""
+        found: str = self._ask("get_metrics", None, "text/plain")
+        return found
+
+    def get_openapi(self) -> dict[str, Any]:
+        """The OpenAPI document."""
+        found: dict[str, Any] = self._ask("get_openapi", None, None)
+        return found
+
+    def get_start_page(self) -> str:
+        """The energy ellipsoid and the polhode of a body, drawn."""
+        found: str = self._ask("get_start_page", None, "text/html")
+        return found
+
+    def get_documentation(self) -> str:
+        """This documentation, to read and to try."""
+        found: str = self._ask("get_documentation", None, "text/html")
+        return found
+
+    def get_page_script(self) -> str:
+        """Script of the start page."""
+        found: str = self._ask("get_page_script", None, "text/javascript")
+        return found
+
+    def get_documentation_script(self) -> str:
+        """Script of the documentation."""
+        found: str = self._ask("get_documentation_script", None, "text/javascript")
+        return found
+
+    def get_page_style(self) -> str:
+        """Style of the pages."""
+        found: str = self._ask("get_page_style", None, "text/css")
+        return found
+
+
+class AsyncOperations(ABC):
+    """Methods of the asynchronous client."""
+
+    @abstractmethod
+    async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None) -> Any:
+        """Return what an operation answers, in a media type or as its document."""
+
+    async def mass_properties(
+        self, **question: Unpack[documents.MassPropertiesRequest]
+    ) -> documents.MassPropertiesAnswer:
+        """Mass, centre of mass, inertia, principal axes, symmetry and validity of a body."""
+        found: documents.MassPropertiesAnswer = await self._ask("mass_properties", question, None)
+        return found
+
+    async def rotation_trajectory(self, **question: Unpack[documents.TrajectoryRequest]) -> documents.TrajectoryAnswer:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times."""
+        found: documents.TrajectoryAnswer = await self._ask("rotation_trajectory", question, None)
+        return found
+
+    async def rotation_ensemble(self, **question: Unpack[documents.EnsembleRequest]) -> documents.EnsembleAnswer:
+        """Many free rotations of one body, from given starts or a sample of one energy."""
+        found: documents.EnsembleAnswer = await self._ask("rotation_ensemble", question, None)
+        return found
+
+    async def precession(self, **question: Unpack[documents.PrecessionRequest]) -> documents.PrecessionAnswer:
+        """Rates, period, flip interval and cones of a free rotation."""
+        found: documents.PrecessionAnswer = await self._ask("precession", question, None)
+        return found
+
+    async def stability(self, **question: Unpack[documents.StabilityRequest]) -> documents.StabilityAnswer:
+        """Every equilibrium of a free body: eigenvalues, kind, stability and the reason."""
+        found: documents.StabilityAnswer = await self._ask("stability", question, None)
+        return found
+
+    async def energy_ellipsoid(self, **question: Unpack[documents.EllipsoidRequest]) -> documents.EllipsoidAnswer:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix."""
+        found: documents.EllipsoidAnswer = await self._ask("energy_ellipsoid", question, None)
+        return found
+
+    async def energy_ellipsoid_svg(self, **question: Unpack[documents.EllipsoidRequest]) -> str:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix, as a drawing."""
+        found: str = await self._ask("energy_ellipsoid", question, "image/svg+xml")
+        return found
+
+    async def initial_states(self, **question: Unpack[documents.StatesRequest]) -> documents.StatesAnswer:
+        """Starts of one energy, drawn uniformly over the scaled sphere."""
+        found: documents.StatesAnswer = await self._ask("initial_states", question, None)
+        return found
+
+    async def wobble(self, **question: Unpack[documents.WobbleRequest]) -> documents.WobbleAnswer:
+        """The free wobble of a planet: asymmetry, ellipticity and period."""
+        found: documents.WobbleAnswer = await self._ask("wobble", question, None)
+        return found
+
+    async def work_precision(self, **question: Unpack[documents.WorkPrecisionRequest]) -> documents.WorkPrecisionAnswer:
+        """What error each method buys for which work, on a motion of your own."""
+        found: documents.WorkPrecisionAnswer = await self._ask("work_precision", question, None)
+        return found
+
+    async def work_precision_svg(self, **question: Unpack[documents.WorkPrecisionRequest]) -> str:
+        """What error each method buys for which work, on a motion of your own, as a drawing."""
+        found: str = await self._ask("work_precision", question, "image/svg+xml")
+        return found
+
+    async def scene_unwinding_shafts(
+        self, **question: Unpack[documents.UnwindingShaftsRequest]
+    ) -> documents.UnwindingShaftsAnswer:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound."""
+        found: documents.UnwindingShaftsAnswer = await self._ask("scene_unwinding_shafts", question, None)
+        return found
+
+    async def scene_rod_in_hole(self, **question: Unpack[documents.RodInHoleRequest]) -> documents.RodInHoleAnswer:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall."""
+        found: documents.RodInHoleAnswer = await self._ask("scene_rod_in_hole", question, None)
+        return found
+
+    async def scene_chain_on_wedge(
+        self, **question: Unpack[documents.ChainOnWedgeRequest]
+    ) -> documents.ChainOnWedgeAnswer:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
+        found: documents.ChainOnWedgeAnswer = await self._ask("scene_chain_on_wedge", question, None)
+        return found
+
+    async def list_scenes(self) -> documents.SceneCatalogue:
+        """Every named scene and what it answers, and examples of described ones."""
+        found: documents.SceneCatalogue = await self._ask("list_scenes", None, None)
+        return found
+
+    async def described_scene(
+        self, **question: Unpack[documents.DescribedSceneRequest]
+    ) -> documents.DescribedSceneAnswer:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices."""
+        found: documents.DescribedSceneAnswer = await self._ask("described_scene", question, None)
+        return found
+
+    async def described_scene_svg(self, **question: Unpack[documents.DescribedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices, as a drawing."""
+        found: str = await self._ask("described_scene", question, "image/svg+xml")
+        return found
+
+    async def certified_rotation_trajectory(
+        self, **question: Unpack[documents.CertifiedTrajectoryRequest]
+    ) -> documents.CertifiedTrajectoryAnswer:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven."""
+        found: documents.CertifiedTrajectoryAnswer = await self._ask("certified_rotation_trajectory", question, None)
+        return found
+
+    async def certified_precession(
+        self, **question: Unpack[documents.CertifiedPrecessionRequest]
+    ) -> documents.CertifiedPrecessionAnswer:
+        """Rates, period, flip interval and cones of a free rotation; every digit proven."""
+        found: documents.CertifiedPrecessionAnswer = await self._ask("certified_precession", question, None)
+        return found
+
+    async def certified_stability(
+        self, **question: Unpack[documents.CertifiedStabilityRequest]
+    ) -> documents.CertifiedStabilityAnswer:
+        """Every equilibrium of a free body: eigenvalues, kind, stability and the reason; every digit proven."""
+        found: documents.CertifiedStabilityAnswer = await self._ask("certified_stability", question, None)
+        return found
+
+    async def certified_energy_ellipsoid(
+        self, **question: Unpack[documents.CertifiedEllipsoidRequest]
+    ) -> documents.CertifiedEllipsoidAnswer:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix; every digit proven."""
+        found: documents.CertifiedEllipsoidAnswer = await self._ask("certified_energy_ellipsoid", question, None)
+        return found
+
+    async def certified_energy_ellipsoid_svg(self, **question: Unpack[documents.CertifiedEllipsoidRequest]) -> str:
+        """The energy ellipsoid as a mesh or a grid, with polhodes and separatrix; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_energy_ellipsoid", question, "image/svg+xml")
+        return found
+
+    async def certified_scene_unwinding_shafts(
+        self, **question: Unpack[documents.CertifiedUnwindingShaftsRequest]
+    ) -> documents.CertifiedUnwindingShaftsAnswer:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven."""
+        found: documents.CertifiedUnwindingShaftsAnswer = await self._ask(
+            "certified_scene_unwinding_shafts", question, None
+        )
+        return found
+
+    async def certified_scene_rod_in_hole(
+        self, **question: Unpack[documents.CertifiedRodInHoleRequest]
+    ) -> documents.CertifiedRodInHoleAnswer:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven."""
+        found: documents.CertifiedRodInHoleAnswer = await self._ask("certified_scene_rod_in_hole", question, None)
+        return found
+
+    async def certified_scene_chain_on_wedge(
+        self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
+    ) -> documents.CertifiedChainOnWedgeAnswer:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven."""
+        found: documents.CertifiedChainOnWedgeAnswer = await self._ask("certified_scene_chain_on_wedge", question, None)
+        return found
+
+    async def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
+        """Model, method, cost, error and refusals of any other question, which is not answered."""
+        found: documents.PlanAnswer = await self._ask("plan", question, None)
+        return found
+
+    async def assess(self, **question: Unpack[documents.AssessmentRequest]) -> documents.AssessmentAnswer:
+        """Submitted answers to any other question, graded: verdict, error, recognised mistakes."""
+        found: documents.AssessmentAnswer = await self._ask("assess", question, None)
+        return found
+
+    async def vary(self, **question: Unpack[documents.VariantsRequest]) -> documents.VariantsAnswer:
+        """Well-conditioned variants of any other question from a seed, each with its figures, their error and condition."""
+        found: documents.VariantsAnswer = await self._ask("vary", question, None)
+        return found
+
+    async def list_errors(self) -> documents.ProblemRegistry:
+        """Every problem that can be answered."""
+        found: documents.ProblemRegistry = await self._ask("list_errors", None, None)
+        return found
+
+    async def list_methods(self) -> documents.MethodCatalogue:
+        """Every method that can be chosen, and when to use it."""
+        found: documents.MethodCatalogue = await self._ask("list_methods", None, None)
+        return found
+
+    async def list_mistakes(self) -> documents.MistakeCatalogue:
+        """Every mistake that is recognised in submitted answers."""
+        found: documents.MistakeCatalogue = await self._ask("list_mistakes", None, None)
+        return found
+
+    async def get_health(self) -> documents.Status:
+        """Whether the process answers."""
+        found: documents.Status = await self._ask("get_health", None, None)
+        return found
+
+    async def get_readiness(self) -> documents.Status:
+        """Whether every kernel is compiled and the compute processes are up."""
+        found: documents.Status = await self._ask("get_readiness", None, None)
+        return found
+
+    async def get_metrics(self) -> str:
+        """Counters in Prometheus' text format."""
+        found: str = await self._ask("get_metrics", None, "text/plain")
+        return found
+
+    async def get_openapi(self) -> dict[str, Any]:
+        """The OpenAPI document."""
+        found: dict[str, Any] = await self._ask("get_openapi", None, None)
+        return found
+
+    async def get_start_page(self) -> str:
+        """The energy ellipsoid and the polhode of a body, drawn."""
+        found: str = await self._ask("get_start_page", None, "text/html")
+        return found
+
+    async def get_documentation(self) -> str:
+        """This documentation, to read and to try."""
+        found: str = await self._ask("get_documentation", None, "text/html")
+        return found
+
+    async def get_page_script(self) -> str:
+        """Script of the start page."""
+        found: str = await self._ask("get_page_script", None, "text/javascript")
+        return found
+
+    async def get_documentation_script(self) -> str:
+        """Script of the documentation."""
+        found: str = await self._ask("get_documentation_script", None, "text/javascript")
+        return found
+
+    async def get_page_style(self) -> str:
+        """Style of the pages."""
+        found: str = await self._ask("get_page_style", None, "text/css")
+        return found

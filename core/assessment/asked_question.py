@@ -1,0 +1,311 @@
+"""The question that is assessed: its answer, computed once, and the references that are read off it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cached_property
+from random import Random
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from core.assessment.compare import Floats, Form, Reference, distance
+from core.assessment.curves import dense
+from core.assessment.figures import equal_moments, form_of, inside, is_null, name_of, value_at
+from core.assessment.propagation import Propagation, changed, numbers_of, relative_uncertainties
+from core.errors import InvalidParameter, MechanicsError, Path
+from core.rotation.torque_free import TorqueFree
+from core.work import spend
+
+ASKING = 60
+"""Work (`core.work`) of asking a question again, beside what the question counts itself."""
+
+SENSITIVE: Mapping[str, tuple[str, float]] = {"ellipticity": ("a/c - 1", 1.0)}
+"""Figures near a number that says nothing: by their names, the figure in which errors show, and that number."""
+
+TRAJECTORY = "rotation/trajectory"
+"""The question of which all figures but the columns are the same whatever times are asked for."""
+
+MEASURED = "measured"
+"""What a precession is answered with beside its figures if a measurement is requested."""
+
+COLUMNS = ("angular_velocity", "attitude")
+
+ULP = 2.0**-52
+
+CONDITIONING, ROUNDING = 8.0, 2e-15
+"""Numerical error of figures whose answer states none: so many times the effect of half a unit in the last place of
+every input, and this share of the figure (docs/accuracy.md)."""
+
+ALONG = 1e-9
+"""By how much the component of a unit vector along a body axis may miss 1."""
+
+MOST_CERTIFIED = 20
+"""Times of a request that is answered in proven digits, too."""
+
+CERTIFIED = "ball arithmetic"
+BETWEEN_POINTS = "measured (curve through its points)"
+ESTIMATE = "estimate (conditioning)"
+OF_METHOD = "estimate (rounding of the method that the question names)"
+
+VARIATIONS = 20
+"""Changed questions at which a formula has to agree, beside the question itself."""
+
+
+class Source(Protocol):
+    """Where a question is asked, and what is declared of its fields and its answer's."""
+
+    @property
+    def subject(self) -> str:
+        """Last steps of the endpoint's path: ``"rotation/precession"``."""
+
+    @property
+    def outputs(self) -> frozenset[str]:
+        """What a request may name as its outputs."""
+
+    def answer(self, request: str) -> Mapping[str, Any]:
+        """Return the answer to a request, given as JSON; raises `MechanicsError` for what is refused."""
+
+    def certified(self, request: Any) -> Mapping[str, Any] | None:
+        """Return the answer in proven decimal strings, None where there is none."""
+
+    def takes(self, field: str) -> bool:
+        """Return whether a request may have a field."""
+
+    def unit_of_answer(self, path: Path) -> str | None:
+        """Return the declared unit of a figure."""
+
+    def unit_of_request(self, path: Path) -> str | None:
+        """Return the declared unit of a number of the request."""
+
+    def scales(self, answer: Mapping[str, Any], request: Any) -> Mapping[str, float]:
+        """Return, by unit, the largest magnitude of an answer's numbers; of the request's where those are 0."""
+
+    def rotation(self, request: Any) -> TorqueFree | None:
+        """Return the free rotation that a request is about, None for requests about anything else."""
+
+
+class Variation(NamedTuple):
+    """Parameters by name, and the figure that belongs to them."""
+
+    parameters: Mapping[str, float]
+    figure: float
+
+
+class AssessedQuestion:
+    """A question, which is asked as often as references, uncertainties and mistakes need.
+
+    Parameters
+    ----------
+    source : Source
+    request : Any
+        As it was sent.
+    uncertainty : float, mapping of path to float, or None
+        Relative, of the numbers of the request.
+    """
+
+    def __init__(self, source: Source, request: Any, uncertainty: float | Mapping[Path, float] | None) -> None:
+        if isinstance(uncertainty, float) and source.takes("input_uncertainty"):
+            request = {"input_uncertainty": uncertainty, **request}
+        self._source, self.request, self._uncertainty = source, request, uncertainty
+        self._answers: dict[str, Mapping[str, Any] | None] = {}
+        self._references: dict[Path, Reference | None] = {}
+
+    @property
+    def subject(self) -> str:
+        """Last steps of the endpoint's path."""
+        return self._source.subject
+
+    @cached_property
+    def answer(self) -> Mapping[str, Any]:
+        """The answer; raises what the question is refused with."""
+        return self._asked(self.request)
+
+    def evaluate(self, request: Any) -> Callable[[Path], Any]:
+        """Ask a changed question; the result finds the value at a path of its answer, None where there is none."""
+
+        def find(path: Path) -> Any:
+            answer = self._ask(request, path[0])
+            return None if answer is None else value_at(answer, path)
+
+        return find
+
+    def reference(self, path: Path) -> Reference | None:
+        """Return the reference at a path of the answer, None if nothing that can be compared stands there."""
+        if path not in self._references:
+            self._references[path] = self._made(path)
+        return self._references[path]
+
+    def samples(self, path: Path, times: Floats) -> Reference | None:
+        """Return a column of samples at other times, None if the path leads to no column.
+
+        Raises
+        ------
+        MechanicsError
+            If the question is refused with these times.
+        """
+        request = self.request | {"times": times.tolist()}
+        if path[0] in self._source.outputs:
+            request["outputs"] = [path[0]]
+        answer = self._asked(request)
+        value = value_at(answer, path)
+        if not isinstance(value, np.ndarray) or len(value) != len(times):
+            return None
+        return self._stated(path, value, "samples", answer)
+
+    def parameters(self, names: Mapping[str, Path] | None) -> dict[str, tuple[Path, float, str]]:
+        """Return path, value and unit of the numbers of the request that formulas may name.
+
+        Parameters
+        ----------
+        names : mapping of str to path, or None
+            By default a number is named by its field, one of several with its number: gravity, masses_1.
+        """
+        numbers = dict(numbers_of(self.request, zeros=True))
+        chosen = names if names is not None else {name_of(path): path for path in numbers}
+        return {name: (path, numbers[path], self._source.unit_of_request(path) or "1") for name, path in chosen.items()}
+
+    def variations(self, path: Path, parameters: Mapping[str, tuple[Path, float, str]]) -> list[Variation]:
+        """Return the question's parameters and the figure at a path, and those of seeded variations of it."""
+        chance, found = Random(0), list[Variation]()
+        for k in range(1 + 3 * VARIATIONS):
+            # Numbers that have to be equal are, in the last third.
+            shares: dict[tuple[Path, float], float] = {}
+            values = {}
+            for name, (place, value, _) in parameters.items():
+                group = (place[:-1], value) if k > 2 * VARIATIONS else (place, value)
+                share = shares.setdefault(group, chance.uniform(0.75, 1.25))
+                values[name] = value if k == 0 else value * share
+            request = changed(self.request, {parameters[name][0]: value for name, value in values.items()})
+            figure = self.evaluate(request)(path)
+            if type(figure) is float:
+                found.append(Variation(values, figure))
+            if len(found) > VARIATIONS:
+                break
+        return found
+
+    def rotation(self) -> TorqueFree | None:
+        """Return the free rotation that the question is about, None for questions about anything else."""
+        return self._source.rotation(self.request) if self.subject == TRAJECTORY else None
+
+    def _asked(self, request: Any) -> Mapping[str, Any]:
+        spend(ASKING)
+        return self._source.answer(json.dumps(request))
+
+    def _ask(self, request: Any, output: str | int) -> Mapping[str, Any] | None:
+        changes: dict[str, Any] = {}
+        if output in self._source.outputs and "outputs" not in request:
+            changes["outputs"] = [output]
+        if self.subject == TRAJECTORY and output not in (*COLUMNS, "time"):
+            changes["times"] = [0.0]
+        if request.get("measure") is not None and output != MEASURED:
+            # No other figure depends on the measurement, which runs an integrator.
+            changes["measure"] = None
+        document = json.dumps(request | changes)
+        if document not in self._answers:
+            spend(ASKING)
+            try:
+                self._answers[document] = self._source.answer(document)
+            except MechanicsError:
+                self._answers[document] = None
+        return self._answers[document]
+
+    @cached_property
+    def _propagation(self) -> Propagation:
+        return Propagation(self.request, relative_uncertainties(self.request, self._uncertainty), self.evaluate)
+
+    @cached_property
+    def _in_half_ulps(self) -> Propagation:
+        return Propagation(self.request, relative_uncertainties(self.request, None), self.evaluate)
+
+    @cached_property
+    def _scales(self) -> Mapping[str, float]:
+        return self._source.scales(self.answer, self.request)
+
+    def _made(self, path: Path) -> Reference | None:
+        value = value_at(self.answer, path)
+        if value is None:
+            return Reference(None, form="none") if is_null(self.answer, path) else None
+        return self._stated(path, value, form_of(path, value, self._unit(path)), self.answer)
+
+    def _unit(self, path: Path) -> str:
+        beside = value_at(self.answer, (*path[:-1], "unit")) if len(path) > 1 else None
+        return beside if isinstance(beside, str) else self._source.unit_of_answer(path) or "1"
+
+    def _stated(self, path: Path, value: Any, form: Form, answer: Mapping[str, Any]) -> Reference:
+        if form == "choice":
+            return Reference(value, form=form)
+        unit = self._unit(path)
+        size = float(np.abs(value).max(initial=0.0))
+        # Of a figure that is 0 the scale is that of others in its unit.
+        scale = 1.0 if form in ("direction", "axes", "attitude") else size or self._scales.get(unit) or 1.0
+        sensitive, offset = SENSITIVE.get(str(path[-1]), (None, 0.0))
+        groups = equal_moments(value_at(answer, (*path[:-1], "moments"))) if form == "axes" else ()
+        bare = Reference(value, unit, form, scale, groups=groups, sensitive=sensitive, offset=offset)
+        if path[0] in ("time", "times"):
+            return bare
+        accuracy: Any = answer.get("accuracy")
+        if self.subject == TRAJECTORY and path[0] in COLUMNS:
+            return self._sampled(bare, path[0], size, accuracy)
+        axis = _body_axis(answer, path)
+        inherited, bare = self._propagation.of(path, bare), replace(bare, body_axis=axis)
+        if accuracy is not None and self.subject != TRAJECTORY:
+            how = inside(accuracy, "how")
+            return replace(bare, error=inside(accuracy, "error") * size, how=how, inherited=inherited)
+        if form == "curve":
+            return replace(bare, error=dense(value)[1], how=BETWEEN_POINTS, inherited=inherited)
+        proven = self._proven(path, bare)
+        if proven is not None:
+            return replace(bare, error=proven, how=CERTIFIED, inherited=inherited)
+        half = inherited if self._uncertainty is None else self._in_half_ulps.of(path, bare)
+        return replace(bare, error=CONDITIONING * (half or 0.0) + ROUNDING * size, how=ESTIMATE, inherited=inherited)
+
+    @cached_property
+    def _certified(self) -> Mapping[str, Any] | None:
+        request = self.request | ({"times": [0.0]} if self.subject == TRAJECTORY else {})
+        times = request.get("times", ())
+        if (times["count"] if isinstance(times, dict) else len(times)) > MOST_CERTIFIED:
+            return None
+        return self._source.certified(request)
+
+    def _proven(self, path: Path, bare: Reference) -> float | None:
+        """Return how far the figure is from its proven digits, with what comparing them rounds; None without any."""
+        found = None if self._certified is None else value_at(self._certified, path)
+        if found is None:
+            return None
+        number = bare.form in ("number", "angle")
+        size = 1.0 if bare.form in ("direction", "axes", "attitude") else bare.magnitude
+        try:
+            return distance(bare, float(found) if number else found) + (ULP if number else ROUNDING) * size
+        except (InvalidParameter, ValueError):
+            return None
+
+    def _sampled(self, bare: Reference, column: str | int, size: float, accuracy: Any) -> Reference:
+        """Return a column of a trajectory, or a part of one, with the error that the answer states."""
+        turned = column == "attitude"
+        norm = 1.0 if turned else accuracy["largest_norm"] or size
+        names = ("attitude_error", "attitude_inherited") if turned else ("error", "inherited")
+        error, inherited = (accuracy[name] for name in names)
+        inherited = None if inherited is None else inherited * norm
+        method = self.request.get("method")
+        if isinstance(method, dict) and method.get("kind") != "closed-form":
+            # What is right is then what the method gives, whatever its error.
+            return replace(bare, error=ROUNDING * norm, how=OF_METHOD, inherited=inherited)
+        scale = max(norm, bare.scale) if bare.form == "samples" else bare.scale
+        return replace(bare, scale=scale, error=error * norm, how=accuracy["how"], inherited=inherited)
+
+
+def _body_axis(answer: Mapping[str, Any], path: Path) -> int | None:
+    """Return which body axis a figure belongs to, 1, 2 or 3; None if it belongs to none of them."""
+    last = path[-1]
+    if isinstance(last, int) and len(path) > 1 and path[-2] == "moments":
+        axes = value_at(answer, (*path[:-2], "axes"))
+        axis = None if axes is None else axes[:, last]
+    else:
+        axis = value_at(answer, (*path[:-1], "axis"))
+    if not isinstance(axis, np.ndarray) or axis.shape != (3,):
+        return None
+    along = int(np.abs(axis).argmax())
+    return along + 1 if abs(axis[along]) > 1.0 - ALONG else None

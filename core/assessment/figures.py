@@ -1,0 +1,116 @@
+"""Figures of an answer: found by JSON pointer, and the form by which each is compared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass
+from typing import Any
+
+import numpy as np
+
+from core.assessment.compare import Form
+from core.errors import InvalidParameter, Path
+
+EQUAL = 1e-9
+"""Difference of moments, of the largest, up to which they count as equal."""
+
+
+def steps_of(pointer: str) -> Path:
+    """Return the steps of an RFC 6901 JSON pointer into an answer.
+
+    Raises
+    ------
+    InvalidParameter
+        If it is none, or leads to the whole document.
+    """
+    if not pointer.startswith("/"):
+        raise InvalidParameter((), "be a JSON pointer into the answer", remedy='such as "/flip_interval"')
+    plain = (step.replace("~1", "/").replace("~0", "~") for step in pointer[1:].split("/"))
+    return tuple(int(step) if step.isascii() and step.isdigit() and len(step) < 10 else step for step in plain)
+
+
+def value_at(answer: Any, path: Path) -> Any:
+    """Return the figure at a path of an answer: a number, a string, true or false, an array of finite numbers, or None.
+
+    Objects, and arrays that hold anything else, are no figures, and None too.
+    """
+    found = answer
+    for step in path:
+        found = inside(found, step)
+        if found is None:
+            return None
+    if isinstance(found, (np.generic, bool, int, float, str)):
+        plain = found.item() if isinstance(found, np.generic) else found
+        return float(plain) if type(plain) is int else plain
+    if isinstance(found, (list, tuple, np.ndarray)):
+        try:
+            array = np.array(found, dtype=np.float64)
+        except (TypeError, ValueError):
+            return None
+        return array if array.size and array.ndim <= 2 and np.isfinite(array).all() else None
+    return None
+
+
+def inside(found: Any, step: str | int) -> Any:
+    """Return what stands inside of an object or an array, None where nothing does."""
+    if isinstance(found, Mapping):
+        return found.get(str(step))
+    if isinstance(step, str):
+        named = is_dataclass(found) or hasattr(found, "_fields")
+        return getattr(found, step, None) if named and not step.startswith("_") else None
+    if isinstance(found, (list, tuple, np.ndarray)) and not hasattr(found, "_fields"):
+        return found[step] if step < len(found) else None
+    return None
+
+
+def is_null(answer: Any, path: Path) -> bool:
+    """Return whether the field at a path exists and is null."""
+    outer = answer
+    for step in path[:-1]:
+        outer = inside(outer, step)
+    last = path[-1]
+    if isinstance(outer, Mapping):
+        return last in outer and outer[last] is None
+    if isinstance(last, str):
+        return not last.startswith("_") and getattr(outer, last, 0) is None
+    return isinstance(outer, (list, tuple)) and last < len(outer) and outer[last] is None
+
+
+def form_of(path: Path, value: Any, unit: str) -> Form:
+    """Return the form by which the figure at a path is compared."""
+    if isinstance(value, (bool, str)):
+        return "choice"
+    if isinstance(value, float):
+        return "angle" if unit == "rad" else "number"
+    name = next((step for step in reversed(path) if isinstance(step, str)), "")
+    shaped: Mapping[tuple[str, tuple[int, ...]], Form] = {
+        ("attitude", (4,)): "attitude",
+        ("axis", (3,)): "direction",
+        ("axes", (3, 3)): "axes",
+    }
+    if (name, value.shape) in shaped:
+        return shaped[name, value.shape]
+    if name == "points" and value.ndim == 2 and np.array_equal(value[0], value[-1]) and len(value) > 1:
+        return "curve"
+    if name == "eigenvalues":
+        return "set"
+    if name in ("angular_velocity", "attitude") and value.ndim == 2:
+        return "samples"
+    return "vector" if value.ndim == 1 else "matrix"
+
+
+def name_of(path: Path) -> str:
+    """Return the default name of a parameter: its field, and its place among several, counted from 1."""
+    fields = [step for step in path if isinstance(step, str)]
+    return "_".join([fields[-1], *(str(step + 1) for step in path if isinstance(step, int))])
+
+
+def equal_moments(moments: Sequence[float] | None) -> tuple[tuple[int, ...], ...]:
+    """Return principal axes in groups of equal moments; neighbours, as moments ascend."""
+    groups: list[list[int]] = []
+    for k, moment in enumerate(() if moments is None else moments):
+        if moments is not None and k and abs(moment - moments[k - 1]) <= EQUAL * abs(moments[-1]):
+            groups[-1].append(k)
+        else:
+            groups.append([k])
+    return tuple(map(tuple, groups))

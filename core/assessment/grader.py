@@ -1,0 +1,337 @@
+"""From submissions to verdicts: each claim is read, converted, compared, and its mistakes are recognised."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from core.assessment.claims import MOST_CLAIMS, Claim
+from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
+from core.assessment.comparisons import Comparison
+from core.assessment.figures import steps_of
+from core.assessment.formulas import Formula
+from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
+from core.assessment.mistakes import Figure, Mistake, WrongValues
+from core.assessment.units import factor
+from core.errors import InvalidParameter, MechanicsError, Path
+from core.work import spend
+
+if TYPE_CHECKING:
+    from core.assessment.method_search import Consistent, MethodSearch
+    from core.assessment.samples import ExactSamples, SampleErrors
+    from core.rotation.torque_free import TorqueFree
+
+CLAIM = 4
+"""Work (`core.work`) of judging a claim."""
+
+MOST_IDENTIFIED = 100
+"""Samples in one request of which the method is looked for: that takes some 10 ms for each."""
+
+MOST_SOLVED = 3
+"""Sets of times in one request at which solvers that choose their steps are looked for: up to a second for each."""
+
+LONGEST_POINTER = 200
+
+UNITLESS = ("1", "rad")
+"""Units that may be left out."""
+
+FEEDBACK: Mapping[str, str] = {
+    "correct": "Correct.",
+    "incorrect": "Not correct.",
+    "missing-unit": "The unit is missing.",
+    "wrong-unit": "The unit does not measure this quantity.",
+    "not-gradable": "This cannot be judged: the tolerance is finer than the reference is known.",
+    "unreadable": "This cannot be read.",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedClaim:
+    """What becomes of one claim.
+
+    Attributes
+    ----------
+    pointer : str
+        Of the figure in the answer.
+    judgement : Judgement
+    reference : Reference
+    mistakes : tuple of Mistake
+        By which the value comes out.
+    feedback : str
+        For who submitted it.
+    samples : tuple of (SampleErrors, Consistent or None), or None
+        Of samples of the angular velocity that are not right.
+    """
+
+    pointer: str
+    judgement: Judgement
+    reference: Reference
+    mistakes: tuple[Mistake, ...]
+    feedback: str
+    samples: tuple[SampleErrors, Consistent | None] | None
+
+    @property
+    def score(self) -> float | None:
+        """Share from 0 to 1, None if the claim cannot be judged."""
+        correct = self.judgement.correct
+        if correct is None:
+            return None
+        return 1.0 if correct else max((one.credit for one in self.mistakes), default=0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedSubmission:
+    """What becomes of one submission.
+
+    Attributes
+    ----------
+    claims : list of JudgedClaim
+        That can be read.
+    faults : list of InvalidParameter
+        What cannot be read, with paths from the submission.
+    """
+
+    claims: list[JudgedClaim]
+    faults: list[InvalidParameter]
+
+
+class Question(Protocol):
+    """What is graded against: a question that is asked (`AssessedQuestion`), or the answer key of one."""
+
+    @property
+    def subject(self) -> str:
+        """Last steps of the endpoint's path."""
+
+    @property
+    def request(self) -> Any:
+        """As it was sent."""
+
+    def evaluate(self, request: Any) -> Callable[[Path], Any]:
+        """Ask a changed question; the result finds the value at a path of its answer, None where there is none."""
+
+    def reference(self, path: Path) -> Reference | None:
+        """Return the reference at a path of the answer, None if nothing that can be compared stands there."""
+
+    def samples(self, path: Path, times: Floats) -> Reference | None:
+        """Return a column of samples at other times, None if the path leads to no column."""
+
+    def parameters(self, names: Mapping[str, Path] | None) -> Mapping[str, tuple[Path, float, str]]:
+        """Return path, value and unit of the numbers of the request that formulas may name."""
+
+    def variations(self, path: Path, parameters: Mapping[str, tuple[Path, float, str]]) -> Sequence[Varied]:
+        """Return the question's parameters and the figure at a path, and those of variations of it."""
+
+    def rotation(self) -> TorqueFree | None:
+        """Return the free rotation that the question is about; None where its samples cannot be analysed."""
+
+
+class Grader:
+    """Grades submissions to one question.
+
+    Parameters
+    ----------
+    asked : Question
+    comparison : Comparison or None
+        Of every figure that has none of its own.
+    comparisons : mapping of str to Comparison
+        By pointer.
+    reveal : bool
+        Whether results may say anything from which the reference could be found.
+    catalogue : sequence of Mistake
+    names : mapping of str to path, or None
+        Of the numbers of the request, in formulas.
+
+    Attributes
+    ----------
+    references : dict of str to Reference
+        By pointer, those that were needed, but for samples at times of their own.
+    looked_for : int
+        Samples whose method was to be looked for.
+    """
+
+    def __init__(
+        self,
+        asked: Question,
+        comparison: Comparison | None,
+        comparisons: Mapping[str, Comparison],
+        reveal: bool,
+        catalogue: Sequence[Mistake],
+        names: Mapping[str, Path] | None,
+    ) -> None:
+        self._asked, self._comparison, self._comparisons = asked, comparison, comparisons
+        self._reveal, self._names = reveal, names
+        # Who knows how a value is wrong can often compute the right one from it.
+        self._catalogue = tuple(catalogue) if reveal else ()
+        self.references: dict[str, Reference] = {}
+        self._samples: dict[tuple[str, bytes], Reference] = {}
+        self._columns: dict[int, tuple[ExactSamples, MethodSearch]] = {}
+        self._wrong: dict[int, WrongValues] = {}
+        self._variations: dict[Path, Sequence[Varied]] = {}
+        self.looked_for = 0
+
+    def judged(self, submission: Any) -> JudgedSubmission:
+        """Return what becomes of a submission; nothing that it holds is refused with an error."""
+        if not isinstance(submission, dict) or not 0 < len(submission) <= MOST_CLAIMS:
+            remedy = 'such as {"/period": {"value": 6.28, "unit": "s"}}'
+            rule = f"be an object of 1 to {MOST_CLAIMS} claims by JSON pointer"
+            return JudgedSubmission([], [InvalidParameter((), rule, remedy=remedy)])
+        claims, faults = [], []
+        for pointer, entry in submission.items():
+            spend(CLAIM)
+            try:
+                claims.append(self._claim(pointer, Claim.read(entry)))
+            except InvalidParameter as fault:
+                faults.append(fault.inside(pointer) if len(pointer) <= LONGEST_POINTER else fault)
+        return JudgedSubmission(claims, faults)
+
+    def _claim(self, pointer: str, claim: Claim) -> JudgedClaim:
+        path = steps_of(pointer)
+        reference = self._reference(pointer, path, claim.times)
+        if claim.formula is not None:
+            return self._formula(pointer, path, reference, claim.formula)
+        try:
+            value = _converted(claim, reference)
+        except InvalidParameter as fault:
+            if fault.path == ("value",):
+                raise
+            return self._result(pointer, Judgement("wrong-unit"), reference, why=f"The unit must {fault.rule}.")
+        if value is None and claim.value is not None:
+            return self._result(pointer, Judgement("missing-unit"), reference)
+        comparison = self._comparisons.get(pointer, self._comparison)
+        try:
+            judgement = compare(reference, value, comparison)
+        except InvalidParameter as fault:
+            raise fault.inside("value") from None
+        if judgement.verdict != "incorrect" or value is None or reference.form == "none":
+            return self._result(pointer, judgement, reference)
+        mistakes = self._wrong_values(path, reference, claim.times).matching(value, comparison)
+        if claim.times is None or path != ("angular_velocity",):
+            return self._result(pointer, judgement, reference, mistakes)
+        samples = self._samples_judged(claim.times, value, reference, judgement, identify=not mistakes)
+        why = [one.feedback for one in mistakes]
+        if any(one.tag == "permuted-axes" for one in mistakes):
+            why.append(exchanged(value, reference.value))
+        if samples is not None and not mistakes:
+            errors, found = samples
+            why = [errors.sentence] if errors.sentence else []
+            why += [] if found is None else [found.sentence]
+        return self._result(pointer, judgement, reference, mistakes, " ".join(why), samples)
+
+    def _formula(self, pointer: str, path: Path, reference: Reference, text: str) -> JudgedClaim:
+        if reference.form not in ("number", "angle"):
+            raise InvalidParameter("formula", "be left out: the figure is no number")
+        try:
+            formula = Formula.read(text, self._parameters)
+        except InvalidParameter as fault:
+            raise fault.inside("formula") from None
+        if path not in self._variations:
+            self._variations[path] = self._asked.variations(path, self._parameters)
+        judged = judge_formula(formula, self._variations[path], self._units, reference)
+        mistakes: tuple[Mistake, ...] = ()
+        if judged.value is not None and judged.judgement.verdict == "incorrect":
+            mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
+        return self._result(
+            pointer, judged.judgement, reference, mistakes, "" if mistakes or not self._reveal else judged.why
+        )
+
+    @cached_property
+    def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:
+        return self._asked.parameters(self._names)
+
+    @cached_property
+    def _units(self) -> Mapping[str, str]:
+        return {name: unit for name, (_, _, unit) in self._parameters.items()}
+
+    def _reference(self, pointer: str, path: Path, times: Floats | None) -> Reference:
+        if times is not None:
+            key = pointer, times.tobytes()
+            if key not in self._samples:
+                self._samples[key] = self._column(path, times)
+            return self._samples[key]
+        if pointer not in self.references:
+            reference = self._asked.reference(path)
+            if reference is None:
+                raise InvalidParameter(
+                    (), "lead to a figure of the answer: a number, an array, a string, true or false"
+                )
+            self.references[pointer] = reference
+        return self.references[pointer]
+
+    def _column(self, path: Path, times: Floats) -> Reference:
+        try:
+            column = self._asked.samples(path, times)
+        except MechanicsError as refused:
+            # When a motion begins or ends may be what is to be found.
+            why = f": {refused.detail}" if self._reveal else ""
+            raise InvalidParameter("times", f"be times that can be answered{why}") from None
+        if column is None:
+            raise InvalidParameter("times", "be left out, or be times of the motion: there are no such samples")
+        return column
+
+    def _samples_judged(
+        self, times: Floats, rows: Floats, reference: Reference, judgement: Judgement, *, identify: bool
+    ) -> tuple[SampleErrors, Consistent | None] | None:
+        system = self._asked.rotation() if self._reveal else None
+        if system is None:
+            return None
+        # Not at the top: with an answer key, nothing is imported that has to be compiled.
+        from core.assessment.method_search import MethodSearch
+        from core.assessment.samples import ExactSamples
+
+        if id(reference) not in self._columns:
+            column = (system, times, reference.value)
+            search = MethodSearch(*column, solvers=len(self._columns) < MOST_SOLVED)
+            self._columns[id(reference)] = ExactSamples(*column), search
+        exact, search = self._columns[id(reference)]
+        self.looked_for += identify
+        looked = identify and self.looked_for <= MOST_IDENTIFIED
+        return exact.errors(rows, judgement.tolerance or 0.0), search.consistent(rows) if looked else None
+
+    def _wrong_values(self, path: Path, reference: Reference, times: Floats | None) -> WrongValues:
+        key = id(reference)
+        if key not in self._wrong:
+            # The figure of samples is a column at the times of the claim.
+            request = self._asked.request | ({} if times is None else {"times": times.tolist()})
+            figure = Figure(self._asked.subject, request, path, reference, self._asked.evaluate)
+            self._wrong[key] = WrongValues(figure, self._catalogue)
+        return self._wrong[key]
+
+    def _result(
+        self,
+        pointer: str,
+        judgement: Judgement,
+        reference: Reference,
+        mistakes: tuple[Mistake, ...] = (),
+        why: str = "",
+        samples: tuple[SampleErrors, Consistent | None] | None = None,
+    ) -> JudgedClaim:
+        feedback = why or " ".join(one.feedback for one in mistakes) or FEEDBACK[judgement.verdict]
+        if reference.sensitive is not None and judgement.verdict != "correct":
+            feedback += f" Compare {reference.sensitive}: the figure itself is so near a constant that it shows little."
+        return JudgedClaim(pointer, judgement, reference, mistakes, feedback, samples)
+
+
+def credited(catalogue: Sequence[Mistake], credits: Mapping[str, float]) -> tuple[Mistake, ...]:
+    """Return the catalogue with other credits for some tags."""
+    return tuple(replace(entry, credit=credits.get(entry.tag, entry.credit)) for entry in catalogue)
+
+
+def _converted(claim: Claim, reference: Reference) -> Any:
+    """Return a claim's value in the unit of the reference, None where the unit is missing."""
+    value = claim.value
+    if reference.form in ("choice", "none") or not isinstance(value, (float, np.ndarray)):
+        return value
+    if claim.unit is None:
+        return value if reference.unit in UNITLESS else None
+    times = factor(claim.unit, reference.unit)
+    if times == 1.0:
+        return value
+    with np.errstate(over="ignore"):
+        found = value * times
+    if not np.isfinite(found).all():
+        raise InvalidParameter("value", "be within the range of doubles in SI units")
+    return found

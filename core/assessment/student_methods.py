@@ -1,0 +1,181 @@
+"""Fixed-step methods that students write and the service does not offer: they are only recognised.
+
+References
+----------
+E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, 2nd ed., Springer 2006, section I.1.2 (symplectic
+Euler); E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993, section
+II.1 (the methods of Runge and of Heun).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from core.compiled import kernel
+from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
+from core.systems.methods.method import Family
+from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+
+
+@kernel(march_by(VECTOR_FIELD))
+def _march_in_turn(
+    field: Any,
+    project: Any,
+    begin: Floats,
+    step: Floats,
+    count: Integers,
+    state: Floats,
+    parameters: Floats,
+    samples: Floats,
+    tally: Integers,
+) -> int:
+    slope, grid = np.empty_like(state), np.empty_like(state)
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            h = step[i, run]
+            for j in range(count[i, run]):
+                for k in range(state.size):
+                    field(begin[i, run] + j * h, state, parameters, slope)
+                    state[k] += h * slope[k]
+        if not keep(state, i, samples):
+            tally[1] = OVERFLOW
+            return i
+        replace(state, grid)
+    return len(count)
+
+
+@kernel(march_by(VECTOR_FIELD))
+def _march_by_midpoint(
+    field: Any,
+    project: Any,
+    begin: Floats,
+    step: Floats,
+    count: Integers,
+    state: Floats,
+    parameters: Floats,
+    samples: Floats,
+    tally: Integers,
+) -> int:
+    slope, stage, grid = np.empty_like(state), np.empty_like(state), np.empty_like(state)
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            h = step[i, run]
+            for j in range(count[i, run]):
+                t = begin[i, run] + j * h
+                field(t, state, parameters, slope)
+                for k in range(state.size):
+                    stage[k] = state[k] + 0.5 * h * slope[k]
+                field(t + 0.5 * h, stage, parameters, slope)
+                for k in range(state.size):
+                    state[k] += h * slope[k]
+        if not keep(state, i, samples):
+            tally[1] = OVERFLOW
+            return i
+        replace(state, grid)
+    return len(count)
+
+
+@kernel(march_by(VECTOR_FIELD))
+def _march_by_mean_slope(
+    field: Any,
+    project: Any,
+    begin: Floats,
+    step: Floats,
+    count: Integers,
+    state: Floats,
+    parameters: Floats,
+    samples: Floats,
+    tally: Integers,
+) -> int:
+    slope, later, stage, grid = np.empty_like(state), np.empty_like(state), np.empty_like(state), np.empty_like(state)
+    for i in range(len(count)):
+        for run in range(2):
+            replace(grid, state)
+            h = step[i, run]
+            for j in range(count[i, run]):
+                t = begin[i, run] + j * h
+                field(t, state, parameters, slope)
+                for k in range(state.size):
+                    stage[k] = state[k] + h * slope[k]
+                field(t + h, stage, parameters, later)
+                for k in range(state.size):
+                    state[k] += 0.5 * h * (slope[k] + later[k])
+        if not keep(state, i, samples):
+            tally[1] = OVERFLOW
+            return i
+        replace(state, grid)
+    return len(count)
+
+
+@dataclass(frozen=True)
+class SemiImplicitEuler(FixedStep):
+    """Euler's method in which each component is advanced with those before it already new.
+
+    Parameters
+    ----------
+    step : float
+        Length of the steps, from t = 0 (s).
+    """
+
+    step: float
+    kind: str = "semi-implicit-euler"
+
+    order: ClassVar[int] = 1
+    family: ClassVar[Family] = "explicit"
+
+    def _evaluations_per_step(self, system: System) -> int:
+        return int(system.initial_state.size)
+
+    def _compiled(self) -> Any:
+        return _march_in_turn
+
+
+@dataclass(frozen=True)
+class ExplicitMidpoint(FixedStep):
+    """Runge's method of order two: the slope halfway through an Euler step.
+
+    Parameters
+    ----------
+    step : float
+        Length of the steps, from t = 0 (s).
+    """
+
+    step: float
+    kind: str = "explicit-midpoint"
+
+    order: ClassVar[int] = 2
+    family: ClassVar[Family] = "explicit"
+
+    def _evaluations_per_step(self, system: System) -> int:
+        return 2
+
+    def _compiled(self) -> Any:
+        return _march_by_midpoint
+
+
+@dataclass(frozen=True)
+class Heun(FixedStep):
+    """Heun's method of order two: the mean of the slopes before and after an Euler step.
+
+    Parameters
+    ----------
+    step : float
+        Length of the steps, from t = 0 (s).
+    """
+
+    step: float
+    kind: str = "heun"
+
+    order: ClassVar[int] = 2
+    family: ClassVar[Family] = "explicit"
+
+    def _evaluations_per_step(self, system: System) -> int:
+        return 2
+
+    def _compiled(self) -> Any:
+        return _march_by_mean_slope

@@ -1,0 +1,115 @@
+"""States of unilateral measures, and the table of a phase in which they stay the same."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from core.multibody.measures import Force, Unilateral
+from core.multibody.polynomials import ONE, Ball, combined, constant, gradient
+from core.multibody.table import Rates, Row, Table
+
+
+class State(Enum):
+    """What a unilateral measure does."""
+
+    OPEN = "open"
+    CLOSED = "closed"
+    STICK = "stick"
+    FORWARD = "slide"
+    BACKWARD = "slide back"
+
+    @property
+    def sense(self) -> int:
+        """Sign of the rate of slip while it slides."""
+        return {State.FORWARD: 1, State.BACKWARD: -1}.get(self, 0)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something that mechanics does not decide.
+
+    Attributes
+    ----------
+    code : {"no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "energy-gain", ...}
+    explanation : str
+    contacts : tuple of str
+        Those between which it is undecided.
+    candidates : tuple of mapping of str to str
+        What is possible.
+    decided_by : str
+        Which further assumption would decide it.
+    """
+
+    code: str
+    explanation: str
+    contacts: tuple[str, ...]
+    candidates: tuple[Mapping[str, str], ...] = ()
+    decided_by: str = ""
+
+
+@dataclass(frozen=True)
+class PhaseTable:
+    """The table of a phase.
+
+    Attributes
+    ----------
+    table : Table
+    normal, slip : list of int or None
+        Number of the row of each unilateral measure, and of its rate of slip where it sticks.
+    """
+
+    table: Table
+    normal: list[int | None]
+    slip: list[int | None]
+
+
+def phase_table(
+    base: Table, unilateral: Sequence[Unilateral], states: Sequence[State], q: Sequence[Ball], v: Sequence[Ball]
+) -> PhaseTable:
+    """Return the table whose rows are those of the base and of what is closed, from a state."""
+    table = replace(base, rows=list(base.rows), q=list(q), v=list(v))
+    normal: list[int | None] = []
+    slip: list[int | None] = []
+    for one, state in zip(unilateral, states, strict=True):
+        normal.append(None)
+        slip.append(None)
+        if state is State.OPEN:
+            continue
+        drag: Rates = {}
+        if state.sense and one.slip is not None:
+            factor = -state.sense * one.kinetic
+            drag = {j: scaled for j, poly in one.slip.items() if (scaled := combined((factor, poly)))}
+        normal[-1] = len(table.rows)
+        table.rows.append(Row(one.name, one.gap, gradient(one.gap), drag=drag))
+        if state is State.STICK and one.slip is not None:
+            slip[-1] = len(table.rows)
+            table.rows.append(Row(one.name, None, one.slip))
+    return PhaseTable(table, normal, slip)
+
+
+def force_names(one: Unilateral) -> tuple[str, ...]:
+    """Return what the forces of a unilateral measure are called."""
+    if one.closes == "taut":
+        return (f"{one.name}.tension",)
+    if one.unit == "N m":
+        return (f"{one.name}.torque",)
+    return (f"{one.name}.normal",) if one.slip is None else (f"{one.name}.normal", f"{one.name}.friction")
+
+
+def forces_of(unilateral: Sequence[Unilateral], states: Sequence[State], phase: PhaseTable) -> list[Force]:
+    """Return the forces of unilateral measures in a phase: none without terms is other than zero."""
+    found = []
+    for number, (one, state) in enumerate(zip(unilateral, states, strict=True)):
+        names = force_names(one)
+        row, slip = phase.normal[number], phase.slip[number]
+        found.append(Force(names[0], one.unit, [] if row is None else [(row, constant(ONE))]))
+        if len(names) > 1:
+            terms = []
+            if slip is not None:
+                terms = [(slip, constant(ONE))]
+            elif row is not None and state.sense:
+                terms = [(row, constant(-state.sense * one.kinetic))]
+            found.append(Force(names[1], "N", terms))
+    return found

@@ -1,0 +1,215 @@
+"""Geometry of contacts in the plane: gaps and rates of slip as polynomials of the table.
+
+Every gap is of degree two at most. Of a face it is n.(P - A) - R, of circles and edges (d.d - r^2)/(2r), with r the sum
+of the radii, that of a hollow negative: to first order in the gap that is the gap itself, so that the multiplier is the
+normal force. The rate of slip is that of the points of the two bodies that touch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from core.errors import InvalidParameter, Path
+from core.multibody.coordinates import Point, Rate
+from core.multibody.language import GROUND
+from core.multibody.measures import Measures, Unilateral
+from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.rolling import rate_of, sum_of_rates
+
+
+def contact(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add the unilateral measure of a contact.
+
+    Raises
+    ------
+    InvalidParameter
+        Where it names nothing that can touch, or coefficients out of their ranges.
+    """
+    if measures.dimension != 2:
+        raise InvalidParameter(
+            (*path, "kind"), "be used in the plane: contacts in space are not answered yet", remedy="describe a plane"
+        )
+    static, kinetic = _friction(measures, connection.friction, (*path, "friction"))
+    restitution, order = bounciness(measures, connection, path)
+    rubs = not is_zero(static)
+    if connection.measure == "turn":
+        if rubs:
+            raise InvalidParameter((*path, "friction"), "be left out of a stop that limits a turn")
+        gap = _turn(measures, connection, path)
+        stop = Unilateral(name, gap, restitution=restitution, closes="stop", opens="release", unit="N m", order=order)
+        measures.unilateral.append(stop)
+        return
+    if connection.measure != "gap":
+        raise InvalidParameter((*path, "measure"), 'be "gap" or "turn"')
+    for entry in ("at_least", "at_most"):
+        if getattr(connection, entry) is not None:
+            raise InvalidParameter((*path, entry), 'be left out where the measure is no "turn"')
+    if connection.place is not None and connection.on is not None and connection.a is None and connection.b is None:
+        gap, slip, rolls = _on(measures, connection, path, rubs=rubs)
+    elif connection.a is not None and connection.b is not None and connection.place is None and connection.on is None:
+        gap, slip, rolls = _between(measures, connection, path, rubs=rubs)
+    else:
+        raise InvalidParameter(path, 'have place and on, or a and b, or measure "turn"')
+    measures.unilateral.append(
+        Unilateral(name, gap, slip if rubs else None, static, kinetic, restitution, rolls=rolls, order=order)
+    )
+
+
+def bounciness(measures: Measures, connection: Any, path: Path) -> tuple[Ball, Ball | None]:
+    """Return coefficient of restitution and place in the order of simultaneous impacts."""
+    restitution, order = ZERO, None
+    if connection.restitution is not None:
+        restitution = measures.numerals.number(connection.restitution, (*path, "restitution"))
+        if restitution < 0 or restitution > 1:
+            raise InvalidParameter((*path, "restitution"), "be at least 0 and at most 1")
+    if connection.order is not None:
+        order = measures.numerals.number(connection.order, (*path, "order"))
+    return restitution, order
+
+
+def _friction(measures: Measures, value: Any, path: Path) -> tuple[Ball, Ball]:
+    if value is None:
+        return ZERO, ZERO
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        if len(value) != 2:
+            raise InvalidParameter(path, "be one coefficient, or two: of sticking and of sliding")
+        static, kinetic = (measures.numerals.number(x, (*path, i)) for i, x in enumerate(value))
+    else:
+        static = kinetic = measures.numerals.number(value, path)
+    if kinetic < 0 or static < 0:
+        raise InvalidParameter(path, "be at least 0")
+    if kinetic > static:
+        raise InvalidParameter((*path, 1), "be at most the coefficient of sticking")
+    return static, kinetic
+
+
+def _turn(measures: Measures, connection: Any, path: Path) -> Poly:
+    for entry in ("place", "on"):
+        if getattr(connection, entry) is not None:
+            raise InvalidParameter((*path, entry), 'be left out where the measure is "turn"')
+    if connection.a is None:
+        raise InvalidParameter((*path, "a"), "be given")
+    turn = measures.coordinates.turn_of
+    b = GROUND if connection.b is None else connection.b
+    if connection.a == b:
+        raise InvalidParameter((*path, "b"), "be another body than a")
+    angle = difference(turn(connection.a, (*path, "a")), turn(b, (*path, "b")))
+    if (connection.at_least is None) == (connection.at_most is None):
+        raise InvalidParameter(path, "have either at_least or at_most")
+    if connection.at_least is not None:
+        return combined((ONE, angle), (-measures.numerals.number(connection.at_least, (*path, "at_least")), {(): ONE}))
+    return combined((-ONE, angle), (measures.numerals.number(connection.at_most, (*path, "at_most")), {(): ONE}))
+
+
+def _rim(measures: Measures, place: Any, path: Path) -> tuple[Point, Ball, bool]:
+    """Return centre and radius of a body with a rim, or a place with the radius 0, and whether it is round."""
+    point = measures.coordinates.point(place, path)
+    frame = measures.coordinates.frames.get(place) if isinstance(place, str) else None
+    if frame is None or frame.radius is None:
+        return point, ZERO, False
+    return point, frame.radius, True
+
+
+def spin_of(measures: Measures, body: str | None, path: Path) -> Rate:
+    """Return the angular velocity of a body of the plane as a linear form; nothing of the ground and of particles."""
+    if body is None:
+        return {}
+    frame = measures.coordinates.frames[body]
+    if frame.turn is not None:
+        return {frame.turn: constant(ONE)}
+    if frame.direction is not None:
+        c, s = frame.direction
+        return {s: {(c,): ONE}, c: {(s,): -ONE}}
+    if frame.radius is not None:
+        raise InvalidParameter(path, f'rub on bodies that can turn, unlike "{body}"', remedy="give it its inertia")
+    return {}
+
+
+def _times(factor: Ball, rate: Rate) -> Rate:
+    """Return a linear form times a number, nothing for zero."""
+    return {} if is_zero(factor) else {j: combined((factor, poly)) for j, poly in rate.items()}
+
+
+def _sum(*rates: Rate) -> Rate:
+    found: Rate = {}
+    for rate in rates:
+        for j, poly in rate.items():
+            found[j] = combined((ONE, found.get(j, {})), (ONE, poly))
+    return {j: poly for j, poly in found.items() if poly}
+
+
+def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
+    point, radius, rolls = _rim(measures, connection.place, (*path, "place"))
+    where, on = (*path, "on"), connection.on
+    if point.body is None:
+        raise InvalidParameter((*path, "place"), "belong to a body")
+    if not isinstance(on, Mapping) or "at" not in on:
+        raise InvalidParameter((*where, "at"), "be given")
+    at = measures.coordinates.point(on["at"], (*where, "at"))
+    if at.body == point.body:
+        raise InvalidParameter((*where, "at"), "belong to another body than the place")
+    keys = set(on) - {"at"}
+    if keys == {"radius"}:
+        reach = measures.numerals.number(on["radius"], (*where, "radius"))
+        return *_circle(measures, (point, radius), (at, reach), path, rubs=rubs), rolls
+    if not keys <= {"slope"} and keys != {"normal"}:
+        raise InvalidParameter(where, "have at, and slope, normal or radius")
+    if "normal" in keys:
+        n = unit_in_plane(measures, on["normal"], (*where, "normal"))
+        cosine, sine = n[1], -n[0]
+    else:
+        cosine, sine = measures.numerals.angle(on.get("slope", 0), (*where, "slope"))
+    along = measures.coordinates.vector_of(at.body, [cosine, sine], where)
+    normal = measures.coordinates.vector_of(at.body, [-sine, cosine], where)
+    d = [difference(x, y) for x, y in zip(point.at, at.at, strict=True)]
+    gap = combined((ONE, dot(normal, d)), (-radius, constant(ONE)))
+    if not rubs:
+        return gap, {}, rolls
+    # A face's points move along it as one, so that its turning does not enter.
+    parts = [(along[i], rate_of(d[i])) for i in range(2)]
+    return gap, _sum(sum_of_rates(*parts), _times(radius, spin_of(measures, point.body, path))), rolls
+
+
+def unit_in_plane(measures: Measures, value: Any, path: Path) -> list[Ball]:
+    """Return a direction of the plane as a unit vector."""
+    x, y = measures.numerals.vector(value, path, 2)
+    square = x * x + y * y
+    if not square > 0:
+        raise InvalidParameter(path, "have a direction: not all zero")
+    if is_zero(x) or is_zero(y):
+        return [ZERO if is_zero(z) else ONE if z > 0 else -ONE for z in (x, y)]
+    size = square.sqrt()
+    return [x / size, y / size]
+
+
+def _between(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
+    a, first, rolls_a = _rim(measures, connection.a, (*path, "a"))
+    b, second, rolls_b = _rim(measures, connection.b, (*path, "b"))
+    if a.body is not None and a.body == b.body:
+        raise InvalidParameter((*path, "b"), "belong to another body than a")
+    if a.body is None and b.body is None:
+        raise InvalidParameter(path, "connect a body")
+    if not (rolls_a or rolls_b):
+        raise InvalidParameter(path, "name a body with a rim: two points never meet", remedy="give one a radius")
+    return *_circle(measures, (a, first), (b, second), path, rubs=rubs), rolls_a or rolls_b
+
+
+def _circle(
+    measures: Measures, a: tuple[Point, Ball], b: tuple[Point, Ball], path: Path, *, rubs: bool
+) -> tuple[Poly, Rate]:
+    """Return gap and slip of two circles; the second is hollow where its radius is negative."""
+    reach = a[1] + b[1]
+    if is_zero(reach):
+        raise InvalidParameter(path, "have radii that differ: a point has no side of a point")
+    if b[1] < 0 and reach > 0:
+        raise InvalidParameter(path, "have a hollow that is larger than what is in it")
+    d = [difference(x, y) for x, y in zip(a[0].at, b[0].at, strict=True)]
+    half = 1 / (2 * reach)
+    gap = combined((half, dot(d, d)), (-half * reach * reach, constant(ONE)))
+    if not rubs:
+        return gap, {}
+    across = [combined((-1 / reach, d[1])), combined((1 / reach, d[0]))]
+    rates = sum_of_rates(*((across[i], rate_of(d[i])) for i in range(2)))
+    spins = [_times(-radius, spin_of(measures, point.body, path)) for point, radius in (a, b)]
+    return gap, _sum(rates, *spins)

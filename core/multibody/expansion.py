@@ -1,0 +1,186 @@
+"""The motion of a table about one state as a Taylor polynomial in balls: it decides signs and locates events."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from flint import arb_mat
+
+from core.multibody.dynamics import weightless
+from core.multibody.polynomials import ZERO, Ball, Poly, is_zero
+from core.multibody.rank import independent
+from core.multibody.table import Rates, Table
+
+Series = list[Ball]
+"""Coefficients of powers of time, lowest first."""
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Taylor coefficients at a state.
+
+    Attributes
+    ----------
+    places : list of Series
+        Of every coordinate.
+    multipliers : list of Series
+        Of every row, those of rows that follow from others zero; two coefficients fewer than the places.
+    """
+
+    places: list[Series]
+    multipliers: list[Series]
+
+    @property
+    def order(self) -> int:
+        """Highest power of the places."""
+        return len(self.places[0]) - 1 if self.places else 1
+
+    def of(self, poly: Poly) -> Series:
+        """Return a polynomial of the coordinates as a series."""
+        size = self.order + 1
+        total = [ZERO] * size
+        for key, x in poly.items():
+            if not key:
+                total[0] = total[0] + x
+            elif len(key) == 1:
+                total = [a + x * b for a, b in zip(total, self.places[key[0]], strict=True)]
+            else:
+                part = product(self.places[key[0]], self.places[key[1]])
+                total = [a + x * b for a, b in zip(total, part, strict=True)]
+        return total
+
+    def of_rates(self, rates: Rates) -> Series:
+        """Return a linear form in the rates as a series, one coefficient shorter than the places."""
+        total = [ZERO] * self.order
+        for j, poly in rates.items():
+            rate = [(k + 1) * self.places[j][k + 1] for k in range(self.order)]
+            part = product(self.of(poly)[: self.order], rate)
+            total = [a + b for a, b in zip(total, part, strict=True)]
+        return total
+
+
+def product(first: Sequence[Ball], second: Sequence[Ball]) -> Series:
+    """Return the product of two series of one length, cut off there."""
+    return [sum((first[a] * second[k - a] for a in range(k + 1)), ZERO) for k in range(len(first))]
+
+
+def value(series: Sequence[Ball], time: Ball) -> Ball:
+    """Return a series at a time."""
+    total = ZERO
+    for x in reversed(series):
+        total = total * time + x
+    return total
+
+
+def slope(series: Sequence[Ball]) -> Series:
+    """Return the derivative of a series."""
+    return [k * series[k] for k in range(1, len(series))]
+
+
+def saddle(table: Table, chosen: Sequence[int]) -> arb_mat:
+    """Return the matrix [M -(W + X)^T; W 0] of chosen rows at the state of a table."""
+    count = len(table.names)
+    size = count + len(chosen)
+    entries = [[ZERO] * size for _ in range(size)]
+    for (i, j), x in table.mass.items():
+        entries[i][j] = entries[j][i] = x
+    for k, r in enumerate(chosen):
+        for j, x in table.rows[r].line(table.q).items():
+            entries[count + k][j] = x
+        for j, x in table.rows[r].pushed(table.q).items():
+            entries[j][count + k] = -x
+    return arb_mat(entries)
+
+
+def expansion(table: Table, order: int) -> Expansion:
+    """Return the Taylor coefficients of the motion of a table from its state.
+
+    Raises
+    ------
+    InvalidParameter
+        If something without mass can move by itself.
+    """
+    count = len(table.names)
+    lines = [row.line(table.q) for row in table.rows]
+    chosen = independent(lines)
+    try:
+        inverse = saddle(table, chosen).inv() if count + len(chosen) else arb_mat(0, 0)
+    except ZeroDivisionError:
+        raise weightless(table, range(count), lines) from None
+    places: list[Series] = [[q, v] for q, v in zip(table.q, table.v, strict=True)]
+    found: list[Series] = [[] for _ in chosen]
+    rates: list[Series] = [[v] for v in table.v]
+    # Entries of W and of W + X that vary, as series.
+    varying = [_varying(table.rows[r].rates, places) for r in chosen]
+    pushing = [_joined(varying[k], _varying(table.rows[r].drag, places)) for k, r in enumerate(chosen)]
+    for k in range(order - 1):
+        right = [ZERO] * (count + len(chosen))
+        if k == 0:
+            for i, x in table.load.items():
+                right[i] = right[i] + x
+        for (i, j), x in table.stiffness.items():
+            right[i] = right[i] - x * places[j][k]
+        for (i, j), x in table.damping.items():
+            right[i] = right[i] - x * rates[j][k]
+        for (i, j, m), x in table.gyration.items():
+            right[i] = right[i] + x * sum((places[j][a] * rates[m][k - a] for a in range(k + 1)), ZERO)
+        for n in range(len(chosen)):
+            for j, series in pushing[n].items():
+                for a in range(k):
+                    right[j] = right[j] + found[n][a] * series(k - a)
+            total = ZERO
+            for j, series in varying[n].items():
+                for a in range(1, k + 2):
+                    total = total + series(a) * rates[j][k + 1 - a]
+            right[count + n] = right[count + n] - (k + 1) * total
+        solved = (inverse * arb_mat([[x] for x in right])).entries() if right else []
+        for i in range(count):
+            places[i].append(solved[i] / ((k + 1) * (k + 2)))
+            rates[i].append(solved[i] / (k + 1))
+        for n in range(len(chosen)):
+            found[n].append(solved[count + n])
+    multipliers = [[ZERO] * (order - 1) for _ in table.rows]
+    for n, r in enumerate(chosen):
+        multipliers[r] = found[n]
+    return Expansion(places, multipliers)
+
+
+class _Entry:
+    """The coefficients from the first on of an affine polynomial along a motion whose own are still being found."""
+
+    def __init__(self, slopes: Mapping[int, Ball], places: Sequence[Series]) -> None:
+        self.slopes, self.places = slopes, places
+
+    def __call__(self, power: int) -> Ball:
+        return sum((x * self.places[i][power] for i, x in self.slopes.items()), ZERO)
+
+
+def _varying(line: Rates, places: Sequence[Series]) -> dict[int, _Entry]:
+    found = {}
+    for j, poly in line.items():
+        slopes = {key[0]: x for key, x in poly.items() if key}
+        if slopes:
+            found[j] = _Entry(slopes, places)
+    return found
+
+
+def _joined(first: dict[int, _Entry], second: dict[int, _Entry]) -> dict[int, _Entry]:
+    found = dict(first)
+    for j, entry in second.items():
+        if j in found:
+            slopes = dict(found[j].slopes)
+            for i, x in entry.slopes.items():
+                slopes[i] = slopes.get(i, ZERO) + x
+            found[j] = _Entry(slopes, entry.places)
+        else:
+            found[j] = entry
+    return found
+
+
+def leading_sign(series: Sequence[Ball]) -> int:
+    """Return the sign just after the start of a series: that of its first coefficient that is not zero, else 0."""
+    for x in series:
+        if not is_zero(x):
+            return 1 if x > 0 else -1
+    return 0

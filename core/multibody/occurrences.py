@@ -1,0 +1,197 @@
+"""When a quantity takes a value, and how small and large it becomes: searched along the motion, located to a bit.
+
+A quantity is a column of the answer, or a component of one: ``rod.angle``, ``ball.position.z``, ``s.tension``,
+``energy.kinetic``. Between the times at which the motion is looked at, which follow its own steps, a quantity turns at
+most once; where a parabola through three values comes near, it is looked at more closely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.errors import InvalidParameter, Path
+from core.multibody.along import watched_times
+from core.multibody.answer import Column, Extremes, Occurrence
+from core.multibody.packed import Floats
+from core.multibody.whole import Whole
+
+_SECTIONS = 33
+_ROUNDS = 14
+MOST_FOUND = 1000
+
+Sampler = Callable[[Floats], Column]
+"""From times to the column of one quantity, whose values have shape (t,)."""
+
+
+@dataclass(frozen=True)
+class When:
+    """A question: when does a quantity take a value, for the n-th time after the start, or every time?"""
+
+    quantity: str
+    equals: float
+    nth: int | None = None
+
+
+@dataclass(frozen=True)
+class ExtremesOf:
+    """A question: how small and how large does a quantity become?"""
+
+    quantity: str
+
+
+def component(columns: dict[str, Column], quantity: str) -> Column | None:
+    """Return the column of a quantity, or a component or the length of one; None if there is none."""
+    if quantity in columns:
+        return columns[quantity] if columns[quantity].values.ndim == 1 else None
+    name, _, part = quantity.rpartition(".")
+    column = columns.get(name)
+    if column is None or column.values.ndim == 1:
+        return None
+    if part == "length":
+        return Column(np.linalg.norm(column.values, axis=1), column.unit, column.error, column.how)
+    order = "wxyz" if column.values.shape[1] == 4 else "xyz"[: column.values.shape[1]]
+    if len(part) != 1 or part not in order:
+        return None
+    return Column(column.values[:, order.index(part)], column.unit, column.error, column.how)
+
+
+def occurrences(whole: Whole, sampler: Sampler, asked: When, end: float, most: int = MOST_FOUND) -> list[Occurrence]:
+    """Return the times after the start, up to `end`, at which a quantity takes a value.
+
+    Parameters
+    ----------
+    sampler : callable
+    end : float
+        Positive; where the motion ends before, its end.
+    """
+    grid = watched_times(whole, end)
+    curve = sampler(grid).values - asked.equals
+    found: list[Occurrence] = []
+    wanted = most if asked.nth is None else asked.nth
+    touching = _touching(curve)
+    for k in range(len(grid) - 1):
+        if len(found) >= wanted:
+            break
+        brackets = [(grid[k], grid[k + 1])] if curve[k] * curve[k + 1] < 0.0 else []
+        if k > 0 and curve[k] == 0.0:
+            brackets = [(grid[k], grid[k])]
+        elif touching[k] and not brackets and k + 2 < len(grid):
+            brackets = _pair(sampler, asked.equals, grid[k], grid[k + 2], curve[k])
+        for low, high in brackets:
+            found.append(_located(sampler, asked, low, high, len(found) + 1))
+    if len(grid) > 1 and curve[-1] == 0.0 and len(found) < wanted:
+        found.append(_located(sampler, asked, grid[-1], grid[-1], len(found) + 1))
+    if asked.nth is not None:
+        return found[asked.nth - 1 : asked.nth]
+    return found
+
+
+def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Extremes:
+    """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
+    periods = {
+        None if motion.period is None else float(motion.period) for _, motion in whole.parts if motion.name != "rest"
+    }
+    single = next(iter(periods)) if len(periods) == 1 else None
+    windings = any(getattr(motion, "winding", 0.0) for _, motion in whole.parts)
+    repeats = single is not None and single < end and not windings
+    end = single if repeats and single is not None else end
+    grid = watched_times(whole, end)
+    column = sampler(grid)
+    found = []
+    for sign in (-1.0, 1.0):
+        k = int(np.argmax(sign * column.values))
+        low, high = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
+        time, value = grid[k], column.values[k]
+        for _ in range(_ROUNDS):
+            fine = np.linspace(low, high, _SECTIONS)
+            values = sampler(fine).values
+            i = int(np.argmax(sign * values))
+            if sign * values[i] >= sign * value:
+                time, value = fine[i], values[i]
+            low, high = fine[max(i - 1, 0)], fine[min(i + 1, _SECTIONS - 1)]
+        found.append((float(value), float(time)))
+    error = sampler(np.array([found[0][1], found[1][1]])).error
+    return Extremes(
+        quantity, column.unit, found[0][0], found[0][1], found[1][0], found[1][1], error, float(end), repeats
+    )
+
+
+def _touching(curve: Floats) -> np.ndarray:
+    """Return whether the curve may cross zero twice between a value and the next but one, as a parabola says."""
+    found = np.zeros(len(curve), dtype=bool)
+    if len(curve) > 2:
+        left, middle, right = curve[:-2], curve[1:-1], curve[2:]
+        bend = left - 2 * middle + right
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turn = middle - (right - left) ** 2 / (8 * bend)
+        sign = np.sign(middle)
+        nearest = (sign * middle <= sign * left) & (sign * middle <= sign * right) & (sign * bend > 0)
+        found[:-2] = nearest & (sign * left > 0) & (sign * right > 0) & (sign * turn < 0.25 * np.abs(left))
+    return found
+
+
+def _pair(sampler: Sampler, equals: float, low: float, high: float, before: float) -> list[tuple[float, float]]:
+    """Return brackets of two crossings beside a turning point; none where the curve turns before it gets there."""
+    sign = 1.0 if before > 0.0 else -1.0
+    first, last = low, high
+    for _ in range(_ROUNDS):
+        fine = np.linspace(low, high, _SECTIONS)
+        values = sign * (sampler(fine).values - equals)
+        i = int(np.argmin(values))
+        if values[i] < 0.0:
+            return [(first, float(fine[i])), (float(fine[i]), last)]
+        low, high = fine[max(i - 1, 0)], fine[min(i + 1, _SECTIONS - 1)]
+    return []
+
+
+def _located(sampler: Sampler, asked: When, low: float, high: float, number: int) -> Occurrence:
+    """Return where the sign changes between two times, to the last bit, with the error of the time."""
+    first = sampler(np.array([low])).values[0] - asked.equals
+    for _ in range(_ROUNDS):
+        if low == high:
+            break
+        fine = np.linspace(low, high, _SECTIONS)
+        beyond = (sampler(fine).values - asked.equals) * first <= 0.0
+        k = int(np.argmax(beyond)) if np.any(beyond) else _SECTIONS - 1
+        if k == 0 or (fine[k - 1] == low and fine[k] == high):
+            break
+        low, high = fine[k - 1], fine[k]
+    reach = (high - low) + 1e-6 * max(abs(high), np.finfo(float).tiny)
+    around = sampler(np.array([low - reach, high, high + reach]))
+    slope = abs(around.values[2] - around.values[0]) / (2 * reach + (high - low))
+    off = sampler(np.array([high])).error
+    # Where the quantity turns back its slope is nothing, and its curvature holds it.
+    wide = 1e-4 * max(abs(high), np.finfo(float).tiny)
+    left, middle, right = sampler(np.array([high - wide, high, high + wide])).values
+    bend = abs(left - 2 * middle + right) / wide**2
+    known = [2.0 * (2.0 * off / bend) ** 0.5] if bend > 0.0 else []
+    error = min([off / slope, *known] if slope > 0.0 else [abs(high), *known])
+    error += (high - low) + 2.0**-52 * abs(high)
+    return Occurrence(asked.quantity, asked.equals, around.unit, number, float(high), float(error), around.how)
+
+
+def check_search(asked: When | ExtremesOf, index: int) -> None:
+    """Raise `InvalidParameter` unless a question can be answered as it stands."""
+    where: Path = ("outputs", index, "when") if isinstance(asked, When) else ("outputs", index)
+    key = "quantity" if isinstance(asked, When) else "extremes"
+    if not isinstance(asked.quantity, str) or not asked.quantity:
+        raise InvalidParameter((*where, key), "name a column of the trajectory, or a component of one")
+    if isinstance(asked, ExtremesOf):
+        return
+    if isinstance(asked.equals, bool) or not isinstance(asked.equals, (int, float)) or not np.isfinite(asked.equals):
+        raise InvalidParameter((*where, "equals"), "be a finite number")
+    nth = asked.nth
+    if nth is not None and (isinstance(nth, bool) or not isinstance(nth, int) or not 1 <= nth <= MOST_FOUND):
+        raise InvalidParameter((*where, "nth"), f"be a whole number from 1 to {MOST_FOUND}")
+
+
+def unknown(asked: When | ExtremesOf, index: int, known: Sequence[str]) -> InvalidParameter:
+    """Return the fault of a quantity that the scene has not."""
+    return InvalidParameter(
+        ("outputs", index, "when", "quantity") if isinstance(asked, When) else ("outputs", index, "extremes"),
+        f'name a quantity of the scene, unlike "{asked.quantity[:80]}"; there are {", ".join(known[:40])}',
+        remedy='take a component of a vector by ".x", its length by ".length"',
+    )

@@ -1,0 +1,138 @@
+"""What is answered about the start of a scene: its model, accelerations, forces and energy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from core.multibody.answer import BodyAcceleration, Energy, ForceAnswer, PartModel, SceneModel
+from core.multibody.description import Described
+from core.multibody.dynamics import ForceAtStart, Multipliers, kinetic, potential
+from core.multibody.modelling import Modelled
+from core.multibody.modes import Modes
+from core.multibody.periods import Periodic
+from core.multibody.polynomials import ZERO, Ball, is_zero
+from core.multibody.vertical_symmetry import Shifted, Steady
+
+
+def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
+    """Return the model of a scene whose table has rows of the given rank."""
+    table = found.described.measures.table
+    apart = []
+    for piece, (_, motion) in zip(found.pieces, found.whole.parts, strict=True):
+        modes: tuple[tuple[float, float], ...] = ()
+        if isinstance(motion, Modes):
+            modes = tuple((float(mode.frequency), float(mode.growth)) for mode in motion.modes)
+        period = motion.period
+        winding = motion.winding if isinstance(motion, (Periodic, Steady, Shifted)) and motion.winding else None
+        apart.append(
+            PartModel(
+                motion.name,
+                motion.why,
+                piece.freedom,
+                tuple(piece.table.names),
+                None if period is None else float(period),
+                winding,
+                modes,
+            )
+        )
+    kinds = {part.name for part in apart}
+    if not apart:
+        name, why = "rest", "the connections hold everything where it is"
+    elif len(kinds) == 1:
+        name, why = apart[0].name, apart[0].why
+    else:
+        name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
+    spins = any(not is_zero(frame.spin_momentum) for frame in found.described.measures.coordinates.frames.values())
+    if name == "rest" and spins:
+        name, why = "steady spin", "what turns spins steadily about its axis, and nothing moves its centre or the axis"
+    return SceneModel(
+        name,
+        why,
+        sum(part.degrees_of_freedom for part in apart),
+        len(table.names) - rank,
+        len(found.whole.reduced.table.names),
+        sum(len(piece.chosen) for piece in found.pieces),
+        (len(table.names), len(table.rows)),
+        tuple(apart),
+        tuple(noticed),
+    )
+
+
+def accelerations_of(found: Described, full: Sequence[Ball]) -> Mapping[str, BodyAcceleration]:
+    """Return the accelerations of every body."""
+    table, answer = found.measures.table, {}
+    for name, frame in found.measures.coordinates.frames.items():
+        angular: float | tuple[float, ...] | None = None
+        if frame.turn is not None:
+            angular = _double(full[frame.turn])
+        elif frame.direction is not None:
+            c, s = frame.direction
+            angular = _double(table.q[c] * full[s] - table.q[s] * full[c])
+        elif frame.axes is not None:
+            # Half the sum of e x e'' is the rate of the angular velocity in space.
+            space = [ZERO] * 3
+            for axis in frame.axes:
+                for i in range(3):
+                    j, k = axis[(i + 1) % 3], axis[(i + 2) % 3]
+                    space[i] = space[i] + (table.q[j] * full[k] - table.q[k] * full[j]) / 2
+            angular = tuple(
+                _double(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
+            )
+        elif frame.turns is not None and frame.start_axes is not None:
+            angular = tuple(
+                _double(sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO))
+                for axis in frame.start_axes
+            )
+        answer[name] = BodyAcceleration(tuple(_double(full[i]) for i in frame.position), angular)
+    return answer
+
+
+def forces_of_start(found: Described, forces: Sequence[ForceAtStart]) -> Mapping[str, ForceAnswer]:
+    """Return the forces of every connection."""
+    return {
+        force.name: ForceAnswer(
+            None if value.value is None else _double(value.value),
+            force.unit,
+            value.value is not None,
+            value.shared_with,
+        )
+        for force, value in zip(found.measures.forces, forces, strict=True)
+    }
+
+
+def _double(ball: Ball) -> float:
+    return 0.0 if is_zero(ball) else float(ball)
+
+
+def energy_of(found: Described) -> Energy:
+    """Return the energies at the start."""
+    measures = found.measures
+    spin = sum((frame.spin_energy for frame in measures.coordinates.frames.values()), ZERO)
+    moving, resting = kinetic(measures.table) + spin, potential(measures.table) + measures.potential
+    return Energy(_double(moving), _double(resting), _double(moving + resting), measures.conservative)
+
+
+def noticed_of(found: Modelled, forces: list[ForceAtStart], multipliers: Multipliers) -> list[str]:
+    """Return what was noticed about a scene, in sentences."""
+    measures = found.described.measures
+    bodies = set(found.described.scene.bodies)
+    said = []
+    if found.moved:
+        said.append(f"positions were moved by rounding's width so that {', '.join(found.moved)} hold exactly")
+    if found.fitted:
+        said.append(f"{', '.join(found.fitted)} were taken as rounded: the velocities follow from the connections")
+    still = [name for name in found.whole.reduced.pinned if name.split(".")[0] in bodies]
+    if still:
+        said.append(f"nothing ever moves {', '.join(still)}")
+    for name, others in multipliers.redundant().items():
+        beside = f" beside {', '.join(others)}" if others else ""
+        said.append(f"{name} holds more than it has to{beside}: forces that it shares are not determined")
+    for force, value in zip(measures.forces, forces, strict=True):
+        if value.value is None:
+            said.append(f"{force.name} is not determined by the scene")
+    for limit in measures.limits:
+        if limit.force is not None:
+            tension = forces[limit.force].value
+            if tension is not None and tension < 0:
+                said.append(f"{limit.name} would have to push from the start: it is slack, and the scene another one")
+    return said

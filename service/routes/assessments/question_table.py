@@ -1,0 +1,114 @@
+"""Questions inside of other requests: a path and a request, read and asked as if they had been sent there."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+from pydantic import Field
+
+from core.assessment.asked_question import AssessedQuestion
+from core.errors import MechanicsError, Path
+from core.systems.budget import Budget
+from service.problems import Fault, Problem, Refusal, headline
+from service.requests.request_reader import Limits, Reader
+from service.requests.suggestions import nearest_path
+from service.routes.assessments.route_source import Refused, asked_question
+from service.routes.certified.answers import ROOT
+from service.routing import PostRoute
+from service.schemas import Request
+
+WITHIN: Path = ("question", "request")
+
+SECONDS_OF_PROOF = 1e-3
+"""For proven digits."""
+
+
+class AskedQuestion(Request):
+    """A request to another endpoint, whose answer is the reference."""
+
+    path: str = Field(max_length=200, description="Of the endpoint, for example /v1/rotation/precession.")
+    request: dict[str, Any] = Field(description="The body that it would be sent.")
+
+
+class QuestionTable:
+    """The routes whose answers can be references, some of which have proven digits, too."""
+
+    def __init__(self, routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> None:
+        self._routes: Mapping[str, PostRoute] = {route.path: route for route in routes}
+        self._certified: Mapping[str, PostRoute] = {route.path: route for route in certified}
+        self._reader = cache(self._new_reader)
+
+    def route(self, question: AskedQuestion) -> PostRoute:
+        """Return the route of a question, or refuse the path."""
+        if question.path not in self._routes:
+            near = nearest_path(question.path, self._routes)
+            remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
+            fault = Fault("/question/path", "must be the path of a question that can be assessed", remedy)
+            raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
+        return self._routes[question.path]
+
+    def asked(
+        self, question: AskedQuestion, request: Any, budget: Budget, uncertainty: float | Mapping[Path, float] | None
+    ) -> AssessedQuestion:
+        """Return what is asked by a request, that of the question or a changed one."""
+        route = self.route(question)
+        twin = self._certified.get(ROOT + route.path.removeprefix("/v1"))
+        proven = None if twin is None else (twin, self._reader(twin.path).read)
+        return asked_question(route, self._reader(route.path).read, request, budget, uncertainty, proven)
+
+    def answered(
+        self, question: AskedQuestion, budget: Budget, uncertainty: float | Mapping[Path, float] | None
+    ) -> AssessedQuestion:
+        """Return the question with its answer; refusals of it point into the document that holds it."""
+        asked = self.asked(question, question.request, budget, uncertainty)
+        with within_question():
+            asked.answer  # noqa: B018
+        return asked
+
+    def price(self, question: AskedQuestion, budget: Budget) -> float:
+        """Return the predicted time of one answer (s), or refuse the question."""
+        route = self.route(question)
+        with within_question():
+            return route.price(self._read(route, question.request), budget)
+
+    def small(self, question: AskedQuestion) -> bool:
+        """Return whether the question, or the problem that answers it, may be begun in the event loop."""
+        try:
+            route = self.route(question)
+            return route.small(self._read(route, question.request))
+        except (Refusal, MechanicsError):
+            return True
+
+    def _read(self, route: PostRoute, request: Any) -> Any:
+        return self._reader(route.path).read(json.dumps(request).encode())
+
+    def _new_reader(self, path: str) -> Reader[Any]:
+        route = self._routes[path] if path in self._routes else self._certified[path]
+        # The document that holds the request has been held against the service's own limits.
+        return Reader(route.question, Limits(10**4, 10**9, 10**9, 10**9), route.elsewhere)
+
+
+@contextmanager
+def within_question() -> Iterator[None]:
+    """Have refusals of the question point into the document that holds it."""
+    try:
+        yield
+    except Refusal as refusal:
+        raise _moved(refusal.problem) from None
+    except Refused as refused:
+        raise _moved(refused.refusal.problem) from None
+    except MechanicsError as error:
+        error.path = (*WITHIN, *error.path)
+        raise
+
+
+def _moved(problem: Problem) -> Refusal:
+    """Return the refusal of the question itself, with pointers into the document that holds it."""
+    faults = problem.faults or (Fault("", problem.detail),)
+    moved = [Fault("/question/request" + fault.pointer, fault.detail, fault.remedy) for fault in faults]
+    code = problem.type.code if problem.type.status == 422 else "invalid-parameter"
+    return Refusal(code, headline(moved), faults=moved, extra=problem.extra)

@@ -1,0 +1,294 @@
+"""Graders for learning platforms, run as the platforms run them."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from xml.etree import ElementTree
+
+import jinja2
+import jsonschema
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PLATFORMS = ROOT / "clients" / "lms"
+QUESTIONS = ("1f", "1g", "problem-1")
+PERIOD = 6.2831853
+
+
+@pytest.fixture(scope="module")
+def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder: Path = tmp_path_factory.mktemp("platforms")
+    files = [str(ROOT / "examples" / "assessments" / f"{name}.json") for name in QUESTIONS]
+    for output in ("bundle", "bundle.zip"):
+        command = [sys.executable, "-m", "clients.offline", *files, "--output", str(folder / output)]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=250)
+        assert done.returncode == 0, done.stderr
+    return folder / "bundle"
+
+
+def deployed(folder: Path, bundle: Path, *files: str) -> Path:
+    """Copy files of a platform, what they import and the bundle into one folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in (*files, "polhode_results.py"):
+        shutil.copy(PLATFORMS / file, folder)
+    shutil.copytree(bundle, folder / "bundle")
+    return folder
+
+
+def without_service() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name != "POLHODE_URL"}
+
+
+def valid(folder: str, report: Any) -> Any:
+    jsonschema.validate(report, json.loads((PLATFORMS / folder / "results.schema.json").read_text()))
+    return report
+
+
+class Course:
+    """A PrairieLearn course whose external grader has been copied into it."""
+
+    def __init__(self, folder: Path, bundle: Path) -> None:
+        self.folder = folder
+        self.code = deployed(folder / "serverFilesCourse" / "polhode", bundle, "prairielearn/grade.py")
+        for name in ("data", "tests", "student"):
+            (folder / name).mkdir()
+
+    def report(self, asked: Any, fields: Any, files: dict[str, Any]) -> Any:
+        (self.folder / "tests" / "polhode.json").write_text(json.dumps(asked))
+        (self.folder / "data" / "data.json").write_text(json.dumps({"submitted_answers": fields}))
+        for name, content in files.items():
+            (self.folder / "student" / name).write_text(json.dumps(content))
+        subprocess.run(
+            [sys.executable, str(self.code / "grade.py"), str(self.folder)],
+            check=True, timeout=100, env=without_service(),
+        )  # fmt: skip
+        return valid("prairielearn", json.loads((self.folder / "results" / "results.json").read_text()))
+
+
+TIMED: Any = {"question": "1f", "answers": {"T": {"pointer": "/period", "unit": "s"}}}
+
+
+@pytest.mark.parametrize(
+    ("typed", "score"),
+    [(6.28, 1.0), ("6.28", 1.0), ("0.1047 min", 1.0), (-6.28, 0.5), ("3", 0.0), ({"_type": "x", "_value": 6.28}, 1.0)],
+)
+def test_the_external_grader_of_prairielearn(tmp_path: Path, bundle: Path, typed: Any, score: float) -> None:
+    report = Course(tmp_path, bundle).report(TIMED, {"T": typed}, {})
+    assert report["gradable"]
+    assert report["score"] == score
+    assert report["tests"][0]["name"] == "/period"
+    assert report["tests"][0]["points"] == score
+
+
+@pytest.mark.parametrize("typed", ["", "6 +", "__import__('os')"])
+def test_what_cannot_be_read_is_not_gradable(tmp_path: Path, bundle: Path, typed: str) -> None:
+    report = Course(tmp_path, bundle).report(TIMED, {"T": typed}, {})
+    assert not report["gradable"]
+    assert report["format_errors"][0].startswith("/~1period")
+
+
+def test_files_that_are_handed_in_are_graded(tmp_path: Path, bundle: Path) -> None:
+    request = json.loads((ROOT / "examples" / "assessments" / "1g.json").read_text())
+    (submitted,) = request["submissions"]
+    ((pointer, claim),) = submitted.items()
+    asked = {"question": "1g", "answers": {"w": {"pointer": pointer, "file": "w.json"}}}
+    course = Course(tmp_path, bundle)
+    report = course.report(asked, {}, {"w.json": claim})
+    assert report["score"] == 0.25
+    (tmp_path / "student" / "w.json").unlink()
+    assert not course.report(asked, {}, {})["gradable"]
+
+
+@pytest.fixture
+def element(tmp_path: Path, bundle: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    folder = tmp_path / "elements" / "pl-polhode"
+    shutil.copytree(PLATFORMS / "prairielearn" / "pl-polhode", folder)
+    shutil.copy(PLATFORMS / "polhode_results.py", folder)
+    (tmp_path / "serverFilesCourse" / "polhode").mkdir(parents=True)
+    shutil.copytree(bundle, tmp_path / "serverFilesCourse" / "polhode" / "bundle")
+    monkeypatch.delenv("POLHODE_URL", raising=False)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.delitem(sys.modules, "polhode_results", raising=False)
+    controller = json.loads((folder / "info.json").read_text())["controller"]
+    spec = importlib.util.spec_from_file_location("pl_polhode", folder / controller)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+ELEMENT = '<pl-polhode answers-name="T" question="1f" pointer="/period" unit="s" label="T ="></pl-polhode>'
+
+
+def data_of(tmp_path: Path, typed: str | None) -> Any:
+    answers = {} if typed is None else {"T": typed}
+    return {
+        "params": {}, "correct_answers": {}, "format_errors": {}, "partial_scores": {}, "feedback": {}, "score": 0.0,
+        "submitted_answers": {**answers}, "raw_submitted_answers": answers, "editable": True, "panel": "question",
+        "variant_seed": 1, "options": {"server_files_course_path": str(tmp_path / "serverFilesCourse")},
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("typed", "score"), [("6.2806", 1.0), ("6280.6 ms", 1.0), ("-6.28 s", 0.5), ("1e3", 0.0)])
+def test_the_element_of_prairielearn(element: ModuleType, tmp_path: Path, typed: str, score: float) -> None:
+    data = data_of(tmp_path, typed)
+    element.prepare(ELEMENT, data)
+    assert '<input type="text" name="T"' in element.render(ELEMENT, data)
+    element.parse(ELEMENT, data)
+    assert not data["format_errors"]
+    element.grade(ELEMENT, data)
+    assert data["partial_scores"]["T"]["score"] == score
+    assert data["partial_scores"]["T"]["weight"] == 1
+    data["panel"] = "submission"
+    shown = element.render(ELEMENT, data)
+    assert typed in shown
+    assert data["partial_scores"]["T"]["feedback"].split(";")[0] in shown
+    data["panel"] = "answer"
+    assert element.render(ELEMENT, data) == ""
+
+
+@pytest.mark.parametrize("typed", [None, "", "  ", "6 + <script>"])
+def test_the_element_refuses_what_cannot_be_read(element: ModuleType, tmp_path: Path, typed: str | None) -> None:
+    data = data_of(tmp_path, typed)
+    element.parse(ELEMENT, data)
+    if not data["format_errors"]:
+        element.grade(ELEMENT, data)
+    assert data["format_errors"]["T"]
+    assert not data["partial_scores"]
+    data["panel"] = "submission"
+    assert "<script>" not in element.render(ELEMENT, data)
+
+
+def test_an_element_without_its_attributes_is_no_question(element: ModuleType, tmp_path: Path) -> None:
+    for wrong in ('<pl-polhode answers-name="T" question="1f"></pl-polhode>', ELEMENT.replace("unit", "units")):
+        with pytest.raises(ValueError, match="pl-polhode: missing"):
+            element.prepare(wrong, data_of(tmp_path, None))
+
+
+def test_the_element_grades_with_a_service_too(
+    element: ModuleType, tmp_path: Path, service: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("POLHODE_URL", service)
+    folder = tmp_path / "serverFilesCourse" / "polhode"
+    shutil.rmtree(folder / "bundle")
+    (folder / "questions").mkdir()
+    shutil.copy(ROOT / "examples" / "assessments" / "1f.json", folder / "questions")
+    data = data_of(tmp_path, "-6.28 s")
+    element.parse(ELEMENT, data)
+    element.grade(ELEMENT, data)
+    assert data["partial_scores"]["T"]["score"] == 0.5
+
+
+def autograded(tmp_path: Path, bundle: Path, answers: str | None) -> Any:
+    source = deployed(
+        tmp_path / "source", bundle, "gradescope/grade.py", "gradescope/run_autograder", "gradescope/setup.sh"
+    )
+    (source / "points.json").write_text('{"1f": 2.0, "problem-1": 3.0}')
+    for name in ("submission", "results"):
+        (tmp_path / name).mkdir()
+    if answers is not None:
+        (tmp_path / "submission" / "answers.json").write_text(answers)
+    environment = without_service() | {"AUTOGRADER": str(tmp_path)}
+    environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
+    subprocess.run([str(source / "run_autograder")], check=True, timeout=100, env=environment)
+    return valid("gradescope", json.loads((tmp_path / "results" / "results.json").read_text()))
+
+
+def test_the_autograder_of_gradescope(tmp_path: Path, bundle: Path) -> None:
+    answers = {
+        "1f": {"/period": "-6.28 s"},
+        "problem-1": {"/tension": {"value": 2.7528, "unit": "N"}, "/accelerations/0": "3.33 m/s^2"},
+    }
+    period, forces = autograded(tmp_path, bundle, json.dumps(answers))["tests"]
+    assert (period["score"], period["max_score"], period["status"]) == (1.0, 2.0, "failed")
+    assert (forces["score"], forces["status"], forces["output"]) == (3.0, "passed", "Correct.")
+
+
+@pytest.mark.parametrize("answers", [None, "{", "[]", '{"1f": {}}', '{"1f": 3}', '{"1f": {"/period": "?"}}'])
+def test_nothing_that_is_handed_in_stops_the_autograder(tmp_path: Path, bundle: Path, answers: str | None) -> None:
+    report = autograded(tmp_path, bundle, answers)
+    assert [test["score"] for test in report["tests"]] == [0.0, 0.0]
+    assert all(test["output"] for test in report["tests"])
+
+
+def test_a_question_for_stack_has_the_variants_of_the_service(service: str) -> None:
+    spec = json.loads((PLATFORMS / "moodle" / "flip-interval.json").read_text())
+    done = subprocess.run(
+        [sys.executable, str(PLATFORMS / "moodle" / "stack.py"), str(PLATFORMS / "moodle" / "flip-interval.json")],
+        capture_output=True, check=True, timeout=100,
+        env=os.environ | {"POLHODE_URL": service, "PYTHONPATH": str(ROOT / "clients" / "python")},
+    )  # fmt: skip
+    question = ElementTree.fromstring(done.stdout).find("question")
+    assert question is not None
+    assert question.get("type") == "stack"
+    lines = (question.findtext("questionvariables/text") or "").splitlines()
+    assert lines[0] == "variant: rand(5) + 1;"
+    lists = {
+        name: json.loads(rest[: rest.index("]") + 1]) for name, rest in (line.split(": ", 1) for line in lines[1:])
+    }
+    assert set(lists) == {"moment_1", "moment_2", "rate", "answer"}
+    assert all(f"{{@{name}@}}" in (question.findtext("questiontext/text") or "") for name in spec["numbers"])
+    assert (question.findtext("prt/node/answertest"), question.findtext("prt/node/testoptions")) == (
+        "UnitsRelative",
+        "0.01",
+    )
+    assert question.findtext("input/tans") == "answer*s"
+    # Each answer is the service's own.
+    from polhode_client import Client
+
+    with Client(service) as polhode:
+        for one, two, rate, answer in zip(
+            *(lists[name] for name in ("moment_1", "moment_2", "rate", "answer")), strict=True
+        ):
+            body: Any = {"kind": "principal-moments", "moments": [one, two, 1.5]}
+            assert polhode.precession(body=body, angular_velocity=[0.1, rate, 0.1])["flip_interval"] == answer
+
+
+def coderunner(tmp_path: Path, bundle: Path, program: str) -> Any:
+    """Run the template as CodeRunner does: expanded by Twig, whose syntax here is that of Jinja."""
+    environment = jinja2.Environment()
+    environment.filters["e"] = lambda text, kind: text.replace("\\", "\\\\").replace('"', '\\"')
+    template = environment.from_string((PLATFORMS / "moodle" / "coderunner_template.py.twig").read_text())
+    code = template.render(
+        STUDENT_ANSWER=program,
+        TESTCASES=[{"testcode": "/period s"}, {"testcode": "/body_rate rad/s"}],
+        QUESTION={"parameters": {"question": "1f"}},
+    )
+    shutil.copy(bundle.with_suffix(".zip"), tmp_path)
+    shutil.copy(PLATFORMS / "polhode_results.py", tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=100,
+        env=without_service() | {"PYTHONPATH": str(tmp_path)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize(
+    ("program", "fraction"),
+    [
+        ('from math import pi\nprint("{")\nanswers = [6.2806, "1 rad/s"]', 1.0),
+        ('answers = ["-6.28 s", 7]', 0.25),
+        ("answers = [6.28]", 0.5),
+        ("raise ValueError('\"')", 0.0),
+        ("answers = 3", 0.0),
+        ("answers = list(open('bundle.zip'))", 0.0),
+        ("import os\nos.mkdir('bundle')\nopen('bundle/json.py', 'w').write('1/0')\nanswers = [6.28]", 0.5),
+    ],
+)
+def test_the_template_of_coderunner(tmp_path: Path, bundle: Path, program: str, fraction: float) -> None:
+    found = coderunner(tmp_path, bundle, program)
+    assert found["fraction"] == fraction
+    header, *rows = found["testresults"]
+    assert header == ["Figure", "Got", "Feedback", "iscorrect"]
+    assert [row[0] for row in rows] == ["/period", "/body_rate"]
+    assert ("Traceback" in found["prologuehtml"]) == ("raise" in program or "bundle.zip" in program)

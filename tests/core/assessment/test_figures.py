@@ -1,0 +1,108 @@
+"""Figures are found by their pointers, and have the form that their field and shape say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from core.assessment.figures import equal_moments, form_of, is_null, name_of, steps_of, value_at
+from core.errors import InvalidParameter
+
+
+class Row(NamedTuple):
+    kind: str
+    rate: float | None
+
+
+@dataclass
+class Held:
+    error: float
+    _secret: float = 1.0
+
+
+ANSWER: dict[str, Any] = {
+    "rows": [Row("saddle", 2.0), Row("center", None)],
+    "held": Held(0.5),
+    "a/b": {"~": 3},
+    "vector": (1.0, 2, np.float64(3.0)),
+    "mixed": [1.0, None],
+    "infinite": [1.0, float("inf")],
+    "none": None,
+}
+
+
+@pytest.mark.parametrize(
+    ("pointer", "value"),
+    [
+        ("/rows/0/rate", 2.0),
+        ("/rows/0/kind", "saddle"),
+        ("/rows/1/rate", None),
+        ("/held/error", 0.5),
+        ("/held/_secret", None),
+        ("/held/__class__", None),
+        ("/a~1b/~0", 3.0),
+        ("/vector/2", 3.0),
+        ("/vector/3", None),
+        ("/mixed", None),
+        ("/infinite", None),
+        ("/held", None),
+        ("/rows/0/0", None),
+    ],
+)
+def test_values_are_found_by_pointer(pointer: str, value: Any) -> None:
+    assert value_at(ANSWER, steps_of(pointer)) == value
+
+
+def test_arrays_are_found_as_doubles() -> None:
+    found = value_at(ANSWER, ("vector",))
+    assert found.dtype == np.float64
+    assert found.tolist() == [1.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize(
+    ("pointer", "null"),
+    [
+        ("/none", True), ("/rows/1/rate", True), ("/mixed/1", True),
+        ("/rows/0/rate", False), ("/absent", False), ("/rows/7", False),
+    ],
+)  # fmt: skip
+def test_null_is_told_from_nothing(pointer: str, null: bool) -> None:
+    assert is_null(ANSWER, steps_of(pointer)) is null
+
+
+@pytest.mark.parametrize("pointer", ["", "period", "#/period"])
+def test_what_is_no_pointer_is_refused(pointer: str) -> None:
+    with pytest.raises(InvalidParameter):
+        steps_of(pointer)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "unit", "form"),
+    [
+        (("period",), 1.0, "s", "number"),
+        (("tilt",), 1.0, "rad", "angle"),
+        (("stable",), True, "1", "choice"),
+        (("kind",), "saddle", "1", "choice"),
+        (("axis",), np.zeros(3), "1", "direction"),
+        (("principal", "axes"), np.zeros((3, 3)), "1", "axes"),
+        (("attitude", 2), np.zeros(4), "1", "attitude"),
+        (("attitude",), np.zeros((9, 4)), "1", "samples"),
+        (("angular_velocity",), np.zeros((9, 3)), "rad s^-1", "samples"),
+        (("angular_velocity", 2), np.zeros(3), "rad s^-1", "vector"),
+        (("equilibria", 1, "eigenvalues"), np.zeros((3, 2)), "s^-1", "set"),
+        (("inertia", "about_origin"), np.zeros((3, 3)), "kg m^2", "matrix"),
+    ],
+)
+def test_forms(path: tuple[str | int, ...], value: Any, unit: str, form: str) -> None:
+    assert form_of(path, value, unit) == form
+
+
+def test_names_of_parameters_and_groups_of_moments() -> None:
+    assert name_of(("masses", 0)) == "masses_1"
+    assert name_of(("body", "radius")) == "radius"
+    assert equal_moments([1.0, 1.0 + 1e-12, 2.0]) == ((0, 1), (2,))
+    assert equal_moments([1.0, 1.5, 2.0]) == ((0,), (1,), (2,))
+    assert equal_moments(None) == ()

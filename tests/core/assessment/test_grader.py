@@ -1,0 +1,88 @@
+"""Submissions graded without the service: verdicts, scores, units, and claims that cannot be read."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from core.assessment.asked_question import AssessedQuestion
+from core.assessment.catalogue import MISTAKES
+from core.assessment.comparisons import SigFig
+from core.assessment.grader import Grader, JudgedClaim, credited
+from tests.core.assessment.pendulum import REQUEST, Pendulum
+from tests.core.assessment.test_asked_question import PERIOD
+
+
+def grader(*, reveal: bool = True, **credits: float) -> Grader:
+    asked = AssessedQuestion(Pendulum(), REQUEST, None)
+    return Grader(asked, None, {"/rate": SigFig(4)}, reveal, credited(MISTAKES, credits), {"l": ("length",)})
+
+
+def judged(claim: Any, pointer: str = "/period", **more: Any) -> JudgedClaim:
+    found = grader(**more).judged({pointer: claim})
+    assert not found.faults
+    (one,) = found.claims
+    return one
+
+
+@pytest.mark.parametrize(
+    ("claim", "verdict", "score", "tags"),
+    [
+        ({"value": PERIOD, "unit": "s"}, "correct", 1.0, []),
+        ({"value": 1e3 * PERIOD, "unit": "ms"}, "correct", 1.0, []),
+        ({"value": 2.0 * PERIOD, "unit": "s"}, "incorrect", 0.0, ["factor-2"]),
+        ({"value": -PERIOD, "unit": "s"}, "incorrect", 0.5, ["sign"]),
+        ({"value": 7.0 * PERIOD, "unit": "s"}, "incorrect", 0.0, []),
+        ({"value": PERIOD}, "missing-unit", 0.0, []),
+        ({"value": PERIOD, "unit": "kg"}, "wrong-unit", 0.0, []),
+        ({"formula": "2*pi*sqrt(l/9.81)"}, "correct", 1.0, []),
+        ({"formula": "2*pi*sqrt(l*9.81)"}, "incorrect", 0.0, []),
+        ({"value": None}, "incorrect", 0.0, []),
+    ],
+)
+def test_verdicts(claim: Any, verdict: str, score: float, tags: list[str]) -> None:
+    one = judged(claim)
+    assert (one.judgement.verdict, one.score) == (verdict, score)
+    assert [mistake.tag for mistake in one.mistakes] == tags
+
+
+def test_credits_of_the_course_and_comparisons_of_single_figures() -> None:
+    assert judged({"value": -PERIOD, "unit": "s"}, sign=0.75).score == 0.75
+    assert judged({"value": 4.4294, "unit": "rad/s"}, "/rate").judgement.verdict == "correct"
+    assert judged({"value": 4.44, "unit": "rad/s"}, "/rate").judgement.verdict == "incorrect"
+
+
+def test_without_reveal_no_mistake_is_named() -> None:
+    one = judged({"value": -PERIOD, "unit": "s"}, reveal=False)
+    assert one.mistakes == ()
+    assert one.score == 0.0
+    assert one.feedback == "Not correct."
+
+
+@pytest.mark.parametrize(
+    ("submission", "path"),
+    [
+        (3, ()),
+        ({}, ()),
+        ({"period": {"value": 1.0}}, ("period",)),
+        ({"/nothing": {"value": 1.0}}, ("/nothing",)),
+        ({"/period": {"value": "long", "unit": "s"}}, ("/period", "value")),
+        ({"/kind": {"formula": "l"}}, ("/kind", "formula")),
+        ({"/period": {"formula": "m"}}, ("/period", "formula")),
+        ({"/angle": {"value": [1.0], "times": [-1.0]}}, ("/angle", "times")),
+        ({"/period": {"value": [1.0], "times": [1.0]}}, ("/period", "times")),
+        ({"/" + "x" * 300: {"value": 1.0}}, ()),
+    ],
+    ids=lambda entry: str(entry)[:30],
+)
+def test_what_cannot_be_read_has_a_place_and_spoils_nothing(submission: Any, path: tuple[str | int, ...]) -> None:
+    found = grader().judged(submission)
+    assert found.claims == []
+    assert [fault.path for fault in found.faults] == [path]
+
+
+def test_when_a_motion_can_be_answered_is_not_said_without_reveal() -> None:
+    claim = {"/angle": {"value": [1.0], "times": [-1.0]}}
+    assert "after the start" in grader().judged(claim).faults[0].rule
+    assert "after the start" not in grader(reveal=False).judged(claim).faults[0].rule

@@ -1,0 +1,84 @@
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+from core.multibody.solve import solve_scene
+from tests.core.multibody.worked_examples import column, points, read
+
+SCENES = Path(__file__).parents[3] / "examples" / "scenes"
+ALL = ["trajectory", "energy-in-time", "work-in-time", "paths-in-time"]
+
+
+def example(name):
+    question = json.loads((SCENES / f"{name}.json").read_text())
+    return read({key: value for key, value in question.items() if key not in ("times", "outputs")})
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "damped-oscillator",
+        "crank-slider",
+        "sphere-on-turntable",
+        "double-pendulum",
+        "elastic-pendulum",
+        "inverted-pendulum-on-torsion-spring",
+        "binary-stars",
+        "spool",
+        "harmonic-ellipse",
+    ],
+)
+def test_what_is_done_on_a_scene_is_what_its_energy_gains(name):
+    """Kinetic energy, which is no sum of works, against their sum: forces of constraint do nothing unless driven."""
+    answer = solve_scene(example(name), [0.0, 0.4, 1.1, -0.7], ALL)
+    kinetic = column(answer, "energy.kinetic")
+    works = [one for key, one in answer.trajectory.columns.items() if key.endswith(".work")]
+    total = sum(one.values for one in works)
+    error = 2 * kinetic.error + sum(one.error for one in works)
+    assert kinetic.values - kinetic.values[0] == pytest.approx(total, abs=error)
+    assert error < 1e-10 * max(1.0, float(np.abs(kinetic.values).max()))
+
+
+def test_a_torque_in_space_works():
+    body = {"mass": 1, "moments": [1, 2, 3], "at": [0, 0, 0], "angular_velocity": [1, 0.2, 0.3]}
+    torque = {"kind": "torque", "name": "t", "body": "b", "torque": [0.5, 1, -2]}
+    answer = solve_scene(read({"gravity": [0, 0, 0], "bodies": {"b": body}, "connections": [torque]}), [0.0, 2.0], ALL)
+    gain = column(answer, "energy.kinetic").values
+    work = column(answer, "t.work")
+    assert gain[1] - gain[0] == pytest.approx(work.values[1], abs=work.error + 1e-13)
+
+
+def test_the_path_of_a_pendulum_is_its_arc_in_every_swing():
+    answer = solve_scene(read(points((1,), (2.5,), (2,))), [0.0, 40.0], [*ALL])
+    period = answer.period
+    swings = int(40.0 / period * 2)
+    path = column(answer, "p0.path")
+    x, y = column(answer, "p0.position").values[1]
+    angle = math.atan2(x, -y)
+    rest = 2.5 - angle if swings % 2 == 0 else 2.5 + angle
+    assert path.values[1] == pytest.approx(5.0 * swings + rest, abs=path.error + 1e-13)
+    assert path.error < 1e-11
+
+
+def test_the_path_of_a_throw_is_the_length_of_its_parabola():
+    ball = read({"gravity": [0, -9.81], "bodies": {"b": {"mass": 1, "at": [0, 0], "velocity": [1, 9.81]}}})
+    path = column(solve_scene(ball, [2.0, -1.0], ["paths-in-time"]), "b.path")
+    with mp.workdps(30):
+        speed = lambda t: mp.sqrt(1 + (mp.mpf("9.81") * (1 - t)) ** 2)  # noqa: E731
+        exact = [float(mp.quad(speed, [0, 1, 2])), -float(mp.quad(speed, [-1, 0]))]
+    assert path.values == pytest.approx(exact, abs=path.error)
+    assert path.error < 1e-13
+
+
+def test_a_path_through_a_place_of_rest_has_a_corner_in_its_speed():
+    """Straight up and down again: |v| = g |1 - t|."""
+    ball = read({"gravity": [0, -9.81], "bodies": {"b": {"mass": 1, "at": [0, 0], "velocity": [0, 9.81]}}})
+    path = column(solve_scene(ball, [1.7], ["paths-in-time"]), "b.path")
+    assert path.values[0] == pytest.approx(9.81 / 2 * (1 + 0.49), abs=path.error + 1e-15)
+    assert path.error < 1e-12
