@@ -88,8 +88,9 @@ export class PlaneView {
       const x = this.model.numbers.vector(c.at)?.[0] || 0, reach = 2 * this.size;
       this.line([[x, this.middle[1] - reach], [x, this.middle[1] + reach]], "soft", 1.5, [8, 6]);
     }
-    if (!c.on) return;
+    if (!c.on || typeof c.on !== "object") return;
     const face = this.model.face(c.on);
+    if (face.radius === 0) return this.disc(face.point, 0.008 * this.size, "soft");
     if (face.radius !== null) return this.disc(face.point, Math.abs(face.radius), null, "soft", 2);
     if (face.curvature !== null) {
       const points = [...Array(81).keys()].map((i) => (i / 40 - 1) * this.size).map((s) => add(add(face.point, face.along, s), face.normal, (face.curvature * s * s) / 2));
@@ -140,7 +141,8 @@ export class PlaneView {
 
   string(c) {
     const { parts, arcs } = this.model.stringOf(c);
-    for (const part of parts) this.line(part, "warm", 2);
+    const slack = this.model.isSlack(c);
+    for (const part of parts) this.line(part, "warm", slack ? 1.5 : 2, slack ? [3, 5] : []);
     for (const { center, radius, from, to, sense } of arcs) {
       const start = Math.atan2(from[1] - center[1], from[0] - center[0]);
       let sweep = Math.atan2(to[1] - center[1], to[0] - center[0]) - start;

@@ -1,7 +1,7 @@
 // A described scene at any time of its answer: places of bodies, and what is to be drawn of every connection.
 import { Numbers } from "./formula.js";
 import { stringPath } from "./string_path.js";
-import { add, norm, quarter, rotated, scaled, sub, turnBetween, turned, unit } from "./vectors.js";
+import { add, dot, norm, quarter, rotated, scaled, sub, turnBetween, turned, unit } from "./vectors.js";
 
 export class SceneModel {
   /** `description` as sent; `trajectory` as answered, null for a scene without motion. */
@@ -109,7 +109,8 @@ export class SceneModel {
     const at = (reference) => this.place(reference).point;
     if (vector.every((x) => x !== null)) return [{ at: at(c.a ?? c.place), vector, label: c.label }];
     if (c.kind === "string") return this.tensions(c);
-    if (["rod", "spring", "damper"].includes(c.kind)) return this.pulls(at(c.a), at(c.b), value("force"), c);
+    if (c.measure === "turn") return [];
+    if (["rod", "spring", "damper", "gravitation", "inverse-square"].includes(c.kind)) return this.pulls(at(c.a), at(c.b), value("force"), c);
     const normal = value("normal"), friction = value("friction");
     if (normal === null) return c.kind === "force" ? [{ at: at(c.place), vector: this.numbers.vector(c.force), label: c.label }] : [];
     const touching = this.touching(c);
@@ -131,6 +132,12 @@ export class SceneModel {
     return this.strings.find(([other]) => other === connection)[1]();
   }
 
+  /** Whether a string is slack now: nothing pulls in it. */
+  isSlack(connection) {
+    const tensions = [this.value(`${connection.label}.tension`), this.value(`${connection.label}.1.tension`)].filter((t) => t !== null);
+    return tensions.length > 0 && tensions.every((t) => t === 0);
+  }
+
   tensions(c) {
     return this.stringOf(c).ends.map(({ at, toward, body, run }) => {
       const tension = this.value(`${c.label}.tension`) ?? this.value(`${c.label}.${run + 1}.tension`);
@@ -143,7 +150,10 @@ export class SceneModel {
     if (c.on) {
       const { point, body } = this.place(c.place), face = this.face(c.on), rim = c.kind === "track" ? 0 : body?.radius || 0;
       if (face.radius === null) return { at: add(point, face.normal, -rim), normal: face.normal, tangent: face.along };
-      const normal = scaled(unit(sub(point, face.point)), Math.sign(rim + face.radius) || 1);
+      let out = sub(point, face.point);
+      // A tube in space: across its direction.
+      if (this.space && c.on.direction) out = add(out, face.along, -dot(out, face.along));
+      const normal = scaled(unit(out), Math.sign(rim + face.radius) || 1);
       return { at: add(point, normal, -rim), normal, tangent: this.space ? normal : quarter(normal) };
     }
     const a = this.place(c.a), b = this.place(c.b ?? [0, 0]);

@@ -14,7 +14,7 @@ import { SpaceView } from "./space_view.js";
 import { readState, writeState } from "./url_state.js";
 import { power } from "./words.js";
 
-const SAMPLES = 801, LONGEST = 20;
+const SAMPLES = 801, LONGEST = 20, MOST_EVENTS = 12;
 const OUTPUTS = ["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time"];
 const state = { scene: "double-pendulum", text: "", own: false, window: null };
 let catalogue = new Map(), model = null, answer = null, view = null, space = null, busy = false, again = false;
@@ -139,7 +139,7 @@ function show({ answer: next, text, path }) {
   answer.shown = trajectory;
   model = new SceneModel(description, trajectory);
   showView();
-  const time = trajectory?.time || [0], events = (answer.events || []).map((e) => ({ ...e, label: `${e.kind} ${e.name || ""}`.trim() }));
+  const time = trajectory?.time || [0], events = (answer.events || []).map((e) => ({ ...e, label: sayEvent(e) }));
   const stop = Math.max(time.at(-1), ...events.map((e) => e.time || 0)) || 1;
   player.setSpan(stop, Math.max(4, Math.min(15, 3 * stop)), events);
   $("window").placeholder = written(stop, 4);
@@ -163,7 +163,8 @@ function showView() {
 function tell(events) {
   const m = answer.model, accuracy = answer.accuracy, moving = model.bodies.map((b) => b.name).join(", ");
   const span = answer.shown ? ` over ${written(player.stop, 4)} s` : "";
-  const ended = events.length ? ` It ends at ${written(events[0].time, 8)} s: ${sayEvent(events[0])}.` : "";
+  const last = answer.ended && answer.ended !== "horizon" ? events.at(-1) : null;
+  const ended = last ? ` It ends at ${written(last.time, 8)} s: ${sayEvent(last)}.` : events.length ? ` ${events.length} event${events.length === 1 ? "" : "s"} on the way.` : "";
   const words = `${moving}: ${m.name}, ${m.degrees_of_freedom} degree${m.degrees_of_freedom === 1 ? "" : "s"} of freedom${span}.${ended}`;
   $("summary").textContent = words;
   for (const canvas of [$("plane-canvas"), $("space-canvas")]) canvas.setAttribute("aria-label", `${catalogue.get(state.scene).summary}. ${words}`);
@@ -173,10 +174,21 @@ function tell(events) {
   for (const [name, f] of Object.entries(answer.forces || {})) list.push([`${name}, at the start`, f.determined ? `${written(f.value, 8)} ${f.unit}` : "not determined"]);
   $("answer").replaceChildren(...list.flatMap(([name, text]) => [make("dt", { textContent: name }), make("dd", { textContent: text })]));
   $("warnings").replaceChildren(...answer.warnings.map((w) => make("p", { className: "notice", textContent: w.detail })));
-  $("events").replaceChildren(...events.map((e) => make("p", { className: "notice", textContent: `At ${written(e.time, 10)} s: ${sayEvent(e)}.` })));
+  const shown = events.slice(0, MOST_EVENTS).map((e) => {
+    const button = make("button", { type: "button", textContent: `${written(e.time, 8)} s: ${sayEvent(e)}` });
+    button.onclick = () => { player.pause(); player.seek(e.time); };
+    return make("li", {}, button);
+  });
+  if (events.length > MOST_EVENTS) shown.push(make("li", { textContent: `and ${events.length - MOST_EVENTS} more` }));
+  $("events").replaceChildren(...shown);
 }
 
-const sayEvent = (event) => (event.kind === "slack" ? `the string ${event.name} goes slack` : event.label.replaceAll("-", " "));
+const EVENTS = {
+  touch: "touches", "lift-off": "lifts off", slip: "begins to slip", stick: "sticks", roll: "rolls without slip", settle: "has come to rest after ever smaller bounces",
+  taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "a length becomes zero",
+};
+
+const sayEvent = (event) => `${event.name} ${EVENTS[event.kind] || event.kind.replaceAll("-", " ")}`.trim();
 
 /** Groups of columns of one unit, to choose from. */
 function fillCurves() {

@@ -2,7 +2,7 @@
 import { cuboidOf } from "./bodies.js";
 import { symmetryAxis } from "./scene_model.js";
 import { Arrow, Curve, View, material } from "./view3d.js";
-import { BoxGeometry, CylinderGeometry, DoubleSide, Group, Mesh, SphereGeometry, Vector3 } from "./vendor/three.js";
+import { BoxGeometry, CylinderGeometry, DoubleSide, Group, Mesh, SphereGeometry, TorusGeometry, Vector3 } from "./vendor/three.js";
 import { norm } from "./vectors.js";
 
 const UP = new Vector3(0, 1, 0);
@@ -13,7 +13,7 @@ export class SpaceView extends View {
     this.extent = 1.15;
     this.showForces = true;
     this.paints = Object.fromEntries(["face", "faceTwo", "faceThree", "deep", "warm", "soft", "ink", "stable"].map((name) => [name, material(this, name)]));
-    this.glass = material(this, "surface", { transparent: true, opacity: 0.35, side: DoubleSide });
+    this.glass = material(this, "surface", { transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
     this.content = new Group();
     this.scene.add(this.content);
     this.trails = [];
@@ -55,7 +55,8 @@ export class SpaceView extends View {
   bodyPart(body) {
     const group = new Group();
     const heaviest = Math.max(...this.model.bodies.map((b) => b.mass)) || 1;
-    if (body.moments && body.mass) group.add(this.solid(body));
+    if (body.radius) group.add(...this.ball(body.radius * this.factor));
+    else if (body.moments && body.mass) group.add(this.solid(body));
     else group.add(new Mesh(new SphereGeometry(0.05 * Math.cbrt((body.mass || heaviest) / heaviest), 20, 14), this.paints.deep));
     for (const place of Object.values(body.places)) {
       const stick = this.stick("soft", 0.014);
@@ -68,6 +69,13 @@ export class SpaceView extends View {
       group.position.set(...this.place(now.at));
       group.quaternion.set(x, y, z, w);
     });
+  }
+
+  /** A ball with two seams, so that its turning is seen. */
+  ball(radius) {
+    const seams = [this.paints.faceTwo, this.paints.faceThree].map((paint) => new Mesh(new TorusGeometry(radius, 0.03 * radius, 8, 48), paint));
+    seams[1].rotateX(Math.PI / 2);
+    return [new Mesh(new SphereGeometry(radius, 32, 24), this.paints.face), ...seams];
   }
 
   /** A cylinder or cuboid with the moments of the body. */
@@ -111,7 +119,11 @@ export class SpaceView extends View {
 
   facePart(c) {
     const face = this.model.face(c.on), point = this.place(face.point);
-    if (face.radius !== null) {
+    if (face.radius !== null && c.on.direction) {
+      const radius = Math.abs(face.radius) * this.factor, tube = this.add(new Mesh(new CylinderGeometry(radius, radius, 3, 48, 1, true), this.glass));
+      tube.position.set(...point);
+      tube.quaternion.setFromUnitVectors(UP, new Vector3(...face.along));
+    } else if (face.radius !== null) {
       const ball = this.add(new Mesh(new SphereGeometry(Math.abs(face.radius) * this.factor, 40, 28), this.glass));
       ball.position.set(...point);
     } else if (face.plane) {

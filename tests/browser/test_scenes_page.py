@@ -123,5 +123,5 @@ def test_an_event_is_marked_and_said(opened):
     page = opened("/scenes")
     page.locator("#editor").fill(json.dumps(scene))
     settle(page)
-    assert page.locator(".marks span").count() == 1
-    assert "the string cord goes slack" in page.locator("#events").inner_text()
+    assert page.locator(".marks span").count() == page.locator("#events li").count() > 0
+    assert "cord goes slack" in page.locator("#events").inner_text()
