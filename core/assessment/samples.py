@@ -25,6 +25,9 @@ NEWTON = 6
 ALIGNED = 0.5
 """Share of the error that a shift may leave for the samples to count as late or early."""
 
+LOST = 0.5
+"""Share of the largest rate that the error reaches where samples circle another axis."""
+
 
 @dataclass(frozen=True)
 class SampleErrors:
@@ -44,7 +47,8 @@ class SampleErrors:
         By how much the samples are late (s), negative if they are early: the shift of the motion that is nearest to
         them; None if no shift leaves less than half of the error.
     separatrix_crossed : float or None
-        First time, outwards from the start, at which the samples circle another axis than the motion (s).
+        First time, outwards from the start, at which samples that end up elsewhere circle another axis than the motion
+        (s).
     """
 
     largest: float
@@ -106,6 +110,8 @@ class ExactSamples:
             energy = _drift(energies, twice)
             momentum = _drift(norms(momenta), float(np.linalg.norm(start)))
         beyond = errors > tolerance
+        # Near the separatrix errors that scatter cross it, too, and lead nowhere.
+        lost = errors.max() > LOST * norms(self._right).max()
         return SampleErrors(
             float(errors.max()),
             float(errors[self._outwards[-1]]),
@@ -113,7 +119,7 @@ class ExactSamples:
             energy,
             momentum,
             self._phase_lag(rows, float(errors.max())),
-            self._first(other & beyond) if all(system.body.principal_of_motion.apart) else None,
+            self._first(other & beyond) if lost and all(system.body.principal_of_motion.apart) else None,
         )
 
     def _first(self, where: NDArray[np.bool_]) -> float | None:

@@ -230,6 +230,8 @@ def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> A
         return solved(question.model_copy(update={"outputs": others}), budget)
 
 
+HEAVY_BODY = scene_catalogue()["kovalevskaya-top"].question
+
 DESCRIBED_SCENES = (
     PostRoute(
         PATH,
@@ -241,8 +243,8 @@ DESCRIBED_SCENES = (
         solved,
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
-        # A heavy body about a point has kernels of its own.
-        warming=(scene_catalogue()["kovalevskaya-top"].question,),
+        # A heavy body about a point has kernels of its own, one of them for its start alone.
+        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}),
         description=DESCRIPTION,
         representations={SVG: drawn},
     ),

@@ -104,6 +104,16 @@ def test_what_is_lost_at_the_separatrix_circles_another_axis() -> None:
     assert errors_of_samples(system, times, other, right, 0.01).separatrix_crossed is None
 
 
+def test_noise_is_not_lost_at_the_separatrix() -> None:
+    system = near_separatrix(0.999)
+    times = np.linspace(0.0, 30.0, 600)
+    right = system.closed_form().sample(times)
+    noisy = right + np.random.default_rng(2).normal(0.0, 0.01, right.shape)
+    found = errors_of_samples(system, times, noisy, right, 0.005)
+    assert found.within_until is not None
+    assert found.separatrix_crossed is None
+
+
 @pytest.mark.parametrize(
     ("order", "sentence"),
     [((0, 2, 1), "Axes 2 and 3 are exchanged."), ((1, 2, 0), "The axes stand in the order 2, 3, 1.")],
