@@ -128,6 +128,8 @@ class GetRoute:
         Pydantic model that documents a JSON page.
     example : callable or None
         Returns an example of a JSON page.
+    documented : bool
+        Whether the OpenAPI document lists it.
     """
 
     path: str
@@ -139,6 +141,7 @@ class GetRoute:
     media_type: str = "application/json"
     description: str = ""
     example: Callable[[], Mapping[str, Any]] | None = None
+    documented: bool = True
     method: str = "GET"
 
 
