@@ -37,7 +37,9 @@ digits; it may also be a formula in quotes over the names in `let`, such as `"sq
 vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are left out follow from the connections.
 Forces that the scene does not determine are null. `outputs` may also ask when a quantity takes a value,
 `{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
-`{"extremes": "rod.force"}`, between the start and the latest of the times.
+`{"extremes": "rod.force"}`, between the start and the latest of the times. Between which
+values of a number a scene stays at rest is asked by its JSON pointer,
+`{"thresholds": {"vary": "/connections/0/friction", "between": [0, 2]}}`.
 
 Contacts push and do not pull, with friction and restitution, in the plane; strings become slack and taut again. The
 answer lists the phases between the events, each with its own smallest model. What mechanics leaves undecided is an
@@ -59,7 +61,7 @@ SEARCHED = 10_000.0
 """Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
 VALUES = 270.0
-"""Values of a number at which rest is looked for, about the most: 64 on either side, and some 70 halvings for an end."""
+"""About the most values of a number at which rest is looked for: 64 on either side, some 70 halvings for each end."""
 FOLLOWED = 2000
 """Samples that a search along the motion takes, or a sum."""
 

@@ -1386,7 +1386,7 @@ class DescribedSceneRequest(TypedDict):
 
 
 class SearchOutput(TypedDict):
-    """A search between the start and the latest of the times: one of its two fields is given."""
+    """A search between the start and the latest of the times, or of a number: one of its fields is given."""
 
     when: NotRequired[WhenQuestion | None]
     extremes: NotRequired[str | None]
@@ -1420,6 +1420,7 @@ class DescribedSceneAnswer(TypedDict):
     occurrences: NotRequired[list[SceneOccurrence] | None]
     extremes: NotRequired[list[SceneExtremes] | None]
     equilibria: NotRequired[list[SceneEquilibrium] | None]
+    thresholds: NotRequired[list[RestRange] | None]
     accuracy: NotRequired[DescribedAccuracy | None]
 
 
@@ -1567,6 +1568,24 @@ class SceneEquilibrium(TypedDict):
     stable: bool | None
     modes: list[SmallMotion]
     residual: float
+
+
+class RestRange(TypedDict):
+    """In which range of a number a scene stays at rest."""
+
+    vary: str
+    written: float
+    lower: RestEnd | None
+    upper: RestEnd | None
+
+
+class RestEnd(TypedDict):
+    """One end of the range of a number in which a scene stays at rest."""
+
+    value: float
+    error: float
+    beyond: dict[str, str] | None
+    problem: str | None
 
 
 class DescribedAccuracy(TypedDict):
