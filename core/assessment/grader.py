@@ -16,13 +16,14 @@ from core.assessment.figures import steps_of
 from core.assessment.formulas import Formula
 from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
+from core.assessment.sample_findings import Consistent, SampleErrors
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.work import spend
 
 if TYPE_CHECKING:
-    from core.assessment.method_search import Consistent, MethodSearch
-    from core.assessment.samples import ExactSamples, SampleErrors
+    from core.assessment.method_search import MethodSearch
+    from core.assessment.samples import ExactSamples
     from core.rotation.torque_free import TorqueFree
 
 CLAIM = 4

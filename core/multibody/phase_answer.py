@@ -26,10 +26,12 @@ from core.multibody.dynamics import ForceAtStart, forces_at_start, multipliers_a
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.packed import Floats, nearest, pair
-from core.multibody.phases import FLOOR, TOLD, Phase, PhaseMotion, motion_in_phases
+from core.multibody.phase import Phase, PhaseMotion
+from core.multibody.phases import motion_in_phases
 from core.multibody.polynomials import Ball
 from core.multibody.shortened import shortened
 from core.multibody.start import accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
+from core.multibody.tracks import FLOOR, TOLD
 from core.multibody.trajectories import AskedMotion
 from core.multibody.whole import WholeStates
 

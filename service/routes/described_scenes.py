@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from math import isfinite
+from math import isfinite, log
 from typing import Any
 
 import numpy as np
@@ -60,6 +60,12 @@ SEARCHED = 10_000.0
 
 FOLLOWED = 2000
 """Samples that a search along the motion takes, or a sum."""
+
+AMPLIFIED = 1.0
+"""By how many powers of e a second a chain of pendulums that one can watch amplifies rounding."""
+
+PUSHING = ("spring", "torsion-spring", "damper", "inverse-square", "motor", "spinning-frame")
+"""Connections that most often leave a motion without a period."""
 
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
@@ -130,6 +136,10 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
+    turning = sum(
+        {"inertia", "moments", "tensor", "body"} & body.model_fields_set != set() for body in question.bodies.values()
+    )
+    pushing = float(sum(one.get("kind") in PUSHING for one in question.connections))
     found = {
         "question": 1.0,
         "bodies": bodies,
@@ -142,8 +152,17 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         samples = sample_count(question.times, budget) + FOLLOWED * len(_along(question))
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
         coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
+        # Where doubles lose a motion to rounding, pairs of doubles follow it.
+        lost = log(question.accuracy) < AMPLIFIED * seconds - 53.0 * log(2.0) if coupled else False
         found |= {
+            "motion": 1.0,
             "motions": bodies + connections,
+            "motions of bodies that turn": float(turning),
+            "motions of bodies in space": bodies if len(question.gravity or ()) == 3 else 0.0,
+            "motions by forces": pushing,
+            "seconds of forces": seconds * min(1.0, pushing),
+            "seconds of coupled bodies in pairs": seconds * coupled * lost,
+            "seconds of pairs of coupled bodies in pairs": seconds * coupled**2 * lost,
             "samples of bodies": samples * bodies,
             "samples of connections": samples * connections,
             "seconds of coupled bodies": seconds * coupled,
@@ -155,7 +174,7 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
             found = {name: count * again for name, count in found.items()}
         found |= _of_method(question, bodies, connections)
     if "equilibria" in (question.outputs or ()):
-        found |= {"searches": bodies, "searches of pairs": bodies**2}
+        found |= {"search": 1.0, "searches": bodies, "searches of pairs": bodies**2}
     return found
 
 

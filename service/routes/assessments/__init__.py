@@ -86,6 +86,21 @@ class AssessmentRequest(Request):
     )
 
 
+WRONG_SAMPLES: Any = {
+    "question": {
+        "path": "/v1/rotation/trajectory",
+        "request": {
+            "body": {"kind": "principal-moments", "moments": [1, 2, 3]},
+            "angular_velocity": [0.1, 2, 0.1],
+            "times": [0],
+        },
+    },
+    "submissions": [
+        {"/angular_velocity": {"times": [0, 1], "value": [[0.1, 2, 0.1], [-0.1, 1.93, 0.3]], "unit": "rad/s"}}
+    ],
+}
+"""Samples whose method is looked for, which compiles the methods that are tried."""
+
 DESCRIPTION = """A claim is judged by the form of the figure: angles modulo whole turns, attitudes up to the sign of the
 quaternion, principal axes up to sign and, where moments are equal, up to rotation, eigenvalues as a set, samples at the
 times of the claim. Arrays count as wrong as their worst entry. Units are converted; for an angular rate 1 Hz is 2 pi
@@ -158,6 +173,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         price,
         small,
         description=DESCRIPTION,
+        warming=(WRONG_SAMPLES,),
     )
 
 

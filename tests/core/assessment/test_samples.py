@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from core.assessment.compare import exchanged
-from core.assessment.samples import ExactSamples, SampleErrors
+from core.assessment.sample_findings import SampleErrors
+from core.assessment.samples import ExactSamples
 from core.bodies import PrincipalMoments
 from core.rotation.torque_free import TorqueFree
 from tests.core.assessment.student_integrators import euler, gyration, marched, motion
