@@ -31,7 +31,7 @@ def solutions(systems: Floats, right: Floats) -> tuple[Floats, np.ndarray]:
             inverse = np.linalg.pinv(systems[singular], rcond=_CUT)
             found[singular] = np.einsum("cij,cj->ci", inverse, right[singular])
         except np.linalg.LinAlgError:
-            # Singular values are found by iteration, which rarely does not end; an orthogonal factorisation always does.
+            # Singular values are found by iteration, which rarely does not end; an orthogonal factorisation does.
             for s in np.flatnonzero(singular):
                 found[s] = lstsq(systems[s], right[s], cond=_CUT, lapack_driver="gelsy")[0]
     return found, singular

@@ -36,6 +36,12 @@ export class TimeChart {
     this.move();
   }
 
+  clear() {
+    this.plot?.destroy();
+    this.plot = this.data = null;
+    this.panel.replaceChildren();
+  }
+
   move() {
     if (!this.plot) return;
     this.head.style.transform = `translateX(${this.plot.valToPos(this.player.time, "x")}px)`;

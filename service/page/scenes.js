@@ -211,7 +211,7 @@ function fillCurves() {
 
 function showCurves() {
   const list = answer?.groups.get($("curves").value);
-  if (!list) return;
+  if (!list) return chart.clear();
   const colors = ["deep", "warm", "third", "stable", "separatrix", "soft"];
   const series = list.slice(0, 12).map(({ label }, i) => ({ label, color: colors[i % 6], dash: i < 6 ? undefined : [6, 4] }));
   chart.show(series, [answer.shown.time, ...list.slice(0, 12).map((c) => c.data)]);

@@ -57,6 +57,10 @@ def _form(hint: Any) -> Any:
     shown = [part for part in parts if part not in (NoneType, Decimal, Fraction, int, Mapping[str, Any])]
     if not shown:
         return dict[str, Any]
+    # Two kinds of connection may share a field, each with words of its own.
+    words = dict.fromkeys(word for part in shown if get_origin(part) is Literal for word in get_args(part))
+    if words:
+        shown = [*(part for part in shown if get_origin(part) is not Literal), Literal.__getitem__(tuple(words))]
     if Mapping[str, Any] in parts:
         # What may be a number or a vector is turned about an axis: polar vectors are places.
         shown.append(AngleInDegrees if float in parts else PolarVector)

@@ -8,6 +8,8 @@ import pytest
 from tests.browser.waiting import settle
 
 REFUSED = ("422",)
+STANDING = ("sleeping-top", "painleve-chalk")
+"""The first spins about the axis by which it is described; for the second no motion exists, which its event says."""
 
 
 def canvas(page):
@@ -30,10 +32,9 @@ def test_every_scene_of_the_catalogue_moves(opened, base):
         scrub(page, 0)
         start = canvas(page)
         scrub(page, 330)
-        # A sleeping top spins about the axis of symmetry by which it is described: its picture stands still.
-        assert (canvas(page) != start) == (name != "sleeping-top"), name
+        assert (canvas(page) != start) == (name not in STANDING), name
         assert page.locator("#faults li").count() == 0, name
-        assert page.locator("#curves option").count() >= 2, name
+        assert page.locator("#curves option").count() >= 2 or name == "painleve-chalk", name
         assert "freedom" in page.locator(".view:visible canvas").get_attribute("aria-label")
 
 

@@ -962,7 +962,7 @@ class SceneConnection(TypedDict):
     place: NotRequired[str | Sequence[float | str | AngleInDegrees] | PolarVector]
     on: NotRequired[Mapping[str, Any]]
     inside: NotRequired[bool]
-    measure: NotRequired[Literal["gap", "turn"] | Literal["length", "turn"]]
+    measure: NotRequired[Literal["gap", "turn", "length"]]
     at_least: NotRequired[float | str | AngleInDegrees]
     at_most: NotRequired[float | str | AngleInDegrees]
     friction: NotRequired[float | str | Sequence[float | str | AngleInDegrees] | AngleInDegrees]
