@@ -150,7 +150,7 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     turning = sum(
         {"inertia", "moments", "tensor", "body"} & body.model_fields_set != set() for body in question.bodies.values()
     )
-    pushing = float(sum(one.get("kind") in PUSHING for one in question.connections))
+    pushing = float(sum(isinstance(one, Mapping) and one.get("kind") in PUSHING for one in question.connections))
     found = {
         "question": 1.0,
         "bodies": bodies,
