@@ -7,6 +7,8 @@ from typing import Any
 
 import mpmath
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.answer import RestEnd, RestRange
@@ -113,6 +115,24 @@ def test_ladder() -> None:
     assert found.upper == RestEnd(1.5, 0.0, None)
     rough = ranged(LADDER, "/connections/0/friction", 0, 1)
     require(rough.lower, least, {"floor": "slide back", "wall": "slide back"})
+
+
+@settings(max_examples=10, derandomize=True, deadline=None)
+@given(floor=st.integers(5, 95), wall=st.integers(0, 95))
+def test_ladders_of_any_roughness(floor: int, wall: int) -> None:
+    """The flattest slope of ladders of any roughness, also on a wall without friction."""
+    with mpmath.workdps(50):
+        mu, other = mpmath.mpf(floor) / 100, mpmath.mpf(wall) / 100
+        flattest = mpmath.atan((1 - mu * other) / (2 * mu))
+    contacts = [
+        {**contact, "friction": coefficient / 100}
+        for contact, coefficient in zip(LADDER["connections"], (floor, wall), strict=True)  # type: ignore[arg-type]
+    ]
+    scene = {**LADDER, "let": {"slope": "1.52"}, "connections": contacts}
+    found = ranged(scene, "/let/slope", 0.01, 1.55)
+    assert found.lower is not None
+    require(found.lower, flattest, found.lower.beyond)  # type: ignore[arg-type]
+    assert found.lower.beyond
 
 
 @pytest.mark.parametrize("component", [0, 1])
