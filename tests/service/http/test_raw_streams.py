@@ -43,7 +43,14 @@ async def serving(keep_alive: int = 75, **settings: Any) -> AsyncIterator[int]:
     """Serve the toys; gives the port."""
     app = inline_toys(**settings)
     config = uvicorn.Config(
-        app, port=0, http=Connection, lifespan="off", log_config=None, access_log=False, timeout_keep_alive=keep_alive
+        app,
+        port=0,
+        http=Connection,
+        lifespan="off",
+        log_config=None,
+        access_log=False,
+        timeout_keep_alive=keep_alive,
+        timeout_graceful_shutdown=20,
     )
     server = uvicorn.Server(config)
     started = asyncio.Event()
