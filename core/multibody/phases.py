@@ -224,7 +224,7 @@ class _Run:
                         self.fitted.append(one.name)
         if self.fitted:
             start = replace(table, rows=[*table.rows, *rows])
-            _projected(start)
+            _projected(start, table.q)
             table.q, table.v = start.q, start.v
 
     # From event to event.
@@ -390,7 +390,7 @@ class _Run:
         for track in self.tracks:
             table = phase_table(self.table, self.unilateral, self.states, track.q, track.v)
             if len(self.tracks) > 1:
-                _projected(table.table)
+                _projected(table.table, self.wide()[0])
                 self._settled(table.table)
             model = self._model(table)
             tracks.append(Track(track.time, table.table.q, table.table.v))
@@ -536,8 +536,13 @@ class _Run:
         time, watch = hit
         first = search.refined(watch, time, "fine")
         if not first.time > 0 or not first.time.is_finite():
+            since = float(phase.start)
             raise AccuracyUnreachable(
-                None, 1.0, f'the event of "{watch.one.name}" at {time:.6g} s cannot be located', path=("times",)
+                None,
+                1.0,
+                f'the event of "{watch.one.name}" {time:.6g} s after the phase begins at {since:.17g} s cannot be located',
+                path=("times",),
+                remedy=f"ask for earlier times than {since:.6g} s only",
             )
         if first.time > left:
             return []
@@ -679,17 +684,21 @@ def _bare(track: Track) -> Track:
     return Track(arb(track.time.mid()), [arb(x.mid()) for x in track.q], [arb(x.mid()) for x in track.v])
 
 
-def _projected(table: Table) -> None:
-    """Put a state onto the measures and rates of a table, in balls."""
+def _projected(table: Table, around: Sequence[Ball]) -> None:
+    """Put a state onto the measures and rates of a table, in balls.
+
+    Rows are redundant if they are within `around`, the places with the width to which they are known: beside the
+    measures, redundant rows differ by what the places miss, and a change that undoes both has no bound.
+    """
     held = [row for row in table.rows if row.measure is not None]
+    chosen = independent(row.line(around) for row in held)
     for _ in range(3):
-        lines = [row.line(table.q) for row in held]
-        chosen = independent(lines)
+        lines = [held[i].line(table.q) for i in chosen]
         residuals = [arb(evaluated(held[i].measure or {}, table.q).mid()) for i in chosen]
-        step = least_change(table, [lines[i] for i in chosen], residuals)
+        step = least_change(table, lines, residuals)
         table.q = [arb((q - d).mid()) for q, d in zip(table.q, step, strict=True)]
+    chosen = independent(row.line(around) for row in table.rows)
     lines = [row.line(table.q) for row in table.rows]
-    chosen = independent(lines)
     for _ in range(3):
         residuals = [sum((x * table.v[j] for j, x in lines[i].items()), ZERO) - table.rows[i].rate for i in chosen]
         step = least_change(table, [lines[i] for i in chosen], residuals)
