@@ -33,6 +33,8 @@ ORDER = 8
 _NOISE = 2.0**-44
 """Share of its terms below which the sign of something sampled in doubles is noise."""
 _CLOSER = 33
+_MOST_NARROWINGS = 8
+"""Of the bracket of an event, by a factor of 32 each: bounces rise and fall in a small part of an interval."""
 _EXACT = 2.0**-112
 """Share of a series' terms by which its last one may count where an event is located by it."""
 _UNKNOWN = 2.0**-90
@@ -364,13 +366,15 @@ class Sampled:
                 first = int(above[0]) + int(np.argmax(g[above[0] :] < -low[above[0] :]))
                 above = above[above < first]
             start = int(above[-1])
-            for _ in range(2):
+            for narrowing in range(_MOST_NARROWINGS):
                 # Newton's method needs a start on the falling side of a curve that may have risen before.
                 fine = np.linspace(fine[start], fine[first], _CLOSER)
                 g, low = (x[0] for x in Sampled(self.phase, self.model, [watch]).curves(fine))
                 below = g < -low
                 first = int(np.argmax(below)) if below.any() else _CLOSER - 1
                 start = max(first - 1, 0)
+                if narrowing > 0 and start > 0 and g[start] <= g[start - 1]:
+                    break
             a, b = g[start], g[first]
             guess = fine[start] + (fine[first] - fine[start]) * (a / (a - b) if a > 0 else 0.5)
             if best is None or guess < best[0]:

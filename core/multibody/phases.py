@@ -540,7 +540,7 @@ class _Run:
             raise AccuracyUnreachable(
                 None,
                 1.0,
-                f'the event of "{watch.one.name}" {time:.6g} s after the phase begins at {since:.17g} s cannot be located',
+                f'the event of "{watch.one.name}" {time:.6g} s after {since:.17g} s cannot be located',
                 path=("times",),
                 remedy=f"ask for earlier times than {since:.6g} s only",
             )

@@ -82,3 +82,35 @@ def test_what_an_impact_moves_is_not_said_to_rest() -> None:
     assert np.all(column(answer, "b.velocity").values[-1] != 0.0)
     (noticed,) = [line for line in answer.model.noticed if "nothing" in line]
     assert noticed == "until 1 s nothing moves a.angle, b.angle, far.x, far.y"
+
+
+def test_a_bounce_of_microseconds_is_found_in_a_long_time() -> None:
+    """A particle thrown up from 1.6e-11 m falls within 3 us, beside a pendulum that sets far longer steps.
+
+    Newton's law for the particle on its guide and the angle of the bob, by mpmath's Taylor series.
+    """
+    scene = read(
+        """{"gravity":[0,-9.81],"bodies":{"p":{"mass":1,"at":[0,1.6e-11],"velocity":[0,3.8e-6]},
+        "bob":{"mass":1,"at":[3,0]}},"connections":[
+        {"kind":"slider","a":"p","b":[0,0],"slope":{"degrees":90}},
+        {"kind":"contact","name":"floor","place":"p","on":{"at":[0,0]},"restitution":0.5},
+        {"kind":"rod","a":"bob","b":[2,0]},{"kind":"spring","a":"p","b":"bob","stiffness":3}]}"""
+    )
+    answer = solve_scene(scene, np.array([0.0, 0.14]))
+    with mpmath.workdps(40):
+        gravity, height, rate = mpmath.mpf("9.81"), mpmath.mpf("1.6e-11"), mpmath.mpf("3.8e-6")
+        rest = mpmath.sqrt(9 + height**2)
+
+        def slopes(_: Any, state: Any) -> list[Any]:
+            y, turn, up, spin = state
+            across, along = 2 + mpmath.cos(turn), mpmath.sin(turn) - y
+            length = mpmath.sqrt(across**2 + along**2)
+            pull = 3 * (length - rest) / length
+            torque = pull * (across * mpmath.sin(turn) - along * mpmath.cos(turn))
+            return [up, spin, pull * along - gravity, torque - gravity * mpmath.cos(turn)]
+
+        motion = mpmath.odefun(slopes, 0, [height, 0, rate, 0])
+        root = mpmath.findroot(lambda t: motion(t)[0], (2e-6, 3e-6))
+    first = answer.events[0]
+    assert (first.kind, first.name) == ("touch", "floor")
+    assert abs(first.time - float(root)) <= first.error + math.ulp(first.time) / 2
