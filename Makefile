@@ -8,6 +8,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 PIP += --no-compile
 
 .PHONY: serve test check kernels environment openapi judge plans record peers peers-scenes newest clean
+.PHONY: browser pictures vendor
 
 serve: $(ENV)/runs
 	@$(BIN)/python -m service
@@ -83,8 +84,42 @@ newest:
 	$(NEWEST)/bin/python -m pip list 2>/dev/null | grep -i uvicorn
 	$(NEWEST)/bin/python -m pytest -q -n 2 --dist worksteal
 
+# The pages in a real Chromium (Debian: apt-get install chromium), driven from an environment of its own.
+BROWSER := .venv-browser
+CHROMIUM := $(shell command -v chromium || command -v chromium-browser || command -v google-chrome)
+
+ifeq ($(CHROMIUM),)
+browser pictures:
+	@echo "skipped: no Chromium is installed here, and the pages are tested in no other browser"
+else
+browser: $(ENV)/runs $(BROWSER)/made
+	$(BROWSER)/bin/python -m pytest -q --confcutdir=tests/browser tests/browser
+
+pictures: $(ENV)/runs $(BROWSER)/made
+	$(BROWSER)/bin/python -m tests.browser.pictures
+endif
+
+$(BROWSER)/made: tests/browser/requirements.txt
+	$(PYTHON) -m venv $(BROWSER)
+	$(BROWSER)/bin/python -m pip install --quiet --disable-pip-version-check -r $<
+	@touch $@
+
+# The vendored files of the pages, from the npm packages of the versions in service/page/vendor/package.json.
+VENDOR := service/page/vendor
+
+vendor:
+	rm -rf build/vendor && mkdir -p build/vendor
+	cp $(VENDOR)/package.json $(VENDOR)/three.entry.mjs build/vendor
+	cd build/vendor && npm install --no-audit --no-fund && npm run build
+	cp build/vendor/three.js build/vendor/uplot.js build/vendor/swagger-ui-bundle.js build/vendor/swagger-ui.css $(VENDOR)
+	cp build/vendor/node_modules/uplot/dist/uPlot.min.css $(VENDOR)/uplot.css
+	cp build/vendor/node_modules/three/LICENSE $(VENDOR)/three.LICENSE.txt
+	cp build/vendor/node_modules/uplot/LICENSE $(VENDOR)/uplot.LICENSE.txt
+	cat build/vendor/node_modules/swagger-ui-dist/NOTICE build/vendor/node_modules/swagger-ui-dist/LICENSE > $(VENDOR)/swagger-ui.LICENSE.txt
+	cp build/vendor/node_modules/swagger-ui-dist/swagger-ui-bundle.js.LICENSE.txt $(VENDOR)/swagger-ui-bundle.LICENSE.txt
+
 clean:
-	rm -rf $(ENV) $(PEERS) $(NEWEST) .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(ENV) $(PEERS) $(NEWEST) $(BROWSER) build/vendor .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find core service -name __pycache__ -prune -exec rm -rf {} +
 
 # A longer fuzz than the tests', with a new seed each time; FUZZ is the number of questions for each endpoint.

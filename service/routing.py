@@ -90,6 +90,9 @@ class PostRoute:
         Questions beside the examples by which every kernel that the route can reach is compiled or loaded at the start.
     representations : mapping
         By media type, how an answer is written other than as JSON.
+    errors : callable or None
+        For answers that state no accuracy: from question and budget to bounds of the errors of the answer's figures,
+        under their names, and what the bounds rest on.
     elsewhere : mapping
         Fields that belong to another route, each with the remedy for who sends it here.
     """
@@ -109,6 +112,7 @@ class PostRoute:
     warming: Sequence[Mapping[str, Any]] = ()
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
     elsewhere: Mapping[str, str] = field(default_factory=dict)
+    errors: Callable[[Any, Budget], tuple[Answer, str]] | None = None
     method: str = "POST"
 
 
@@ -124,6 +128,8 @@ class GetRoute:
         Pydantic model that documents a JSON page.
     example : callable or None
         Returns an example of a JSON page.
+    documented : bool
+        Whether the OpenAPI document lists it.
     """
 
     path: str
@@ -135,6 +141,7 @@ class GetRoute:
     media_type: str = "application/json"
     description: str = ""
     example: Callable[[], Mapping[str, Any]] | None = None
+    documented: bool = True
     method: str = "GET"
 
 

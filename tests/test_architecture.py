@@ -164,6 +164,7 @@ TESTED_IN = {
     "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
 }
+TESTED_IN["core/assessment/sample_findings.py"] = "core/assessment/test_samples.py"
 TESTED_IN |= {
     f"core/assessment/catalogue/{name}.py": "contracts/test_mistakes.py"
     for name in ("bodies", "general", "rotation", "scenes")
@@ -172,9 +173,16 @@ TESTED_IN |= {
     f"core/multibody/{name}.py": f"core/multibody/test_{through}.py"
     for through, names in {
         "generic_equation": "trajectories",
+        "impacts": "accumulation impulses recurring_bounces",
         "description": "coordinates inertia laws measures rolling strings",
         "language": "reading",
         "along": "integrals",
+        "complementarity": "contact_forces contact_responses contact_states",
+        "contacts": (
+            "contact_start crossings expansion phase phase_answer phase_ends phases polynomial_roots projection"
+            " sampled_crossings start taylor_crossings tracks turning watches"
+        ),
+        "equilibria": "resting_places",
         "free_body": "turning_body",
         "numerical": "packed periods returns series series_pairs vertical_symmetry",
         "solve": "answer dynamics events modelling motion uniform whole",

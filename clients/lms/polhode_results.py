@@ -63,7 +63,7 @@ def claim(entry: Any, unit: str | None = None) -> dict[str, Any]:
         return {"formula": entry.strip()}
     try:
         value = json.loads(found[1]) if found[1][0] in "[tf" else float(found[1])
-    except ValueError:
+    except (ValueError, RecursionError):
         return {"formula": entry.strip()}
     if isinstance(value, float) and not math.isfinite(value):
         return {"formula": entry.strip()}

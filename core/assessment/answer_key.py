@@ -1,8 +1,8 @@
 """Answer keys: what grading needs to know of one question, as a document that is graded with where nothing is computed.
 
 A key has the references of figures with their bounds, the wrong values of recognised mistakes, and the parameters and
-variations by which formulas are judged. It is graded with by the same `Grader` as a question that is asked. Samples are
-covered at the times for which the key was made.
+variations by which formulas are judged. The same `Grader` grades with it as with a question that is
+answered. Samples are covered at the times for which the key was made.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from core.errors import NotApplicable, Path, pointer_of
 from core.quantities import members_of
 
 if TYPE_CHECKING:
-    from core.assessment.asked_question import AssessedQuestion
+    from core.assessment.graded_question import GradedQuestion
 
 Document = dict[str, Any]
 
@@ -60,7 +60,7 @@ class Terms:
 
 
 def key_of(
-    asked: AssessedQuestion,
+    question: GradedQuestion,
     terms: Terms,
     catalogue: Sequence[Mistake],
     claimed: Sequence[str],
@@ -70,7 +70,7 @@ def key_of(
 
     Parameters
     ----------
-    asked : AssessedQuestion
+    question : GradedQuestion
     terms : Terms
     catalogue : sequence of Mistake
         With the credits that are given.
@@ -79,34 +79,35 @@ def key_of(
     columns : sequence of (str, sequence of float)
         Pointers to columns of samples, each with times.
     """
-    paths = dict.fromkeys([*(steps_of(pointer) for pointer in claimed), *figures_within(asked.answer)])
+    paths = dict.fromkeys([*(steps_of(pointer) for pointer in claimed), *figures_within(question.answer)])
     found: list[tuple[Place, Reference]] = [
-        ((path, None), reference) for path in paths if (reference := asked.reference(path)) is not None
+        ((path, None), reference) for path in paths if (reference := question.reference(path)) is not None
     ]
     for pointer, times in columns:
         path = steps_of(pointer)
-        column = asked.samples(path, np.array(times, dtype=np.float64))
+        column = question.samples(path, np.array(times, dtype=np.float64))
         if column is not None:
             found.append(((path, tuple(times)), column))
-    parameters = asked.parameters(terms.names)
+    parameters = question.parameters(terms.names)
     numbers = [path for (path, _), reference in found if reference.form in ("number", "angle")]
     # Most figures have their variations at the same parameters, which are written once.
     settings: list[list[float]] = []
     variations: dict[str, list[Any]] = {}
     for path in numbers:
         at_path = variations[pointer_of(path)] = []
-        for one in asked.variations(path, parameters):
+        for one in question.variations(path, parameters):
             values = [one.parameters[name] for name in parameters]
             if values not in settings:
                 settings.append(values)
             at_path.append([settings.index(values), one.figure])
+    recognised = catalogue if terms.reveal else ()
     return {
-        "subject": asked.subject,
-        "request": asked.request,
+        "subject": question.subject,
+        "request": question.request,
         "comparison": None if terms.comparison is None else vars(terms.comparison),
         "comparisons": {pointer: vars(comparison) for pointer, comparison in terms.comparisons.items()},
         "reveal": terms.reveal,
-        "figures": [_figure(asked, place, reference, catalogue if terms.reveal else ()) for place, reference in found],
+        "figures": [_figure(question, place, reference, recognised) for place, reference in found],
         "mistakes": [
             {name: getattr(entry, name) for name in ("tag", "summary", "feedback", "credit")} for entry in catalogue
         ],
@@ -147,12 +148,12 @@ def _numbers(entries: Any) -> Floats | None:
         return None
 
 
-def _figure(asked: AssessedQuestion, place: Place, reference: Reference, catalogue: Sequence[Mistake]) -> Document:
+def _figure(question: GradedQuestion, place: Place, reference: Reference, catalogue: Sequence[Mistake]) -> Document:
     path, times = place
     wrong: list[list[Any]] = []
     if reference.form not in ("none",):
-        request = asked.request | ({} if times is None else {"times": list(times)})
-        values = WrongValues(Figure(asked.subject, request, path, reference, asked.evaluate), tuple(catalogue))
+        request = question.request | ({} if times is None else {"times": list(times)})
+        values = WrongValues(Figure(question.subject, request, path, reference, question.evaluate), tuple(catalogue))
         wrong = [[mistake.tag, _plain(other.value)] for mistake, other in values.entries]
     stated = {name: _plain(getattr(reference, name)) for name in STATED}
     return {"path": list(path), "times": None if times is None else list(times), "reference": stated, "wrong": wrong}
@@ -209,7 +210,7 @@ class AnswerKey:
         return [submission_view(i, grader.judged(one), reveal=reveal) for i, one in enumerate(submissions)]
 
     def evaluate(self, request: Any) -> Callable[[Path], Any]:
-        """Find nothing: no question is asked."""
+        """Find nothing: no question is question."""
         return lambda path: None
 
     def reference(self, path: Path) -> Reference | None:

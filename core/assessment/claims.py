@@ -57,7 +57,9 @@ class Claim:
             place = next(key for key in entry if key not in KEYS)
             shown = (place,) if len(place) <= 40 else ()
             raise InvalidParameter(shown, "be left out: it is not known here", remedy=f"known here: {', '.join(KEYS)}")
-        unit, formula = _text(entry, "unit", LONGEST_TEXT), _text(entry, "formula", LONGEST_FORMULA)
+        # An empty field of a form is no unit.
+        unit = (_text(entry, "unit", LONGEST_TEXT) or "").strip() or None
+        formula = _text(entry, "formula", LONGEST_FORMULA)
         if formula is not None:
             if "value" in entry or entry.get("times") is not None:
                 raise InvalidParameter("formula", "be left out beside a value or times")

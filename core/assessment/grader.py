@@ -16,13 +16,14 @@ from core.assessment.figures import steps_of
 from core.assessment.formulas import Formula
 from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
+from core.assessment.sample_findings import Consistent, SampleErrors
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.work import spend
 
 if TYPE_CHECKING:
-    from core.assessment.method_search import Consistent, MethodSearch
-    from core.assessment.samples import ExactSamples, SampleErrors
+    from core.assessment.method_search import MethodSearch
+    from core.assessment.samples import ExactSamples
     from core.rotation.torque_free import TorqueFree
 
 CLAIM = 4
@@ -100,7 +101,7 @@ class JudgedSubmission:
 
 
 class Question(Protocol):
-    """What is graded against: a question that is asked (`AssessedQuestion`), or the answer key of one."""
+    """What is graded against: a question that is computed (`GradedQuestion`), or the answer key of one."""
 
     @property
     def subject(self) -> str:
@@ -134,7 +135,7 @@ class Grader:
 
     Parameters
     ----------
-    asked : Question
+    question : Question
     comparison : Comparison or None
         Of every figure that has none of its own.
     comparisons : mapping of str to Comparison
@@ -155,14 +156,14 @@ class Grader:
 
     def __init__(
         self,
-        asked: Question,
+        question: Question,
         comparison: Comparison | None,
         comparisons: Mapping[str, Comparison],
         reveal: bool,
         catalogue: Sequence[Mistake],
         names: Mapping[str, Path] | None,
     ) -> None:
-        self._asked, self._comparison, self._comparisons = asked, comparison, comparisons
+        self._question, self._comparison, self._comparisons = question, comparison, comparisons
         self._reveal, self._names = reveal, names
         # Who knows how a value is wrong can often compute the right one from it.
         self._catalogue = tuple(catalogue) if reveal else ()
@@ -222,14 +223,16 @@ class Grader:
         return self._result(pointer, judgement, reference, mistakes, " ".join(why), samples)
 
     def _formula(self, pointer: str, path: Path, reference: Reference, text: str) -> JudgedClaim:
-        if reference.form not in ("number", "angle"):
+        if reference.form not in ("number", "angle", "none"):
             raise InvalidParameter("formula", "be left out: the figure is no number")
         try:
             formula = Formula.read(text, self._parameters)
         except InvalidParameter as fault:
             raise fault.inside("formula") from None
+        if reference.form == "none":
+            return self._result(pointer, Judgement("incorrect"), reference)
         if path not in self._variations:
-            self._variations[path] = self._asked.variations(path, self._parameters)
+            self._variations[path] = self._question.variations(path, self._parameters)
         judged = judge_formula(formula, self._variations[path], self._units, reference)
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
@@ -240,7 +243,7 @@ class Grader:
 
     @cached_property
     def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:
-        return self._asked.parameters(self._names)
+        return self._question.parameters(self._names)
 
     @cached_property
     def _units(self) -> Mapping[str, str]:
@@ -253,7 +256,7 @@ class Grader:
                 self._samples[key] = self._column(path, times)
             return self._samples[key]
         if pointer not in self.references:
-            reference = self._asked.reference(path)
+            reference = self._question.reference(path)
             if reference is None:
                 raise InvalidParameter(
                     (), "lead to a figure of the answer: a number, an array, a string, true or false"
@@ -263,7 +266,7 @@ class Grader:
 
     def _column(self, path: Path, times: Floats) -> Reference:
         try:
-            column = self._asked.samples(path, times)
+            column = self._question.samples(path, times)
         except MechanicsError as refused:
             # When a motion begins or ends may be what is to be found.
             why = f": {refused.detail}" if self._reveal else ""
@@ -275,7 +278,7 @@ class Grader:
     def _samples_judged(
         self, times: Floats, rows: Floats, reference: Reference, judgement: Judgement, *, identify: bool
     ) -> tuple[SampleErrors, Consistent | None] | None:
-        system = self._asked.rotation() if self._reveal else None
+        system = self._question.rotation() if self._reveal else None
         if system is None:
             return None
         # Not at the top: with an answer key, nothing is imported that has to be compiled.
@@ -295,8 +298,8 @@ class Grader:
         key = id(reference)
         if key not in self._wrong:
             # The figure of samples is a column at the times of the claim.
-            request = self._asked.request | ({} if times is None else {"times": times.tolist()})
-            figure = Figure(self._asked.subject, request, path, reference, self._asked.evaluate)
+            request = self._question.request | ({} if times is None else {"times": times.tolist()})
+            figure = Figure(self._question.subject, request, path, reference, self._question.evaluate)
             self._wrong[key] = WrongValues(figure, self._catalogue)
         return self._wrong[key]
 
@@ -323,7 +326,7 @@ def credited(catalogue: Sequence[Mistake], credits: Mapping[str, float]) -> tupl
 def _converted(claim: Claim, reference: Reference) -> Any:
     """Return a claim's value in the unit of the reference, None where the unit is missing."""
     value = claim.value
-    if reference.form in ("choice", "none") or not isinstance(value, (float, np.ndarray)):
+    if reference.form == "choice" or not isinstance(value, (float, np.ndarray)):
         return value
     if claim.unit is None:
         return value if reference.unit in UNITLESS else None

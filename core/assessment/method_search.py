@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from math import floor, inf, isfinite, log10
 from typing import Any
 
 import numpy as np
 
 from core.assessment.compare import Floats, norms
+from core.assessment.sample_findings import Consistent
 from core.assessment.student_methods import ExplicitMidpoint, Heun, SemiImplicitEuler
 from core.errors import MechanicsError
 from core.rotation.torque_free import TorqueFree
@@ -66,39 +66,6 @@ MOST_EVALUATIONS = 200_000
 
 MOST_OF_SOLVERS = 40_000
 """Evaluations that all runs of solvers may take, for all samples at the same times; each takes some 20 us."""
-
-
-@dataclass(frozen=True)
-class Consistent:
-    """A method by which the samples come out, confirmed by running it.
-
-    Attributes
-    ----------
-    method : str
-        Kind, or the solver's name, or "exact" for samples whose error is that of their rounding.
-    step : float or None
-        Length of the steps (s); None for a solver that chooses them.
-    tolerance : float or None
-        Relative, of a solver.
-    unexplained : float
-        Largest norm of the difference that is left (rad/s).
-    """
-
-    method: str
-    step: float | None
-    tolerance: float | None
-    unexplained: float
-
-    @property
-    def sentence(self) -> str:
-        """What the samples are, for who submitted them."""
-        if self.tolerance is not None:
-            return (
-                f"The samples are those of an adaptive method ({self.method}) at a tolerance of {self.tolerance:.0e}."
-            )
-        if self.step is not None:
-            return f"The samples are those of {self.method} with a step of {self.step:.6g} s."
-        return "The samples are right to the digits that they have, which are fewer than the tolerance needs."
 
 
 class MethodSearch:

@@ -58,7 +58,7 @@ class Figure:
         """Return another figure of the same answer, None where there is none."""
         return self.evaluate(self.request)(path)
 
-    def asked(self, request: Any) -> Any:
+    def answered(self, request: Any) -> Any:
         """Return this figure of the answer to a changed question, None where there is none."""
         return self.evaluate(request)(self.path)
 

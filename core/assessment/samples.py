@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.assessment.compare import Floats, norms
+from core.assessment.sample_findings import SampleErrors
 from core.errors import MechanicsError
 from core.rotation.torque_free import TorqueFree
 
@@ -25,46 +25,8 @@ NEWTON = 6
 ALIGNED = 0.5
 """Share of the error that a shift may leave for the samples to count as late or early."""
 
-
-@dataclass(frozen=True)
-class SampleErrors:
-    """How wrong samples are.
-
-    Attributes
-    ----------
-    largest : float
-        Largest norm of the error (rad/s).
-    final : float
-        At the time farthest from the start (rad/s).
-    within_until : float or None
-        First time, outwards from the start, at which the error is beyond the tolerance (s); None if at none.
-    energy_drift, angular_momentum_drift : float or None
-        Largest relative change against the start; None at rest.
-    phase_lag : float or None
-        By how much the samples are late (s), negative if they are early: the shift of the motion that is nearest to
-        them; None if no shift leaves less than half of the error.
-    separatrix_crossed : float or None
-        First time, outwards from the start, at which the samples circle another axis than the motion (s).
-    """
-
-    largest: float
-    final: float
-    within_until: float | None
-    energy_drift: float | None
-    angular_momentum_drift: float | None
-    phase_lag: float | None
-    separatrix_crossed: float | None
-
-    @property
-    def sentence(self) -> str:
-        """Since when the samples are wrong, for who submitted them; empty if they are from the start."""
-        if self.within_until is None or self.within_until == 0.0:
-            return ""
-        until = f"The samples are right until t = {self.within_until:.3g} s"
-        crossed = self.separatrix_crossed
-        if crossed is not None and abs(crossed) >= abs(self.within_until):
-            return f"{until}, then lost at the separatrix: from t = {crossed:.3g} s they circle another axis."
-        return f"{until}."
+LOST = 0.5
+"""Share of the largest rate that the error reaches where samples circle another axis."""
 
 
 class ExactSamples:
@@ -106,6 +68,8 @@ class ExactSamples:
             energy = _drift(energies, twice)
             momentum = _drift(norms(momenta), float(np.linalg.norm(start)))
         beyond = errors > tolerance
+        # Near the separatrix errors that scatter cross it, too, and lead nowhere.
+        lost = errors.max() > LOST * norms(self._right).max()
         return SampleErrors(
             float(errors.max()),
             float(errors[self._outwards[-1]]),
@@ -113,7 +77,7 @@ class ExactSamples:
             energy,
             momentum,
             self._phase_lag(rows, float(errors.max())),
-            self._first(other & beyond) if all(system.body.principal_of_motion.apart) else None,
+            self._first(other & beyond) if lost and all(system.body.principal_of_motion.apart) else None,
         )
 
     def _first(self, where: NDArray[np.bool_]) -> float | None:

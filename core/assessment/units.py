@@ -25,6 +25,7 @@ IMPORT = 1_000_000
 
 _PLAIN = re.compile(r"[\w°%µμ·*/^()²³⁻¹. +-]+")
 _NUMBERS = re.compile(r"\d{2}|(?<![\^*(-])(?<![A-Za-z_])\d|\d\.|\.\d")
+_RECIPROCAL = re.compile(r"\s*1\s*/")
 _FACTOR = re.compile(r"([*/]?)([A-Za-z]+)(?:\^(-?\d))?")
 _DERIVED = {
     "N": {"kg": 1, "m": 1, "s": -2},
@@ -112,7 +113,7 @@ def _registry() -> Any:
 def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     registry, remedy = _registry(), "the quantity is a pure number" if unit == "1" else f"the quantity is in {unit}"
     # A text that is none of a unit's is not given to the parser, and no power may be large.
-    if not _PLAIN.fullmatch(given) or _NUMBERS.search(given):
+    if not _PLAIN.fullmatch(given) or _NUMBERS.search(_RECIPROCAL.sub("/", given, count=1)):
         return "be a product of powers of units", remedy
     try:
         parsed = registry.parse_units(given)

@@ -15,9 +15,9 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from core.assessment.asked_question import AssessedQuestion
 from core.assessment.compare import Reference
 from core.assessment.figures import value_at
+from core.assessment.graded_question import GradedQuestion
 from core.assessment.propagation import HALF_ULP, at, changed
 from core.assessment.varied_input import Digits, End, VariedInput, rounded
 from core.errors import InvalidParameter, MechanicsError, Path
@@ -137,7 +137,7 @@ class Variants:
     request: Any
     vary: Mapping[Path, VariedInput]
     together: Mapping[Path, Sequence[Path]]
-    ask: Callable[[Any], AssessedQuestion]
+    ask: Callable[[Any], GradedQuestion]
     figures: Mapping[str, Path]
     constraints: Mapping[str, Constraint]
     constrained: Mapping[str, Path]
@@ -188,9 +188,9 @@ class Variants:
 
     def _tried(self, request: Any, values: Mapping[str, list[Any]], draw: int) -> Member | str:
         """Return a member, or the reason for which there is none."""
-        asked = self.ask(request)
+        question = self.ask(request)
         try:
-            answer = asked.answer
+            answer = question.answer
         except MechanicsError:
             return REFUSED
         if not {notice.code for notice in answer.get("warnings", ())} <= self.warnings:
@@ -203,7 +203,7 @@ class Variants:
                 return pointer
         references: dict[str, Reference] = {}
         for pointer, path in self.figures.items():
-            reference = asked.reference(path)
+            reference = question.reference(path)
             if reference is not None and reference.form != "none":
                 references[pointer] = reference
             elif self.required:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from core import bodies
 from core.bodies.mass_moments import MassMoments
@@ -159,12 +159,12 @@ class Composite:
         UnphysicalInertia
             If a principal moment is negative.
         """
-        moments, share, warnings, conditions = _moments_of_parts(self)
+        moments, wrong, warnings, conditions = _moments_of_parts(self)
         mass, center, inertia = moments.properties()
         trace = sum(inertia[k][k] for k in range(3))
         rounding = ROUNDED_ONCE
-        if share > 0 and trace > 0:
-            rounding = Rounding(max(DERIVED.share, float(share * moments.spread / trace)), False)
+        if wrong.second > 0 and trace > 0:
+            rounding = Rounding(max(DERIVED.share, float(wrong.second / trace)), False)
         found = MassProperties.from_exact(
             mass, center, inertia, warnings=warnings, conditions=conditions, rounding=rounding
         )
@@ -175,29 +175,49 @@ class Composite:
                 f"{float(found.principal.moments[0]):.6g} kg m^2: a hole is larger than what it is cut from",
                 remedy="let each hole lie inside of what it is cut from",
             )
-        return replace(found, about=self.about, described_by=self).with_validity_warning("parts")
+        far = max(map(abs, center))
+        found = replace(
+            found,
+            about=self.about,
+            described_by=self,
+            mass_error=float(wrong.mass),
+            center_of_mass_error=float((wrong.first + wrong.mass * far) / mass),
+        )
+        return found.with_validity_warning("parts")
 
 
-_Moments = tuple[MassMoments, Fraction, tuple[Notice, ...], tuple[Condition, ...]]
+class Wrong(NamedTuple):
+    """What moments of mass may be wrong by: nothing where every part is exact (kg, kg m, kg m^2)."""
+
+    mass: Fraction
+    first: Fraction
+    second: Fraction
+
+
+EXACT = Wrong(Fraction(0), Fraction(0), Fraction(0))
+
+_Moments = tuple[MassMoments, Wrong, tuple[Notice, ...], tuple[Condition, ...]]
 
 
 def _moments_of_parts(composite: Composite) -> _Moments:
     """Return the moments of mass about the composite's origin, what was noticed, and what the report says.
 
-    Second is what the moments may be wrong by, as a share of their spread: nothing where every part is exact.
+    Second is what the moments may be wrong by.
     """
-    total, wrong = MassMoments(), Fraction(0)
+    total, wrong = MassMoments(), EXACT
     warnings: list[Notice] = []
     conditions: list[Condition] = []
     for i, part in enumerate(composite.parts):
         spend(WORK_OF_A_PART)
         try:
-            moments, share, noticed, reported = _moments(part.body)
+            moments, own, noticed, reported = _moments(part.body)
         except InvalidParameter as fault:
             raise fault.inside("parts", i, "body") from None
         placed = moments.turned(part.attitude).moved(part.position)
         total += -placed if part.hole else placed
-        wrong += share * abs(placed.spread)
+        if own != EXACT:
+            moved = _moved(own, moments, placed, Fraction(max(map(abs, part.position))))
+            wrong = Wrong(*(a + b for a, b in zip(wrong, moved, strict=True)))
         warnings += [notice.inside("parts", i, "body") for notice in noticed]
         conditions += reported
     if not total.massive:
@@ -206,7 +226,14 @@ def _moments_of_parts(composite: Composite) -> _Moments:
             "weigh more than the holes among them",
             remedy="add what the holes are cut from; a composite that is a hole as a whole is a part with hole: true",
         )
-    return total, wrong / total.spread if wrong else wrong, tuple(warnings), tuple(conditions)
+    return total, wrong, tuple(warnings), tuple(conditions)
+
+
+def _moved(wrong: Wrong, moments: MassMoments, placed: MassMoments, shift: Fraction) -> Wrong:
+    """Return what the moments of a part may be wrong by after it is turned and moved."""
+    share = wrong.second / abs(moments.spread) if moments.spread else Fraction(0)
+    # A turn mixes three coordinates by a unit vector, whose entries add up to less than 2.
+    return Wrong(wrong.mass, 2 * wrong.first + wrong.mass * shift, share * abs(placed.spread))
 
 
 def moments_of(body: Any) -> MassMoments:
@@ -223,10 +250,10 @@ def _moments(body: Any) -> _Moments:
         mass = body.weigh(shape)
         exact = MassMoments.of(mass, shape.center_of_mass, [[mass * x for x in row] for row in shape.inertia])
         if not isinstance(body, Mesh):
-            return exact, Fraction(0), (), ()
+            return exact, EXACT, (), ()
         solid = body.filled() if body.is_hole else body
         own = solid.mass_properties()
-        return exact, Fraction(own.rounding.share), own.warnings, own.conditions
+        return exact, _wrong(own, exact), own.warnings, own.conditions
     own = body.mass_properties()
     for name, known in (("mass", own.mass), ("center_of_mass", own.center_of_mass)):
         if known is None:
@@ -236,5 +263,10 @@ def _moments(body: Any) -> _Moments:
                 remedy="give an inertia-tensor with mass and center_of_mass, or another kind of body",
             )
     exact = MassMoments.of(own.exact_mass, own.exact_center_of_mass, own.exact_inertia)
-    share = Fraction(0) if own.rounding.exact_zeros else Fraction(own.rounding.share)
-    return exact, share, own.warnings, own.conditions
+    return exact, EXACT if own.rounding.exact_zeros else _wrong(own, exact), own.warnings, own.conditions
+
+
+def _wrong(own: MassProperties, moments: MassMoments) -> Wrong:
+    mass, far = Fraction(own.mass_error), max(map(abs, own.exact_center_of_mass))
+    first = own.exact_mass * Fraction(own.center_of_mass_error) + mass * far
+    return Wrong(mass, first, Fraction(own.rounding.share) * abs(moments.spread))

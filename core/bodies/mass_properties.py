@@ -59,6 +59,9 @@ class MassProperties:
         What is known of the components of the tensor.
     unrounded : matrix of Fraction, optional
         The tensor before it was rounded, where it is exact.
+    mass_error, center_of_mass_error : float
+        What the mass and each coordinate of the centre of mass may be wrong by, beside their rounding to two doubles
+        (kg, m).
     """
 
     inertia: Floats
@@ -73,6 +76,8 @@ class MassProperties:
     described_by: Any = None
     rounding: Rounding = GIVEN
     unrounded: Matrix | None = None
+    mass_error: float = 0.0
+    center_of_mass_error: float = 0.0
 
     def __post_init__(self) -> None:
         self.inertia.setflags(write=False)

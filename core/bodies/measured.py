@@ -220,10 +220,14 @@ class PointMasses:
         ]
         trace = products[0][0] + products[1][1] + products[2][2]
         inertia = [[(trace if i == j else 0) - products[i][j] for j in range(3)] for i in range(3)]
+        rounding = summed(len(m))
         return replace(
-            MassProperties.from_exact(kilograms * mass, center, inertia, rounding=summed(len(m))),
+            MassProperties.from_exact(kilograms * mass, center, inertia, rounding=rounding),
             about=self.about,
             described_by=self,
+            mass_error=rounding.share * float(kilograms * mass),
+            # A sum of masses times coordinates of at most one unit, over the mass.
+            center_of_mass_error=2.0 * rounding.share * float(max(local.unit)),
         )
 
 

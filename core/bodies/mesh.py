@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Annotated, Any, Literal
@@ -109,6 +109,8 @@ class Mesh(Uniform):
                 f"bound a solid: no matter has the moments that were found (not so: {failed})",
                 remedy="turn separate surfaces outwards, and take apart surfaces that pass through each other",
             )
+        weighed = 0.0 if self.density is None else self._solid.share * float(found.exact_mass)
+        found = replace(found, mass_error=weighed, center_of_mass_error=self._solid.centroid_error)
         return found.with_warnings(self._solid.notices, conditions)
 
 
@@ -116,13 +118,14 @@ class Mesh(Uniform):
 class _Solid:
     """Volume (m^3), centroid (m) and mean of d_i d_j over the solid, d from the centroid (m^2).
 
-    `share` is the error bound of the means, relative to the largest.
+    `share` is the error bound of the means, relative to the largest; `centroid_error` that of a coordinate (m).
     """
 
     volume: Fraction
     centroid: Sequence[Fraction]
     products: Sequence[Sequence[Fraction]]
     share: float
+    centroid_error: float
     notices: tuple[Notice, ...]
 
     @classmethod
@@ -175,6 +178,7 @@ class _Solid:
                 for i in range(3)
             ],
             float(noise * max(u) ** 2 / widest) if widest > 0 else 1.0,
+            float(noise * max(u)),
             tuple(notices),
         )
 

@@ -23,6 +23,8 @@ class Accumulation:
         State right after the impact, and the accelerations of every arc.
     push : sequence of ball
         What an impulse one along the gap, with its friction, adds to the rates.
+    yields : ball
+        Rate D that it adds to the gap's.
     opening, closing : ball
         Rate w at which the gap opens, and gamma > 0 at which that falls.
     restitution : ball
@@ -48,6 +50,11 @@ class Accumulation:
         """Time until the bounces end."""
         return self.first / (1 - self.restitution)
 
+    @property
+    def total(self) -> Ball:
+        """Sum of the impulses."""
+        return (1 + self.restitution) * self.opening / (self.yields * (1 - self.restitution))
+
     def begins(self, n: int) -> Ball:
         """Return when arc n begins."""
         return self.first * (1 - self.restitution**n) / (1 - self.restitution)
@@ -72,10 +79,9 @@ class Accumulation:
 
     def _state(self, time: Ball, power: Ball) -> tuple[list[Ball], list[Ball]]:
         e, d = self.restitution, self.first
-        unit = (1 + e) * self.opening / (self.yields * (1 - e))
-        total = unit * (1 - power)
+        total = self.total * (1 - power)
         # Sum of the impulses, each times when it came.
-        moment = unit * d / (1 - e) * ((1 - power) - e * (1 - power * power) / (1 + e))
+        moment = self.total * d / (1 - e) * ((1 - power) - e * (1 - power * power) / (1 + e))
         places = [
             q + time * (v + a * time / 2) + r * (total * time - moment)
             for q, v, a, r in zip(self.q, self.v, self.a, self.push, strict=True)

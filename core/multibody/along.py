@@ -20,12 +20,19 @@ MOST_NODES = 20_000
 
 _SMALL = 2.0**-50
 _TELL = 4.0
+_PARTS = 8
+"""A motion proposes eight times for every step of its series; within a step an integrand is smooth."""
 
 State = tuple[Floats, Floats]
 
 
-def watched_times(whole: Whole, end: float) -> Floats:
+def watched_times(whole: Whole, end: float, every: int = 1) -> Floats:
     """Return times from zero to `end` so close that nothing turns twice between two of them, whole periods included.
+
+    Parameters
+    ----------
+    every : int, optional
+        Of the times that each motion proposes, only each `every`-th is taken.
 
     Raises
     ------
@@ -36,9 +43,9 @@ def watched_times(whole: Whole, end: float) -> Floats:
     for _, motion in whole.parts:
         period = None if motion.period is None else float(motion.period)
         if period is None or period >= abs(end):
-            found.append(motion.nodes(end))
+            found.append(motion.nodes(end)[::every])
             continue
-        once = np.abs(motion.nodes(copysign(period, end)))
+        once = np.abs(motion.nodes(copysign(period, end))[::every])
         count = int(abs(end) / period) + 1
         if count * len(once) > MOST_NODES:
             what = "times at which the motion is looked at"
@@ -135,5 +142,5 @@ def _from_the_start(whole: Whole, integrand: Integrand, times: Floats) -> tuple[
     for chosen in (times > 0.0, times < 0.0):
         if np.any(chosen):
             end = float(times[chosen][np.argmax(np.abs(times[chosen]))])
-            total[chosen], error[chosen] = integrated(integrand, watched_times(whole, end), times[chosen])
+            total[chosen], error[chosen] = integrated(integrand, watched_times(whole, end, _PARTS), times[chosen])
     return total, error

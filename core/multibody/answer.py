@@ -361,6 +361,46 @@ class SceneProblem:
 
 
 @dataclass(frozen=True)
+class RestEnd:
+    """One end of the range.
+
+    Attributes
+    ----------
+    value, error : float
+        In the unit of the number.
+    beyond : mapping of str to str, or None
+        What every contact that touches does just beyond; None where rest lasts up to the bound.
+    problem : str or None
+        Code of what is undecided just beyond.
+    """
+
+    value: float
+    error: float
+    beyond: Mapping[str, str] | None
+    problem: str | None = None
+
+
+@dataclass(frozen=True)
+class RestRange:
+    """The range of one number in which a scene stays at rest.
+
+    Attributes
+    ----------
+    vary : str
+        JSON pointer of the number.
+    written : float
+        Its value in the description.
+    lower, upper : RestEnd or None
+        None where the scene does not rest as it is written.
+    """
+
+    vary: str
+    written: float
+    lower: RestEnd | None
+    upper: RestEnd | None
+
+
+@dataclass(frozen=True)
 class SceneAnswer:
     """The answer to a question about a scene; what was not asked for is None."""
 
@@ -377,3 +417,4 @@ class SceneAnswer:
     extremes: tuple[Extremes, ...] | None = None
     phases: tuple[ScenePhase, ...] | None = None
     problem: SceneProblem | None = None
+    thresholds: tuple[RestRange, ...] | None = None

@@ -26,6 +26,28 @@ class State(Enum):
         return {State.FORWARD: 1, State.BACKWARD: -1}.get(self, 0)
 
 
+def sticks_more(other: Sequence[State], one: Sequence[State]) -> bool:
+    """Return whether other states differ only in that something sticks where here it begins to slide.
+
+    With a static coefficient above the kinetic both may be consistent; sticking wins.
+    """
+    pairs = list(zip(other, one, strict=True))
+    return any(a is not b for a, b in pairs) and all(a is b or (a is State.STICK and b.sense != 0) for a, b in pairs)
+
+
+def change_of(one: Unilateral, old: State, new: State) -> str:
+    """Return what the event is called by which a state changes; nothing for a closing, which is an impact."""
+    if old is new:
+        return ""
+    if new is State.OPEN:
+        return one.opens
+    if old is State.OPEN:
+        return ""
+    if new is State.STICK:
+        return "roll" if one.rolls else "stick"
+    return "slip"
+
+
 @dataclass(frozen=True)
 class Problem:
     """Something that mechanics does not decide.

@@ -9,7 +9,6 @@ given start would never move are free here.
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import null_space
 
 from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.answer import Equilibrium
@@ -18,8 +17,8 @@ from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
 from core.multibody.packed import Floats, Packed, Units, packed, state, two_to, units_of
 from core.multibody.passes import Reduced, reduced
-from core.multibody.table import Table
-from core.multibody.whole import values
+from core.multibody.resting_places import RestingPlaces
+from core.multibody.small_systems import solutions
 from core.work import spend
 
 MOST_FOUND = 100
@@ -34,6 +33,13 @@ _SAME = 1e-7
 _CONVERGED = 1e-10
 _SETTLED = 1e-6
 """Largest last relative change of the multipliers: beside a length of zero they grow without bound."""
+_ENDED = 1e-13
+_FAR, _HARD = 1e6, 1e12
+"""Places and multipliers beyond which a start is given up."""
+_DWARFED = 1e4
+"""Multipliers so many times the forces, where the equations are nearly singular, are those beside a length of zero."""
+_REMOTE = 1e3
+"""So far out, in the scene's own unit, nearly singular equations are those of forces that vanish at infinity."""
 _SMALL = 1e-9
 
 
@@ -67,11 +73,12 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
             dense.tie(number, found, small, units, frames[table.rows[r].name], two_to(units.rows[r]))
     start = state(table, units)[0][:, 0]
     places = _search(dense, start, len(table.names) - len(chosen))
-    answers = []
-    for q, multipliers in places:
-        if not _possible(found, small, units, q):
-            continue
-        answers.append((dense.potential(q), _described(found, small, table, units, dense, q, multipliers)))
+    resting = RestingPlaces(found, small, units)
+    answers = [
+        (dense.potential(q), _described(resting, units.time, dense, q, multipliers))
+        for q, multipliers in places
+        if resting.possible(q)
+    ]
     answers.sort(key=lambda entry: entry[0])
     return tuple(entry[1] for entry in answers[:MOST_FOUND])
 
@@ -116,12 +123,13 @@ class _Dense:
 
     def jacobian(self, q: Floats) -> Floats:
         """Return W at places of shape (..., n)."""
-        found: Floats = self.lines + np.einsum("rji,...i->...rj", self.slopes, q)
+        m, n = self.lines.shape
+        found: Floats = self.lines + (q @ self.slopes.reshape(m * n, n).T).reshape(*q.shape[:-1], m, n)
         return found
 
     def measures(self, q: Floats) -> Floats:
         """Return g at places of shape (..., n)."""
-        found: Floats = self.offset + np.einsum("...rj,...j->...r", (self.lines + self.jacobian(q)) / 2, q)
+        found: Floats = self.offset + np.matmul((self.lines + self.jacobian(q)) / 2, q[..., None])[..., 0]
         for row, forms, (turn, angle), factor in self.ties:
             now, cosine, sine = (q @ line + offset for line, offset in forms)
             # The angle may differ from the direction by full turns: a spring that is wound up.
@@ -159,142 +167,124 @@ def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Fl
         multipliers = np.zeros((count, m))
         if m:
             pulls = q @ dense.stiffness.T - dense.load
-            multipliers = np.einsum("...rj,...j->...r", np.linalg.pinv(np.swapaxes(dense.jacobian(q), 1, 2)), pulls)
-        for _ in range(_ROUNDS):
-            step = _newton(dense, q, multipliers)
-            q, multipliers = q + step[:, :n], multipliers + step[:, n:]
-            good = np.all(np.isfinite(q), axis=1) & (np.abs(q).max(axis=1) < 1e6)
-            q, multipliers = q[good], multipliers[good]
-            if not len(q):
-                return []
-        step = _newton(dense, q, multipliers)
+            multipliers = _saddle(dense.jacobian(q), pulls, np.zeros((count, m)))[:, n:]
+        known = np.abs(multipliers).max(axis=1, initial=0.0) < _HARD
+        q, multipliers = _followed(dense, q[known], multipliers[known])
+        if not len(q):
+            return []
+        step, singular = _newton(dense, q, multipliers)
         left, measures = _residuals(dense, q, multipliers, dense.jacobian(q))
     # A step alone may be short where the equations are nearly singular and not solved.
     size = 1.0 + np.abs(q).max(axis=1)
-    terms = np.abs(dense.load).max(initial=0.0) + np.abs(q @ dense.stiffness.T).max(axis=1)
+    terms = _forces(dense, q)
     done = np.abs(step[:, :n]).max(axis=1) < _CONVERGED * size
     done &= np.abs(left).max(axis=1) <= _CONVERGED * terms
     done &= np.abs(measures).max(axis=1, initial=0.0) < _CONVERGED * size**2
     largest = np.abs(multipliers).max(axis=1, initial=0.0)
     done &= np.abs(step[:, n:]).max(axis=1, initial=0.0) <= _SETTLED * (largest + terms)
+    done &= ~(singular & ((largest > _DWARFED * terms) | (size > _REMOTE)))
+    q, multipliers = q[done], multipliers[done]
     found: list[tuple[Floats, Floats]] = []
-    for place, multiplier in zip(q[done], multipliers[done], strict=True):
-        if all(np.abs(place - other).max() > _SAME * (1.0 + np.abs(place).max()) for other, _ in found):
-            found.append((place, multiplier))
-        if len(found) >= MOST_FOUND:
-            break
+    while len(q) and len(found) < MOST_FOUND:
+        found.append((q[0], multipliers[0]))
+        other = np.abs(q - q[0]).max(axis=1) > _SAME * (1.0 + np.abs(q).max(axis=1))
+        q, multipliers = q[other], multipliers[other]
     return found
+
+
+def _forces(dense: _Dense, q: Floats) -> Floats:
+    """Return the size of the forces at places, those of the connections apart."""
+    found: Floats = np.abs(dense.load).max(initial=0.0) + np.abs(q @ dense.stiffness.T).max(axis=1)
+    return found
+
+
+def _followed(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
+    """Return where Newton's method leads, in the order of the starts; those that leave every bound are left out."""
+    n = q.shape[1]
+    order = np.arange(len(q))
+    ended: list[tuple[Floats, Floats, np.ndarray]] = []
+    for _ in range(_ROUNDS):
+        (step, singular), left = _newton(dense, q, multipliers), _residuals(dense, q, multipliers, dense.jacobian(q))[0]
+        # Where the equations are nearly singular a step may be short though they are not solved.
+        solved = ~singular | (np.abs(left).max(axis=1) <= _ENDED * _forces(dense, q))
+        q, multipliers = q + step[:, :n], multipliers + step[:, n:]
+        largest = np.abs(q).max(axis=1)
+        held = np.abs(multipliers).max(axis=1, initial=0.0)
+        good = (largest < _FAR) & (held < _HARD)
+        # Beyond a step as short as this there is only rounding.
+        short = np.abs(step[:, :n]).max(axis=1) <= _ENDED * (1.0 + largest)
+        short &= np.abs(step[:, n:]).max(axis=1, initial=0.0) <= _ENDED * (1.0 + held)
+        short &= solved
+        there = good & short
+        ended.append((q[there], multipliers[there], order[there]))
+        go = good & ~short
+        q, multipliers, order = q[go], multipliers[go], order[go]
+        if not len(q):
+            break
+    ended.append((q, multipliers, order))
+    q, multipliers, order = (np.concatenate([entry[k] for entry in ended]) for k in range(3))
+    as_started = np.argsort(order)
+    return q[as_started], multipliers[as_started]
 
 
 def _onto(dense: _Dense, q: Floats) -> Floats:
     if not len(dense.offset):
         return q
     for _ in range(8):
-        inverse = np.linalg.pinv(dense.jacobian(q))
-        q = q - np.clip(np.einsum("...jr,...r->...j", inverse, dense.measures(q)), -1.0, 1.0)
+        step = _saddle(dense.jacobian(q), np.zeros_like(q), -dense.measures(q))[:, : q.shape[1]]
+        q = q + np.clip(step, -1.0, 1.0)
         q = np.where(np.isfinite(q), q, 0.0)
     return q
 
 
-def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> Floats:
+def _saddle(w: Floats, first: Floats, second: Floats) -> Floats:
+    """Return the solutions (x, y) of x + W^T y = first, W x = second: the shortest x, or the y of least squares."""
+    n, m = first.shape[1], second.shape[1]
+    system = np.zeros((len(w), n + m, n + m))
+    system[:, :n, :n] = np.eye(n)
+    system[:, :n, n:] = np.swapaxes(w, 1, 2)
+    system[:, n:, :n] = w
+    return solutions(system, np.concatenate([first, second], axis=1))[0]
+
+
+def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[Floats, np.ndarray]:
+    """Return the steps of places and multipliers, and which systems were nearly singular."""
     n, m = q.shape[1], multipliers.shape[1]
     w = dense.jacobian(q)
     system = np.zeros((len(q), n + m, n + m))
-    system[:, :n, :n] = np.einsum("rji,...r->...ji", dense.slopes, multipliers) - dense.stiffness
+    system[:, :n, :n] = (multipliers @ dense.slopes.reshape(m, n * n)).reshape(-1, n, n) - dense.stiffness
     system[:, :n, n:] = np.swapaxes(w, 1, 2)
     system[:, n:, :n] = w
-    right = -np.concatenate(_residuals(dense, q, multipliers, w), axis=1)
     # Places without a single solution nearby make no step of their own.
-    inverse = np.linalg.pinv(system, rcond=1e-13)
-    found: Floats = np.einsum("...ij,...j->...i", inverse, right)
-    return found
+    return solutions(system, -np.concatenate(_residuals(dense, q, multipliers, w), axis=1))
 
 
 def _residuals(dense: _Dense, q: Floats, multipliers: Floats, w: Floats) -> tuple[Floats, Floats]:
     """Return the forces left over and the measures that are not held."""
-    left = dense.load - q @ dense.stiffness.T + np.einsum("...rj,...r->...j", w, multipliers)
+    left = dense.load - q @ dense.stiffness.T + np.matmul(multipliers[:, None, :], w)[:, 0]
     return left, dense.measures(q)
 
 
-def _expanded(small: Reduced, units: Units, q: Floats) -> Floats:
-    """Return every coordinate as described, shape (1, n, 2), in SI units."""
-    z = q * np.array([two_to(e) for e in units.lengths])
-    whole = np.array(
-        [
-            sum((float(value) * (z[key[0]] if key else 1.0) for key, value in expression.items()), 0.0)
-            for expression in small.expressions
-        ]
-    )
-    return np.stack([whole, np.zeros_like(whole)], axis=1)[None]
-
-
-def _possible(found: Described, small: Reduced, units: Units, q: Floats) -> bool:
-    """Return whether lengths are positive there and strings taut."""
-    measures = found.measures
-    place = _expanded(small, units, q)
-    table = measures.table
-    lines = np.zeros((len(table.rows), len(table.names)))
-    for r, row in enumerate(table.rows):
-        for j, poly in row.rates.items():
-            lines[r, j] = values(poly, place)[0][0]
-    load = np.zeros(len(table.names))
-    for i, value in table.load.items():
-        load[i] += float(value)
-    for (i, j), value in table.stiffness.items():
-        load[i] -= float(value) * place[0, j, 0]
-    scale = np.abs(lines).max(axis=1)
-    multipliers = np.linalg.lstsq((lines / scale[:, None]).T, -load, rcond=1e-12)[0] / scale if len(scale) else scale
-    largest = float(np.max(np.abs(load), initial=0.0))
-    for limit in measures.limits:
-        if limit.length is not None and not values(limit.length, place)[0][0] > 0.0:
-            return False
-        if limit.force is not None:
-            force = measures.forces[limit.force]
-            total = sum(values(poly, place)[0][0] * multipliers[row] for row, poly in force.terms)
-            if total < -1e-9 * largest:
-                return False
-    return True
-
-
-def _described(
-    found: Described,
-    small: Reduced,
-    table: Table,
-    units: Units,
-    dense: _Dense,
-    q: Floats,
-    multipliers: Floats,
-) -> Equilibrium:
-    place = _expanded(small, units, q)[0, :, 0]
-    frames = found.measures.coordinates.frames
-    positions = {name: tuple(float(place[i]) for i in frame.position) for name, frame in frames.items()}
-    angles = {}
-    for name, frame in frames.items():
-        if frame.direction is not None:
-            c, s = frame.direction
-            angles[name] = float(np.arctan2(place[s], place[c]))
-        elif frame.turn is not None:
-            angles[name] = float(place[frame.turn])
+def _described(resting: RestingPlaces, time: int, dense: _Dense, q: Floats, multipliers: Floats) -> Equilibrium:
     left = dense.load - dense.stiffness @ q + dense.jacobian(q).T @ multipliers
     terms = np.abs(dense.load).max(initial=0.0) + np.abs(dense.stiffness @ q).max(initial=0.0)
     modes, stable = _small_motion(dense, q, multipliers)
-    rate = two_to(-units.time)
+    rate = two_to(-time)
     shown = tuple((float(w * rate), float(g * rate)) for w, g in modes)
-    return Equilibrium(positions, angles, stable, shown, float(np.abs(left).max(initial=0.0) / terms) if terms else 0.0)
+    residual = float(np.abs(left).max(initial=0.0) / terms) if terms else 0.0
+    return Equilibrium(*resting.shown(q), stable, shown, residual)
 
 
 def _small_motion(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[list[tuple[float, float]], bool | None]:
     """Return (frequency, growth rate) of the small motions near an equilibrium, and whether it is stable."""
     n, m = len(q), len(multipliers)
-    z = null_space(dense.jacobian(q)) if m else np.eye(n)
+    z = _directions(dense.jacobian(q)) if m else np.eye(n)
     if not z.shape[1]:
         return [], True
     mass = z.T @ dense.mass @ z
     damping = z.T @ dense.damping_at(q) @ z
     stiffness = z.T @ (dense.stiffness - np.einsum("rji,r->ji", dense.slopes, multipliers)) @ z
-    size = len(mass)
     inverse = np.linalg.inv(mass)
-    system = np.block([[np.zeros((size, size)), np.eye(size)], [-inverse @ stiffness, -inverse @ damping]])
     symmetric = np.abs(stiffness - stiffness.T).max() <= _SMALL * np.abs(stiffness).max()
     bound = np.sqrt(np.abs(inverse @ stiffness).max()) + np.abs(inverse @ damping).max()
     if symmetric and np.abs(damping).max(initial=0.0) <= _SMALL * bound * np.abs(mass).max():
@@ -304,6 +294,8 @@ def _small_motion(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[list[t
         edge = _SMALL * float(np.abs(squares).max(initial=0.0))
         lowest = float(squares.min())
         return modes, True if lowest > edge else (False if lowest < -edge else None)
+    size = len(mass)
+    system = np.block([[np.zeros((size, size)), np.eye(size)], [-inverse @ stiffness, -inverse @ damping]])
     roots = np.linalg.eigvals(system)
     modes = sorted((float(x.imag), float(x.real)) for x in roots if x.imag >= -_SMALL * bound)
     growth = float(roots.real.max())
@@ -314,3 +306,11 @@ def _small_motion(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[list[t
     # Damping and gyroscopic terms cannot destroy a minimum of the potential.
     convex = symmetric and float(np.linalg.eigvalsh((stiffness + stiffness.T) / 2).min()) > _SMALL * bound
     return modes, True if convex else None
+
+
+def _directions(w: Floats) -> Floats:
+    """Return an orthonormal basis of what rows of shape (m, n) leave free, by their singular values."""
+    _, sizes, right = np.linalg.svd(w)
+    rank = int(np.sum(sizes > np.finfo(float).eps * max(w.shape) * sizes.max(initial=0.0)))
+    free: Floats = right[rank:].T
+    return free

@@ -46,8 +46,8 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
     largest = float(np.max(size, initial=0.0))
     for depth in range(_DEPTH):
         middle = 0.5 * (low + high)
-        halves = [_gauss(integrand, *ends) for ends in ((low, middle), (middle, high))]
-        finer, judged, finer_size = (halves[0][k] + halves[1][k] for k in range(3))
+        halves = _gauss(integrand, np.concatenate([low, middle]), np.concatenate([middle, high]))
+        (first, finer), (_, judged), (_, finer_size) = ((x[: len(low)], x[: len(low)] + x[len(low) :]) for x in halves)
         off = np.abs(finer - whole)
         settled = (off <= _FINE * np.maximum(finer_size, 2.0**-8 * largest)) | (middle == low) | (depth == _DEPTH - 1)
         np.add.at(piece, owner[settled], finer[settled])
@@ -56,7 +56,7 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
         if not np.any(go):
             break
         owner = np.concatenate([owner[go], owner[go]])
-        whole = np.concatenate([halves[0][0][go], halves[1][0][go]])
+        whole = np.concatenate([first[go], (halves[0][len(low) :])[go]])
         low, high = np.concatenate([low[go], middle[go]]), np.concatenate([middle[go], high[go]])
     total = np.concatenate([np.zeros(1), np.cumsum(piece)])
     bound = np.concatenate([np.zeros(1), np.cumsum(error)])

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from flint import acb, acb_mat, acb_poly, arb, arb_mat
+from flint import acb, acb_mat, acb_poly, arb, arb_mat, ctx
 
 from core.balls import precision
 from core.errors import BudgetExceeded
@@ -73,7 +73,7 @@ class Modes:
     name: str = "modes"
     why: str = "every measure is linear and the forces are linear in places and velocities"
     how: str = "closed form"
-    _cache: dict[str, Any] = field(default_factory=dict, repr=False)
+    _known: dict[int, Any] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, table: Table, chosen: Sequence[int]) -> Modes:
@@ -154,7 +154,15 @@ class Modes:
         return States(q, v, errors[:, :n], errors[:, n:])
 
     def _terms(self, start: list[Ball]) -> Any:
-        """Return roots and their vector coefficients, or None where roots coincide."""
+        """Return roots and their vector coefficients, or None where roots coincide.
+
+        Of two roots that are conjugate, as their coefficients are, one stands for both, with twice its coefficients.
+        """
+        if ctx.prec not in self._known:
+            self._known[ctx.prec] = self._new_terms(start)
+        return self._known[ctx.prec]
+
+    def _new_terms(self, start: list[Ball]) -> Any:
         try:
             roots, vectors = acb_mat(self.matrix).eig(right=True)
             weights = vectors.solve(acb_mat([[acb(x)] for x in start])).entries()
@@ -164,7 +172,13 @@ class Modes:
         columns = [[table[i][k] * weights[k] for i in range(len(start))] for k in range(len(roots))]
         if any(x.rad() > 1e-20 * (1 + abs(x)) for column in columns for z in column for x in (z.real, z.imag)):
             return None
-        return [(root, column) for root, column in zip(roots, columns, strict=True)]
+        above, below = sum(root.imag > 0 for root in roots), sum(root.imag < 0 for root in roots)
+        if above != below:
+            return list(zip(roots, columns, strict=True))
+        twice = [(root, [2 * x for x in column]) for root, column in zip(roots, columns, strict=True) if root.imag > 0]
+        return twice + [
+            (root, column) for root, column in zip(roots, columns, strict=True) if not (root.imag > 0 or root.imag < 0)
+        ]
 
     def _at(self, t: Ball, start: list[Ball], terms: Any) -> list[Ball]:
         if terms is None:

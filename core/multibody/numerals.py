@@ -56,15 +56,21 @@ class Numerals:
         Whether a number that arrives as a double is that double exactly, and not the shortest decimal that reads as it.
     moved : collection of paths
         Numbers that are read as larger by the share `share` of themselves.
+    instead : mapping of path to ball
+        Numbers in place of those that are written.
     read : dict
         Filled with the numbers other than zero by their paths, as they are read; formulas are none.
+    every : dict
+        Filled with all numbers by their paths, formulas too.
     """
 
     let: Mapping[str, Ball]
     doubles: bool = False
     moved: Collection[Path] = ()
     share: float = SHIFT
+    instead: Mapping[Path, Ball] = field(default_factory=dict)
     read: dict[Path, Ball] = field(default_factory=dict, repr=False)
+    every: dict[Path, Ball] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(
@@ -73,6 +79,7 @@ class Numerals:
         numbers: Literal["decimals", "doubles"] = "decimals",
         moved: Collection[Path] = (),
         share: float = SHIFT,
+        instead: Mapping[Path, Ball] | None = None,
     ) -> Numerals:
         """Evaluate a list of definitions, each of which may use those before it.
 
@@ -88,7 +95,7 @@ class Numerals:
         if len(let) > MOST_NAMES:
             raise InvalidParameter("let", f"have at most {MOST_NAMES} names, not {len(let)}")
         known: dict[str, Ball] = {}
-        found = cls(known, numbers == "doubles", moved, share)
+        found = cls(known, numbers == "doubles", moved, share, instead or {})
         for name, number in let.items():
             plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
             if not plain or name in (*_FUNCTIONS, "pi"):
@@ -104,6 +111,11 @@ class Numerals:
         InvalidParameter
             If it is none, not finite, or too long, or divides by zero.
         """
+        found = self.instead[path] if path in self.instead else self._written(value, path)
+        self.every[path] = found
+        return found
+
+    def _written(self, value: Any, path: Path) -> Ball:
         if isinstance(value, str):
             return _Formula(value, self.let, path).value()
         if isinstance(value, Mapping):

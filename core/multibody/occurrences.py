@@ -20,6 +20,9 @@ from core.multibody.whole import Whole
 
 _SECTIONS = 33
 _ROUNDS = 14
+_MOST_ROUNDS = 100
+_CROWDED = np.concatenate([[0.0], 2.0 ** -np.arange(2, 54, 2), -(2.0 ** -np.arange(2, 54, 2))])
+_FLAT = 2.0**-51
 MOST_FOUND = 1000
 
 Sampler = Callable[[Floats], Column]
@@ -69,24 +72,24 @@ def occurrences(whole: Whole, sampler: Sampler, asked: When, end: float, most: i
     """
     grid = watched_times(whole, end)
     curve = sampler(grid).values - asked.equals
-    found: list[Occurrence] = []
+    crossings: list[tuple[float, float]] = []
     wanted = most if asked.nth is None else asked.nth
     touching = _touching(curve)
     for k in range(len(grid) - 1):
-        if len(found) >= wanted:
+        if len(crossings) >= wanted:
             break
-        brackets = [(grid[k], grid[k + 1])] if curve[k] * curve[k + 1] < 0.0 else []
         if k > 0 and curve[k] == 0.0:
-            brackets = [(grid[k], grid[k])]
-        elif touching[k] and not brackets and k + 2 < len(grid):
-            brackets = _pair(sampler, asked.equals, grid[k], grid[k + 2], curve[k])
-        for low, high in brackets:
-            found.append(_located(sampler, asked, low, high, len(found) + 1))
-    if len(grid) > 1 and curve[-1] == 0.0 and len(found) < wanted:
-        found.append(_located(sampler, asked, grid[-1], grid[-1], len(found) + 1))
+            crossings.append((grid[k], grid[k]))
+        elif curve[k] * curve[k + 1] < 0.0:
+            crossings.append((grid[k], grid[k + 1]))
+        elif touching[k] and k + 2 < len(grid):
+            crossings.extend(_pair(sampler, asked.equals, grid[k], grid[k + 2], curve[k]))
+    if len(grid) > 1 and curve[-1] == 0.0 and len(crossings) < wanted:
+        crossings.append((grid[-1], grid[-1]))
+    numbered = list(enumerate(crossings, 1))
     if asked.nth is not None:
-        return found[asked.nth - 1 : asked.nth]
-    return found
+        numbered = numbered[asked.nth - 1 : asked.nth]
+    return [_located(sampler, asked, low, high, number) for number, (low, high) in numbered]
 
 
 def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Extremes:
@@ -100,19 +103,20 @@ def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Extre
     end = single if repeats and single is not None else end
     grid = watched_times(whole, end)
     column = sampler(grid)
-    found = []
-    for sign in (-1.0, 1.0):
-        k = int(np.argmax(sign * column.values))
-        low, high = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-        time, value = grid[k], column.values[k]
-        for _ in range(_ROUNDS):
-            fine = np.linspace(low, high, _SECTIONS)
-            values = sampler(fine).values
-            i = int(np.argmax(sign * values))
-            if sign * values[i] >= sign * value:
-                time, value = fine[i], values[i]
-            low, high = fine[max(i - 1, 0)], fine[min(i + 1, _SECTIONS - 1)]
-        found.append((float(value), float(time)))
+    signs, which = (-1.0, 1.0), [int(np.argmax(sign * column.values)) for sign in (-1.0, 1.0)]
+    found = [(float(column.values[k]), float(grid[k])) for k in which]
+    windows = [(grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]) for k in which]
+    for _ in range(_ROUNDS):
+        fine = [np.linspace(low, high, _SECTIONS) for low, high in windows]
+        values = sampler(np.concatenate(fine)).values.reshape(2, _SECTIONS)
+        for number, sign in enumerate(signs):
+            i = int(np.argmax(sign * values[number]))
+            if sign * values[number, i] >= sign * found[number][0]:
+                found[number] = (float(values[number, i]), float(fine[number][i]))
+            windows[number] = (fine[number][max(i - 1, 0)], fine[number][min(i + 1, _SECTIONS - 1)])
+        # Where both are flat to rounding, looking closer tells nothing more.
+        if np.all(np.ptp(values, axis=1) <= _FLAT * np.abs(values).max(axis=1)):
+            break
     error = sampler(np.array([found[0][1], found[1][1]])).error
     return Extremes(
         quantity, column.unit, found[0][0], found[0][1], found[1][0], found[1][1], error, float(end), repeats
@@ -150,15 +154,20 @@ def _pair(sampler: Sampler, equals: float, low: float, high: float, before: floa
 def _located(sampler: Sampler, asked: When, low: float, high: float, number: int) -> Occurrence:
     """Return where the sign changes between two times, to the last bit, with the error of the time."""
     first = sampler(np.array([low])).values[0] - asked.equals
-    for _ in range(_ROUNDS):
-        if low == high:
+    fine = np.linspace(low, high, _SECTIONS)
+    for _ in range(_MOST_ROUNDS):
+        if not low < np.nextafter(low, high) < high:
             break
-        fine = np.linspace(low, high, _SECTIONS)
-        beyond = (sampler(fine).values - asked.equals) * first <= 0.0
-        k = int(np.argmax(beyond)) if np.any(beyond) else _SECTIONS - 1
-        if k == 0 or (fine[k - 1] == low and fine[k] == high):
+        values = sampler(fine).values - asked.equals
+        beyond = values * first <= 0.0
+        k = int(np.argmax(beyond)) if np.any(beyond) else len(fine) - 1
+        if k == 0:
             break
         low, high = fine[k - 1], fine[k]
+        # The chord's zero is close where the curve is smooth: the next times crowd around it.
+        near = low + (high - low) * values[k - 1] / (values[k - 1] - values[k])
+        around = near + (high - low) * _CROWDED
+        fine = np.unique(np.concatenate([[low, high], around[(around > low) & (around < high)]]))
     reach = (high - low) + 1e-6 * max(abs(high), np.finfo(float).tiny)
     around = sampler(np.array([low - reach, high, high + reach]))
     slope = abs(around.values[2] - around.values[0]) / (2 * reach + (high - low))

@@ -17,7 +17,7 @@ from flint import arb
 
 from core.balls import precision
 from core.compiled import kernel
-from core.double_double import Pair, dd_add, dd_mul, dd_mul_d
+from core.double_double import Pair, dd_add, dd_add_d, dd_mul, dd_mul_d
 from core.multibody.motion import States
 from core.multibody.numerical import (
     CHECK_ORDER,
@@ -26,7 +26,7 @@ from core.multibody.numerical import (
     FINE_TOLERANCE,
     Run,
 )
-from core.multibody.packed import Floats, Units, packed, state, two_to, units_of
+from core.multibody.packed import Floats, Units, packed, pair, state, two_to, units_of
 from core.multibody.polynomials import BITS, Ball, is_zero
 from core.multibody.returns import Passage, Section, added, distance, followed
 from core.multibody.series_pairs import moved_pairs
@@ -38,7 +38,7 @@ CLOSED = 1e-20
 UNCERTAIN = 2.0**-54
 """Share of a period by which two runs may differ: beside a separatrix what brings a motion back is rounding."""
 
-_PARTS = 8
+_PARTS = 4
 
 
 @dataclass
@@ -81,10 +81,9 @@ class Periodic:
         q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
         counts = np.zeros(len(times))
         late, off = self.uncertainty
-        shape = (self.run.starts, self.run.series, self.length, self.half, self.shift)
-        _fold(*shape, scaled, 0.0, q, v, counts)
         other, rate = np.zeros_like(q), np.zeros_like(v)
-        _fold(*shape, scaled, late, other, rate, np.zeros(len(times)))
+        shape = (self.run.starts, self.run.series, self.length, self.half, self.shift)
+        _fold(*shape, scaled, late, q, v, other, rate, counts)
         if self.turned is not None:
             with precision(BITS):
                 cosines = np.array([self._turn(k) for k in counts]).reshape(-1, 2, 2)
@@ -107,7 +106,7 @@ class Periodic:
         return self._turns[count]
 
     def nodes(self, end: float) -> Floats:
-        """Return eight times a step, over one period or up to `end`."""
+        """Return four times a step, over one period or up to `end`."""
         starts = self.run.starts[:, 0]
         if self.half:
             starts = np.concatenate([starts, self.length[0] - starts[-2::-1]])
@@ -127,7 +126,8 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
     normal = np.zeros(len(q))
     at_rest = all(is_zero(x) for x in table.v)
     if at_rest:
-        start = np.array([float(x) for x in acceleration]) * np.array([two_to(-e) for e in units.lengths])
+        # In the units of the arrays it is of the order of one, however hard the pull.
+        start = np.array([pair(x, 2 * units.time - e)[0] for x, e in zip(acceleration, units.lengths, strict=True)])
         normal[free] = start[free] / max(np.max(np.abs(start)), 1e-300)
     else:
         normal[free] = v[free, 0]
@@ -186,10 +186,16 @@ def _fold(
     late: float,
     q: Floats,
     v: Floats,
+    other: Floats,
+    rate: Floats,
     counts: Floats,
 ) -> None:
-    """Evaluate at times of shape (t,) by the time within the period."""
-    n = series.shape[1]
+    """Evaluate at times of shape (t,) by the time within the period.
+
+    `other` and `rate` are the state as late as the period's uncertainty would have it, for the judge of what follows
+    from the state: so little later that three terms of Taylor's series are more than enough.
+    """
+    n, order = series.shape[1], series.shape[2] - 1
     for s in range(times.shape[0]):
         count = math.floor(times[s] / length[0])
         th, tl = dd_mul_d(length[0], length[1], -count)
@@ -202,11 +208,11 @@ def _fold(
             count += 1.0
             th, tl = dd_add(th, tl, -length[0], -length[1])
         counts[s] = count
-        # As late as the period's uncertainty would have it, for the judge of what follows from the state.
-        th, tl = dd_add(th, tl, (abs(count) + 1.0) * late, 0.0)
+        later = (abs(count) + 1.0) * late
         back = half and th > 0.5 * length[0]
         if back:
             th, tl = dd_add(length[0], length[1], -th, -tl)
+            later = -later
         low, high = 0, series.shape[0] - 1
         while low < high:
             middle = (low + high + 1) // 2
@@ -217,11 +223,18 @@ def _fold(
         hh, hl = dd_add(th, tl, -starts[low, 0], -starts[low, 1])
         moved_pairs(series[low], hh, hl, q[s], v[s])
         for i in range(n):
+            gain = 0.0
+            for k in range(order, 1, -1):
+                gain = gain * hh + k * (k - 1) * series[low, i, k, 0]
+            moved = later * (v[s, i, 0] + 0.5 * later * gain)
+            rate[s, i, 0], rate[s, i, 1] = dd_add_d(v[s, i, 0], v[s, i, 1], later * gain)
             if back:
                 v[s, i, 0], v[s, i, 1] = -v[s, i, 0], -v[s, i, 1]
+                rate[s, i, 0], rate[s, i, 1] = -rate[s, i, 0], -rate[s, i, 1]
             if shift[i, 0] != 0.0:
                 ph, pl = dd_mul_d(shift[i, 0], shift[i, 1], count)
                 q[s, i, 0], q[s, i, 1] = dd_add(q[s, i, 0], q[s, i, 1], ph, pl)
+            other[s, i, 0], other[s, i, 1] = dd_add_d(q[s, i, 0], q[s, i, 1], moved)
 
 
 @kernel()

@@ -26,16 +26,20 @@ from core.multibody.dynamics import ForceAtStart, forces_at_start, multipliers_a
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.packed import Floats, nearest, pair
-from core.multibody.phases import FLOOR, TOLD, Phase, PhaseMotion, motion_in_phases
+from core.multibody.phase import Phase, PhaseMotion
+from core.multibody.phases import motion_in_phases
 from core.multibody.polynomials import Ball
 from core.multibody.shortened import shortened
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
+from core.multibody.tracks import FLOOR, TOLD
 from core.multibody.trajectories import AskedMotion
 from core.multibody.whole import WholeStates
 
 MOST_NUMBERS = 5_000_000
 ANSWERED = ("accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
 """Outputs that are answered about scenes with contacts."""
+THRESHOLDS = "thresholds"
+"""Place of a question about rest among the outputs: it is answered apart from the motion."""
 _NOT_KNOWN = "what the uncertainty of the inputs does is not followed through events"
 
 
@@ -57,7 +61,7 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
             path=("method",),
             remedy="leave the method out",
         )
-    unknown = [i for i, output in enumerate(asked.outputs) if output not in ANSWERED and output != "equilibria"]
+    unknown = [i for i, output in enumerate(asked.outputs) if output not in (*ANSWERED, "equilibria", THRESHOLDS)]
     if unknown:
         raise NotApplicable(
             f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.compiled import kernel
-from core.double_double import Pair, dd_add
+from core.double_double import Pair, dd_add, dd_mul, dd_mul_d
 from core.multibody.numerical import Run
 from core.multibody.packed import Floats, Packed
 from core.multibody.pair_arrays import gathered, settled
@@ -20,7 +20,7 @@ from core.multibody.series_pairs import advance_pairs, moved_pairs
 MOST_STEPS = 400
 """Steps within which a motion has to return to count as one that repeats."""
 
-_CHUNK = 16
+_CHUNK = 6
 _PARTS = 8
 
 
@@ -63,7 +63,7 @@ def followed(
     starts: list[Floats] = []
     series: list[Floats] = []
     passages: list[Passage] = []
-    sign = section.sign
+    sign, zeros = section.sign, np.empty((_PARTS, 2))
     while len(series) * _CHUNK < MOST_STEPS:
         chunk_starts, chunk = np.empty((_CHUNK + 1, 2)), np.empty((_CHUNK, len(q), order + 1, 2))
         ended, count = advance_pairs(arrays, q, v, clock, 1e300, tolerance, chunk_starts, chunk)
@@ -71,9 +71,8 @@ def followed(
             return None
         for step in range(count):
             width = (chunk_starts[step + 1, 0] - chunk_starts[step, 0]) + chunk_starts[step + 1, 1]
-            changes, sign = _sign_changes(chunk[step], width, start[0], section, sign)
-            for low, high, before in changes:
-                local = _root(chunk[step], low, high, before, start[0], section)
+            found, sign = _zeros(chunk[step], width, start[0], section.normal, section.of_rates, sign, zeros)
+            for local in zeros[:found]:
                 end, rate = np.empty_like(q), np.empty_like(v)
                 moved_pairs(chunk[step], local[0], local[1], end, rate)
                 time = np.array(added(chunk_starts[step], local))
@@ -87,75 +86,71 @@ def followed(
     return None
 
 
-def _sign_changes(
-    series: Floats, width: float, origin: Floats, section: Section, sign: float
-) -> tuple[list[tuple[float, float, float]], float]:
-    """Return brackets of the zeros in a step with the sign before each, and the sign at its end."""
-    found = []
-    last = 0.0
-    for part in range(1, _PARTS + 1):
-        time = width * part / _PARTS
-        value = _value(series, time, 0.0, origin, section.normal, section.of_rates)[0]
-        if sign * value < 0.0:
-            found.append((last, time, sign))
-        if value != 0.0:
-            sign, last = math.copysign(1.0, value), time
-    return found, sign
+@kernel()
+def _along(series: Floats, origin: Floats, normal: Floats, of_rates: bool, curve: Floats) -> None:
+    """Fill in the section's function of the time within a step, a polynomial of shape (order + 1, 2)."""
+    n, order = series.shape[0], series.shape[1] - 1
+    curve[:] = 0.0
+    for k in range(order + 1):
+        sh, sl = 0.0, 0.0
+        for i in range(n):
+            ch, cl = series[i, k, 0], series[i, k, 1]
+            if k == 0:
+                ch, cl = dd_add(ch, cl, -origin[i, 0], -origin[i, 1])
+            sh, sl = gathered(sh, sl, ch, cl, normal[i], 0.0)
+        sh, sl = settled(sh, sl)
+        if not of_rates:
+            curve[k, 0], curve[k, 1] = sh, sl
+        elif k > 0:
+            curve[k - 1, 0], curve[k - 1, 1] = dd_mul_d(sh, sl, float(k))
 
 
-def _root(
-    series: Floats, low: float, high: float, before: float, origin: Floats, section: Section
-) -> tuple[float, float]:
-    """Return a zero in a step as a pair: bisection in doubles, then Newton's method in pairs."""
+@kernel()
+def _value(curve: Floats, hh: float, hl: float) -> Pair:
+    sh, sl = 0.0, 0.0
+    for k in range(curve.shape[0] - 1, 0, -1):
+        sh, sl = dd_add(sh, sl, curve[k, 0], curve[k, 1])
+        sh, sl = dd_mul(sh, sl, hh, hl)
+    return dd_add(sh, sl, curve[0, 0], curve[0, 1])
 
-    def value(hh: float, hl: float) -> Pair:
-        return _value(series, hh, hl, origin, section.normal, section.of_rates)
 
+@kernel()
+def _root(curve: Floats, low: float, high: float, before: float) -> Pair:
+    """Return a zero between two times: bisection in doubles, then Newton's method in pairs."""
     for _ in range(40):
         middle = 0.5 * (low + high)
-        if value(middle, 0.0)[0] * before > 0.0:
+        if _value(curve, middle, 0.0)[0] * before > 0.0:
             low = middle
         else:
             high = middle
-    time: tuple[float, float] = (0.5 * (low + high), 0.0)
-    slope = _slope(series, time[0], section.normal, section.of_rates)
-    for _ in range(4):
-        if slope == 0.0:
-            break
-        left = value(*time)
-        time = added(time, (-left[0] / slope, -left[1] / slope))
-    return time
+    th, tl = 0.5 * (low + high), 0.0
+    slope = 0.0
+    for k in range(curve.shape[0] - 1, 0, -1):
+        slope = slope * th + k * curve[k, 0]
+    if slope != 0.0:
+        for _ in range(4):
+            left, tail = _value(curve, th, tl)
+            th, tl = dd_add(th, tl, -left / slope, -tail / slope)
+    return th, tl
 
 
 @kernel()
-def _value(series: Floats, hh: float, hl: float, origin: Floats, normal: Floats, of_rates: bool) -> Pair:
-    n = series.shape[0]
-    q, v = np.empty((n, 2)), np.empty((n, 2))
-    moved_pairs(series, hh, hl, q, v)
-    sh, sl = 0.0, 0.0
-    for i in range(n):
-        if of_rates:
-            sh, sl = gathered(sh, sl, v[i, 0], v[i, 1], normal[i], 0.0)
-        else:
-            dh, dl = dd_add(q[i, 0], q[i, 1], -origin[i, 0], -origin[i, 1])
-            sh, sl = gathered(sh, sl, dh, dl, normal[i], 0.0)
-    return settled(sh, sl)
-
-
-@kernel()
-def _slope(series: Floats, h: float, normal: Floats, of_rates: bool) -> float:
-    total = 0.0
-    n, order = series.shape[0], series.shape[1] - 1
-    for i in range(n):
-        rate = 0.0
-        if of_rates:
-            for k in range(order, 1, -1):
-                rate = rate * h + k * (k - 1) * series[i, k, 0]
-        else:
-            for k in range(order, 0, -1):
-                rate = rate * h + k * series[i, k, 0]
-        total += rate * normal[i]
-    return total
+def _zeros(
+    series: Floats, width: float, origin: Floats, normal: Floats, of_rates: bool, sign: float, times: Floats
+) -> tuple[int, float]:
+    """Fill in the zeros in a step as pairs, shape (parts, 2); return how many they are, and the sign at its end."""
+    curve = np.empty((series.shape[1], 2))
+    _along(series, origin, normal, of_rates, curve)
+    count, last, parts = 0, 0.0, times.shape[0]
+    for part in range(1, parts + 1):
+        time = width * part / parts
+        value = _value(curve, time, 0.0)[0]
+        if sign * value < 0.0:
+            times[count, 0], times[count, 1] = _root(curve, last, time, sign)
+            count += 1
+        if value != 0.0:
+            sign, last = math.copysign(1.0, value), time
+    return count, sign
 
 
 def distance(first: Floats, second: Floats, indices: Sequence[int] | range) -> float:

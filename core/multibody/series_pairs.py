@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.compiled import kernel
-from core.double_double import dd_add, dd_add_d, dd_div_d, dd_mul, dd_mul_d
+from core.double_double import dd_add, dd_add_d, dd_div_d, dd_mul
 from core.multibody.packed import Floats, Integers, Packed
 from core.multibody.pair_arrays import gathered, invert_pairs, settled
 from core.multibody.series import DONE, FULL, LOST, SHORTEST, SINGULAR, step_size
@@ -168,12 +168,11 @@ def moved_pairs(c: Floats, hh: float, hl: float, q: Floats, v: Floats) -> None:
         sh, sl = 0.0, 0.0
         rh, rl = 0.0, 0.0
         for k in range(order, 0, -1):
+            # Horner's rule for the sum s and its derivative r at once: r becomes r h + s, then s becomes s h + c.
+            rh, rl = dd_mul(rh, rl, hh, hl)
             sh, sl = dd_add(sh, sl, c[i, k, 0], c[i, k, 1])
+            rh, rl = dd_add(rh, rl, sh, sl)
             sh, sl = dd_mul(sh, sl, hh, hl)
-            ph, pl = dd_mul_d(c[i, k, 0], c[i, k, 1], float(k))
-            rh, rl = dd_add(rh, rl, ph, pl)
-            if k > 1:
-                rh, rl = dd_mul(rh, rl, hh, hl)
         q[i, 0], q[i, 1] = dd_add(c[i, 0, 0], c[i, 0, 1], sh, sl)
         v[i, 0], v[i, 1] = rh, rl
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -16,11 +17,12 @@ from core.multibody.language import Scene
 from core.multibody.modelling import modelled
 from core.multibody.occurrences import ExtremesOf, When, check_search
 from core.multibody.packed import Floats
-from core.multibody.phase_answer import ANSWERED, answer_in_phases
+from core.multibody.phase_answer import ANSWERED, THRESHOLDS, answer_in_phases
 from core.multibody.phases import one_sided
 from core.multibody.polynomials import BITS
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.strings import SlackAtStart
+from core.multibody.thresholds import RestOf, range_of_rest
 from core.multibody.trajectories import AskedMotion, Searched, trajectory_of
 from core.quantities import Uncertainty, check_value
 from core.systems.budget import Budget
@@ -60,7 +62,7 @@ MOST_NUMBERS = 5_000_000
 def solve_scene(
     scene: Scene,
     times: Sequence[float] | Floats = (),
-    outputs: Sequence[Output | When | ExtremesOf] = DEFAULT_OUTPUTS,
+    outputs: Sequence[Output | When | ExtremesOf | RestOf] = DEFAULT_OUTPUTS,
     accuracy: float = 1e-9,
     *,
     method: AbstractMethod | None = None,
@@ -75,8 +77,9 @@ def solve_scene(
     scene : Scene
     times : sequence of float
         Seconds from the given state, of either sign and in any order.
-    outputs : sequence of str, When and ExtremesOf
-        Some of `OUTPUTS`, and what is to be searched between the start and the latest time.
+    outputs : sequence of str, When, ExtremesOf and RestOf
+        Some of `OUTPUTS`, what is to be searched between the start and the latest time, and of which numbers the range
+        is wanted in which the scene stays at rest.
     accuracy : float
         Largest error of any column, relative to its largest value, that is tolerated.
     method : AbstractMethod, optional
@@ -106,15 +109,21 @@ def solve_scene(
             check_search(output, i)
             if not np.max(moments, initial=0.0) > 0.0:
                 raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
-        elif not isinstance(output, str) or output not in OUTPUTS:
+        elif not isinstance(output, RestOf) and (not isinstance(output, str) or output not in OUTPUTS):
             raise InvalidParameter(("outputs", i), f"be one of {', '.join(OUTPUTS)}")
     if not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InvalidParameter("accuracy", "be greater than 0 and less than 1")
     if input_uncertainty is not None:
         check_value("input_uncertainty", Uncertainty, input_uncertainty)
-    asked = AskedMotion(moments, outputs, float(accuracy), method, input_uncertainty, digits, budget or Budget())
+    of_motion = [output if not isinstance(output, RestOf) else THRESHOLDS for output in outputs]
+    asked = AskedMotion(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget or Budget())
     with precision(BITS):
-        return _solve(scene, asked)
+        ranges = [
+            range_of_rest(scene, output, ("outputs", i, "thresholds"))
+            for i, output in enumerate(outputs)
+            if isinstance(output, RestOf)
+        ]
+        return replace(_solve(scene, asked), thresholds=tuple(ranges) or None)
 
 
 def _times(times: Any) -> Floats:
@@ -180,4 +189,4 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
 def _has_phases(asked: AskedMotion) -> bool:
     """Return whether what is asked can be answered through events."""
     forward = bool(np.min(asked.times) >= 0.0)
-    return forward and asked.method is None and all(output in ANSWERED for output in asked.outputs)
+    return forward and asked.method is None and all(output in (*ANSWERED, THRESHOLDS) for output in asked.outputs)

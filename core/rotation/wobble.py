@@ -115,10 +115,14 @@ def from_period(period: float, day: Day = "sidereal") -> Wobble:
     InvalidParameter
         If no body wobbles so.
     """
-    unit = Fraction(SOLAR_DAY_IN_ROTATIONS) if day == "solar" else Fraction(1)
+    return _wobble(period, day, rotations_of_period(period, day))
+
+
+def rotations_of_period(period: float, day: Day = "sidereal") -> Fraction:
+    """Return a period in rotations, exactly; raises as `from_period` does."""
     if not 0.0 < period < float("inf"):
         raise InvalidParameter("period", "be finite and greater than 0 days")
-    rotations = Fraction(period) * unit
+    rotations = Fraction(period) * length_of(day)
     if rotations > LARGEST:
         raise InvalidParameter("period", "be less than 1.79e308 rotations", remedy="give the period in days")
     if rotations <= 1:
@@ -127,7 +131,12 @@ def from_period(period: float, day: Day = "sidereal") -> Wobble:
             "be more than one rotation: (I1 - I)/I < 1 for every oblate body",
             remedy="give the period in days",
         )
-    return _wobble(period, day, rotations)
+    return rotations
+
+
+def length_of(day: Day) -> Fraction:
+    """Return a day in rotations."""
+    return Fraction(SOLAR_DAY_IN_ROTATIONS) if day == "solar" else Fraction(1)
 
 
 def from_ellipticity(ellipticity: float, day: Day = "sidereal") -> Wobble:
@@ -138,14 +147,18 @@ def from_ellipticity(ellipticity: float, day: Day = "sidereal") -> Wobble:
     InvalidParameter
         If the ratio is not greater than 1.
     """
+    rotations = rotations_of_ellipticity(ellipticity)
+    return _wobble(float(rotations / length_of(day)), day, rotations)
+
+
+def rotations_of_ellipticity(ellipticity: float) -> Fraction:
+    """Return the period in rotations that belongs to a ratio of axes, exactly; raises as `from_ellipticity` does."""
     # Beyond this the asymmetry (I1 - I)/I is one to the last digit of a double.
     if not 1.0 < ellipticity < 1e8:
         raise InvalidParameter("ellipticity", "be greater than 1 and less than 1e8: a/c of an oblate body")
     # e = (r^2 - 1)/(r^2 + 1), with r^2 - 1 = (r - 1)(r + 1) formed exactly.
     r = Fraction(ellipticity)
-    rotations = (r * r + 1) / ((r - 1) * (r + 1))
-    unit = Fraction(SOLAR_DAY_IN_ROTATIONS) if day == "solar" else Fraction(1)
-    return _wobble(float(rotations / unit), day, rotations)
+    return (r * r + 1) / ((r - 1) * (r + 1))
 
 
 def _wobble(period: float, day: Day, rotations: Fraction) -> Wobble:

@@ -148,6 +148,7 @@ class _Route(APIRoute):
             summary=route.summary,
             description=route.description,
             tags=[route.tag],
+            include_in_schema=isinstance(route, PostRoute) or route.documented,
             response_model=route.answer,
             response_description="The answer." if isinstance(route, PostRoute) else "The document.",
             response_class=_response_class(route),

@@ -22,6 +22,7 @@ from core.multibody.numerals import member
 from core.multibody.occurrences import MOST_FOUND, ExtremesOf, When
 from core.multibody.reading import scene_from
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
+from core.multibody.thresholds import RestOf
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
 from service.schemas import ROUND, Request, Rounding, Times
@@ -56,6 +57,10 @@ def _form(hint: Any) -> Any:
     shown = [part for part in parts if part not in (NoneType, Decimal, Fraction, int, Mapping[str, Any])]
     if not shown:
         return dict[str, Any]
+    # Two kinds of connection may share a field, each with words of its own.
+    words = dict.fromkeys(word for part in shown if get_origin(part) is Literal for word in get_args(part))
+    if words:
+        shown = [*(part for part in shown if get_origin(part) is not Literal), Literal.__getitem__(tuple(words))]
     if Mapping[str, Any] in parts:
         # What may be a number or a vector is turned about an axis: polar vectors are places.
         shown.append(AngleInDegrees if float in parts else PolarVector)
@@ -120,8 +125,19 @@ class WhenQuestion(Request):
     )
 
 
+class ThresholdsQuestion(Request):
+    """In which range of a number the scene stays at rest."""
+
+    vary: str = Field(
+        max_length=300, description="JSON pointer of the number in the scene: /connections/0/friction, /let/slope."
+    )
+    between: list[float] = Field(
+        min_length=2, max_length=2, description="Bounds up to which is looked, with the written value between them."
+    )
+
+
 class SearchOutput(Request):
-    """A search between the start and the latest of the times: one of its two fields is given."""
+    """A search between the start and the latest of the times, or of a number: one of its fields is given."""
 
     when: WhenQuestion | None = Field(default=None, description="At which times a quantity takes a value.")
     extremes: str | None = Field(
@@ -204,7 +220,7 @@ class DescribedSceneRequest(SceneDescription):
         "the origin, angular momenta.",
     )
 
-    def asked(self) -> tuple[Output | When | ExtremesOf, ...]:
+    def asked(self) -> tuple[Output | When | ExtremesOf | RestOf, ...]:
         """Return the outputs as core takes them."""
         outputs = DEFAULT_OUTPUTS if self.outputs is None else self.outputs
         return tuple(_searched(output, ("outputs", i)) for i, output in enumerate(outputs))
@@ -216,16 +232,26 @@ def _searched(output: Any, path: Path) -> Any:
         return output
     if set(output) == {"extremes"}:
         return ExtremesOf(output["extremes"])
+    if set(output) == {"thresholds"}:
+        return RestOf(**_fields(output["thresholds"], ThresholdsQuestion, (*path, "thresholds")))
     if set(output) != {"when"}:
-        raise InvalidParameter(path, 'be a name, {"when": {"quantity", "equals", "nth"}} or {"extremes": quantity}')
-    asked = output["when"]
+        raise InvalidParameter(
+            path,
+            'be a name, {"when": {"quantity", "equals", "nth"}}, {"extremes": quantity} or '
+            '{"thresholds": {"vary", "between"}}',
+        )
+    return When(**_fields(output["when"], WhenQuestion, (*path, "when")))
+
+
+def _fields(asked: Any, form: type[Request], path: Path) -> dict[str, Any]:
+    """Return the fields of a search, whose values core looks at."""
     if not isinstance(asked, Mapping):
-        raise InvalidParameter((*path, "when"), "be an object")
+        raise InvalidParameter(path, "be an object")
     for key in asked:
-        if key not in WhenQuestion.model_fields:
-            known = ", ".join(WhenQuestion.model_fields)
-            raise InvalidParameter(member((*path, "when"), key), f"be left out; the fields here are {known}")
-    for key in ("quantity", "equals"):
-        if key not in asked:
-            raise InvalidParameter((*path, "when", key), "be given")
-    return When(asked["quantity"], asked["equals"], asked.get("nth"))
+        if key not in form.model_fields:
+            known = ", ".join(form.model_fields)
+            raise InvalidParameter(member(path, key), f"be left out; the fields here are {known}")
+    for key, entry in form.model_fields.items():
+        if key not in asked and entry.is_required():
+            raise InvalidParameter((*path, key), "be given")
+    return dict(asked)

@@ -32,7 +32,7 @@ class Limits(NamedTuple):
     """
 
     nesting: int = 32
-    keys: int = 4000
+    keys: int = 20_000
     arrays: int = 110_000
     strings: int = 100_000
     bytes: int = 8_000_000

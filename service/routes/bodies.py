@@ -14,6 +14,7 @@ from pydantic import Field
 from core.bodies import Body
 from core.bodies.mass_properties import MassProperties
 from core.bodies.principal_inertia import EPSILON, PrincipalInertia, Symmetry
+from core.bodies.rounding_errors import rounding_errors
 from core.bodies.validity import Condition
 from core.errors import InvalidParameter
 from core.quantities import Unit
@@ -107,6 +108,14 @@ def mass_properties(question: MassPropertiesRequest, budget: Budget) -> Answer:
     }
 
 
+def errors(question: MassPropertiesRequest, budget: Budget) -> tuple[Answer, str]:
+    """Return bounds of the errors of the answer's figures, and what they rest on."""
+    found = rounding_errors(properties_of(question.body))
+    about_center, about_origin = found.pop("inertia"), found.pop("inertia_about_origin")
+    tensors = {"about_center_of_mass": about_center, "about_origin": about_origin}
+    return {**found, "inertia": tensors}, "sums of two doubles"
+
+
 def principal(inertia: PrincipalInertia | None) -> dict[str, Any] | None:
     """Return principal moments and axes as they are written."""
     return None if inertia is None else {"moments": inertia.moments, "axes": inertia.axes}
@@ -198,5 +207,6 @@ BODIES = (
         CalibratedCost("mass_properties", counts),
         is_small,
         warming=({"body": TETRAHEDRON}, {"body": CLOUD}),
+        errors=errors,
     ),
 )

@@ -166,6 +166,26 @@ class SceneExtremes(View):
     periodic: bool = Field(description="Whether that is a period, so that the extremes are those of all time.")
 
 
+class RestEnd(View):
+    """One end of the range of a number in which a scene stays at rest."""
+
+    value: Annotated[float, OwnUnit]
+    error: Annotated[float, OwnUnit]
+    beyond: dict[str, str] | None = Field(
+        description="What the contacts that touch do just beyond; null where rest lasts up to the bound."
+    )
+    problem: str | None = Field(description="Code of what is undecided just beyond.")
+
+
+class RestRange(View):
+    """In which range of a number a scene stays at rest."""
+
+    vary: str = Field(description="JSON pointer of the number.")
+    written: Annotated[float, OwnUnit] = Field(description="Its value in the scene.")
+    lower: RestEnd | None = Field(description="null where the scene does not rest as it is written.")
+    upper: RestEnd | None
+
+
 class SceneEquilibrium(View):
     """A place where the scene can rest."""
 
@@ -218,4 +238,5 @@ class DescribedSceneAnswer(Envelope):
     occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was asked for, in its order.")
     extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were asked for.")
     equilibria: list[SceneEquilibrium] | None = None
+    thresholds: list[RestRange] | None = Field(default=None, description="If thresholds were asked for, in order.")
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

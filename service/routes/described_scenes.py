@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from math import isfinite
+from math import isfinite, log
 from typing import Any
 
 import numpy as np
 
 from core.errors import BudgetExceeded
-from core.multibody.answer import SceneModel
+from core.multibody.answer import RestRange, SceneModel
 from core.multibody.generic_equation import weight_of
 from core.multibody.inherited import MOST_INPUTS
 from core.multibody.solve import OUTPUTS, solve_scene
@@ -37,7 +37,9 @@ digits; it may also be a formula in quotes over the names in `let`, such as `"sq
 vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are left out follow from the connections.
 Forces that the scene does not determine are null. `outputs` may also ask when a quantity takes a value,
 `{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
-`{"extremes": "rod.force"}`, between the start and the latest of the times.
+`{"extremes": "rod.force"}`, between the start and the latest of the times. Between which
+values of a number a scene stays at rest is asked by its JSON pointer,
+`{"thresholds": {"vary": "/connections/0/friction", "between": [0, 2]}}`.
 
 Contacts push and do not pull, with friction and restitution, in the plane; strings become slack and taut again. The
 answer lists the phases between the events, each with its own smallest model. What mechanics leaves undecided is an
@@ -58,8 +60,16 @@ QUICK = 10.0
 SEARCHED = 10_000.0
 """Work (`core.work`) up to which equilibria are looked for when a scene is planned: those of about three bodies."""
 
+VALUES = 270.0
+"""About the most values of a number at which rest is looked for: 64 on either side, some 70 halvings for each end."""
 FOLLOWED = 2000
 """Samples that a search along the motion takes, or a sum."""
+
+AMPLIFIED = 1.0
+"""By how many powers of e a second a chain of pendulums that one can watch amplifies rounding."""
+
+PUSHING = ("spring", "torsion-spring", "damper", "inverse-square", "motor", "spinning-frame")
+"""Connections that most often leave a motion without a period."""
 
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
@@ -104,7 +114,14 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
         answer["equilibria"] = [fields_of(one) | {"modes": _modes(one.modes)} for one in found.equilibria]
+    if found.thresholds is not None:
+        answer["thresholds"] = [_of_rest(one) for one in found.thresholds]
     return answer
+
+
+def _of_rest(found: RestRange) -> dict[str, Any]:
+    ends = {"lower": found.lower, "upper": found.upper}
+    return fields_of(found) | {name: None if end is None else fields_of(end) for name, end in ends.items()}
 
 
 def _model(model: SceneModel) -> dict[str, Any]:
@@ -130,6 +147,10 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
+    turning = sum(
+        {"inertia", "moments", "tensor", "body"} & body.model_fields_set != set() for body in question.bodies.values()
+    )
+    pushing = float(sum(isinstance(one, Mapping) and one.get("kind") in PUSHING for one in question.connections))
     found = {
         "question": 1.0,
         "bodies": bodies,
@@ -137,13 +158,25 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         "pairs of connections": connections**2,
         "connections times pairs of bodies": connections * bodies**2,
     }
+    # A scene is read anew for every value of a number at which it is looked.
+    read = 1.0 + VALUES * len(_thresholds(question))
+    found = {name: count * read for name, count in found.items()}
     if question.times is not None:
         # What is searched or summed up along the motion looks at it as often as thousands of samples do.
         samples = sample_count(question.times, budget) + FOLLOWED * len(_along(question))
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
         coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
+        # Where doubles lose a motion to rounding, pairs of doubles follow it.
+        lost = log(question.accuracy) < AMPLIFIED * seconds - 53.0 * log(2.0) if coupled else False
         found |= {
+            "motion": 1.0,
             "motions": bodies + connections,
+            "motions of bodies that turn": float(turning),
+            "motions of bodies in space": bodies if len(question.gravity or ()) == 3 else 0.0,
+            "motions by forces": pushing,
+            "seconds of forces": seconds * min(1.0, pushing),
+            "seconds of coupled bodies in pairs": seconds * coupled * lost,
+            "seconds of pairs of coupled bodies in pairs": seconds * coupled**2 * lost,
             "samples of bodies": samples * bodies,
             "samples of connections": samples * connections,
             "seconds of coupled bodies": seconds * coupled,
@@ -155,14 +188,20 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
             found = {name: count * again for name, count in found.items()}
         found |= _of_method(question, bodies, connections)
     if "equilibria" in (question.outputs or ()):
-        found |= {"searches": bodies, "searches of pairs": bodies**2}
+        found |= {"search": 1.0, "searches": bodies, "searches of pairs": bodies**2}
     return found
 
 
 def _along(question: DescribedSceneRequest) -> list[Any]:
     """Return the outputs that need the motion between the samples."""
     summed = ("work-in-time", "paths-in-time")
-    return [one for one in question.outputs or () if not isinstance(one, str) or one in summed]
+    other = _thresholds(question)
+    return [one for one in question.outputs or () if (not isinstance(one, str) or one in summed) and one not in other]
+
+
+def _thresholds(question: DescribedSceneRequest) -> list[Any]:
+    """Return the outputs that ask for ranges of numbers."""
+    return [one for one in question.outputs or () if isinstance(one, Mapping) and "thresholds" in one]
 
 
 def _of_method(question: DescribedSceneRequest, bodies: float, connections: float) -> dict[str, float]:
@@ -226,9 +265,12 @@ def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> A
         with work_limit(SEARCHED):
             return solved(question, budget)
     except WorkLimitReached:
-        others = question.outputs and [name for name in question.outputs if name != "equilibria"]
+        long = ["equilibria", *_thresholds(question)]
+        others = question.outputs and [one for one in question.outputs if one not in long]
         return solved(question.model_copy(update={"outputs": others}), budget)
 
+
+HEAVY_BODY = scene_catalogue()["kovalevskaya-top"].question
 
 DESCRIBED_SCENES = (
     PostRoute(
@@ -241,8 +283,8 @@ DESCRIBED_SCENES = (
         solved,
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
-        # A heavy body about a point has kernels of its own.
-        warming=(scene_catalogue()["kovalevskaya-top"].question,),
+        # A heavy body about a point has kernels of its own, one of them for its start alone.
+        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}),
         description=DESCRIPTION,
         representations={SVG: drawn},
     ),

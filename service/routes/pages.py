@@ -1,4 +1,4 @@
-"""What people look at: the start page, the documentation, and the OpenAPI document behind it."""
+"""What people look at: the pages with their files, and the OpenAPI document behind the reference."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ from service.routing import GetRoute, Reply
 
 FOLDER = Path(__file__).parent.parent / "page"
 
-_FILES = {
-    "/": ("index.html", "text/html", "get_start_page", "The energy ellipsoid and the polhode of a body, drawn"),
-    "/docs": ("docs.html", "text/html", "get_documentation", "This documentation, to read and to try"),
-    "/page/polhode.js": ("polhode.js", "text/javascript", "get_page_script", "Script of the start page"),
-    "/page/docs.js": ("docs.js", "text/javascript", "get_documentation_script", "Script of the documentation"),
-    "/page/style.css": ("style.css", "text/css", "get_page_style", "Style of the pages"),
+_MEDIA_TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".txt": "text/plain"}
+"""Of the files that are served; others of the folder are not."""
+
+_PAGES = {
+    "/": ("index.html", "get_start_page", "A rotating body beside its energy ellipsoid, to look at and to change"),
+    "/scenes": ("scenes.html", "get_scenes_page", "Every scene of the catalogue in motion, and your own"),
+    "/docs": ("docs.html", "get_documentation", "The reference of the API, to read and to try"),
 }
 
 
 def pages(openapi: Callable[[], bytes]) -> tuple[GetRoute, ...]:
-    """Return the routes of the pages."""
+    """Return the routes of the pages and of their files."""
     document = GetRoute(
         "/openapi.json",
         "get_openapi",
@@ -30,12 +31,20 @@ def pages(openapi: Callable[[], bytes]) -> tuple[GetRoute, ...]:
         lambda: Reply(openapi()),
         example=lambda: {"openapi": "3.1.0", "info": {"title": "Polhode", "version": VERSION}, "paths": {}},
     )
-    return (document, *(_page(path, *entry) for path, entry in _FILES.items()))
+    documents = [_file(path, FOLDER / name, operation, summary) for path, (name, operation, summary) in _PAGES.items()]
+    files = sorted(file for file in FOLDER.rglob("*") if file.suffix in _MEDIA_TYPES and file.suffix != ".html")
+    parts = [
+        _file(f"/page/{file.relative_to(FOLDER).as_posix()}", file, "get_page_file", "A file of the pages", False)
+        for file in files
+    ]
+    return (document, *documents, *parts)
 
 
-def _page(path: str, name: str, media_type: str, operation_id: str, summary: str) -> GetRoute:
+def _file(path: str, file: Path, operation_id: str, summary: str, documented: bool = True) -> GetRoute:
+    media_type = _MEDIA_TYPES[file.suffix]
+
     @cache
     def content() -> Reply:
-        return Reply((FOLDER / name).read_bytes(), f"{media_type}; charset=utf-8".encode())
+        return Reply(file.read_bytes(), f"{media_type}; charset=utf-8".encode())
 
-    return GetRoute(path, operation_id, summary, "pages", content, media_type=media_type)
+    return GetRoute(path, operation_id, summary, "pages", content, media_type=media_type, documented=documented)

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from core.assessment.asked_question import AssessedQuestion
 from core.assessment.figures import is_null, steps_of, value_at
+from core.assessment.graded_question import GradedQuestion
 from core.assessment.propagation import MOST_INPUTS, at, numbers_of
 from core.assessment.results import reference_view
 from core.assessment.variants import Constraint, Member, Variants
@@ -20,7 +20,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.responses.json_rows import written
-from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, AskedQuestion, QuestionTable
+from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, EndpointRequest, QuestionTable
 from service.routes.assessments.views import ReferenceFigure
 from service.routing import Answer, PostRoute
 from service.schemas import Envelope, Ratio, Request, View
@@ -55,7 +55,7 @@ Condition = Annotated[float, Quantity("1", at_least=1)]
 class VariantsRequest(Request):
     """A question, and what varies in it."""
 
-    question: AskedQuestion = Field(description="It has to be answerable as it is; what varies has to be in it.")
+    question: EndpointRequest = Field(description="It has to be answerable as it is; what varies has to be in it.")
     vary: dict[str, VariedInput] = Field(
         description="What is drawn anew, by pointer into the request of the question.", min_length=1
     )
@@ -123,26 +123,26 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
     table = QuestionTable(routes, certified)
 
     def vary(question: VariantsRequest, budget: Budget) -> Answer:
-        asked = question.question
-        table.route(asked)
+        inner = question.question
+        table.route(inner)
         varied, together = _places(question)
 
-        def ask(request: Any) -> AssessedQuestion:
-            return table.asked(asked, request, budget, question.input_uncertainty)
+        def ask(request: Any) -> GradedQuestion:
+            return table.graded(inner, request, budget, question.input_uncertainty)
 
-        answer = table.answered(asked, budget, question.input_uncertainty).answer
+        answer = table.answered(inner, budget, question.input_uncertainty).answer
         figures, warnings = _figures(question, answer)
         _require_few_numbers(question, answer, figures.values())
         constraints = question.constraints or {}
         constrained = {pointer: _path(pointer, answer, ("constraints",)) for pointer in constraints}
         source = Variants(
-            asked.request, varied, together, ask, figures, constraints, constrained, question.max_condition,
+            inner.request, varied, together, ask, figures, constraints, constrained, question.max_condition,
             question.input_uncertainty, question.draws, frozenset(notice.code for notice in answer.get("warnings", ())),
             question.quantities is not None,
         )  # fmt: skip
         members = source.members(question.seed, question.count)
         return {
-            "path": asked.path,
+            "path": inner.path,
             "seed": question.seed,
             "variants": [_view(member) for member in members],
             "rejected": dict(sorted(source.rejected.items())),

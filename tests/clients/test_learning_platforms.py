@@ -213,7 +213,11 @@ def test_the_autograder_of_gradescope(tmp_path: Path, bundle: Path) -> None:
     assert (forces["score"], forces["status"], forces["output"]) == (3.0, "passed", "Correct.")
 
 
-@pytest.mark.parametrize("answers", [None, "{", "[]", '{"1f": {}}', '{"1f": 3}', '{"1f": {"/period": "?"}}'])
+@pytest.mark.parametrize(
+    "answers",
+    [None, "{", "[]", '{"1f": {}}', '{"1f": 3}', '{"1f": {"/period": "?"}}', '{"1f": ' + "[" * 10_000],
+    ids=lambda answers: str(answers)[:30],
+)
 def test_nothing_that_is_handed_in_stops_the_autograder(tmp_path: Path, bundle: Path, answers: str | None) -> None:
     report = autograded(tmp_path, bundle, answers)
     assert [test["score"] for test in report["tests"]] == [0.0, 0.0]

@@ -20,7 +20,7 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routes.assessments.route_source import asked_question
+from service.routes.assessments.route_source import graded_question
 
 ROUTES = {route.path: route for route in questions()}
 HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
@@ -144,10 +144,10 @@ def drawn(index: int) -> tuple[tuple[Question, WrongValues], ...]:
     read = lambda body: HANDLER.read(ROUTES[path], body)  # noqa: E731
     for _ in range(EACH):
         request = draw(chance)
-        asked = asked_question(ROUTES[path], read, request, Budget(), None)
-        reference = asked.reference(steps_of(pointer))
+        graded = graded_question(ROUTES[path], read, request, Budget(), None)
+        reference = graded.reference(steps_of(pointer))
         assert reference is not None
-        figure = Figure(path.removeprefix("/v1/"), request, steps_of(pointer), reference, asked.evaluate)
+        figure = Figure(path.removeprefix("/v1/"), request, steps_of(pointer), reference, graded.evaluate)
         found.append((request, WrongValues(figure, MISTAKES)))
     return tuple(found)
 

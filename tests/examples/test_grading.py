@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
+from urllib.request import Request, urlopen
 
 import pytest
 
@@ -111,3 +113,11 @@ def flat(value):
     if isinstance(value, list):
         return [number for entry in value for number in flat(entry)]
     return [] if isinstance(value, (bool, str)) or value is None else [value]
+
+
+def test_the_variants_of_the_page_exist(service):
+    (block,) = re.findall(r"```json\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    headers = {"Content-Type": "application/json"}
+    with urlopen(Request(f"{service}/v1/variants", block.encode(), headers), timeout=60) as response:
+        answer = json.load(response)
+    assert len(answer["variants"]) == json.loads(block)["count"]

@@ -49,6 +49,17 @@ STABILITY = {
     "path": "/v1/rotation/stability",
     "request": {"body": {"kind": "principal-moments", "moments": [2, 1, 0.5]}, "rate": 1},
 }
+PLANET = {"path": "/v1/rotation/wobble", "request": {"period": 430}}
+DUMBBELLS = {
+    "path": "/v1/bodies/mass-properties",
+    "request": {
+        "body": {
+            "kind": "point-masses",
+            "masses": [0.1, 0.3, 0.7, 0.2],
+            "positions": [[0.1, 0, 0.7], [0.3, 1.1, 0], [0.2, 0.9, 2.3], [1.7, 0.4, 0.3]],
+        }
+    },
+}
 MOTION = {
     "path": "/v1/rotation/trajectory",
     "request": {
@@ -109,6 +120,8 @@ async def test_the_reference_is_the_answer_with_its_error_and_its_unit() -> None
         (INTERVAL * 1e3, "ms", "correct"),
         (INTERVAL, "ms", "incorrect"),
         (INTERVAL, None, "missing-unit"),
+        (INTERVAL, "", "missing-unit"),
+        (INTERVAL, " ", "missing-unit"),
         (INTERVAL, "m", "wrong-unit"),
         (INTERVAL, "parsec per fortnight", "wrong-unit"),
     ],
@@ -279,6 +292,8 @@ async def test_what_is_not_finite_is_no_number(text: str) -> None:
         ({"comparison": {"kind": "interval", "lower": 2.0, "upper": 1.0}}, "/comparison/upper"),
         ({"comparison": {"kind": "exactly"}}, "/comparison/kind"),
         ({"comparisons": {"/flip_interval": {"kind": "sigfig", "digits": 0}}}, "/comparisons/~1flip_interval/digits"),
+        ({"comparisons": {"/flip_intervall": {"kind": "sigfig"}}}, "/comparisons/~1flip_intervall"),
+        ({"comparisons": {"flip_interval": {"kind": "sigfig"}}}, "/comparisons/flip_interval"),
         ({"credits": {"factor-2": 2.0}}, "/credits/factor-2"),
         ({"credits": {"unknown": 0.5}}, "/credits/unknown"),
         ({"input_uncertainties": {"/gravity": 0.1}}, "/input_uncertainties/~1gravity"),
@@ -612,6 +627,34 @@ def test_what_is_wrong_with_samples_is_a_sentence() -> None:
     assert feedback(np.array(twice["angular_velocity"]))[1] == ["time-scaled"]
 
 
+def test_a_constant_is_no_motion_at_another_time() -> None:
+    times = np.linspace(0.0, 30.0, 200)
+    claim = {"times": times.tolist(), "value": [[0.1, 2.0, 0.1]] * 200, "unit": "rad/s"}
+    (result,) = handled(MOTION, {"/angular_velocity": claim})["results"]
+    assert (result["matches"], result["score"]) == ([], 0.0)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        {"value": 1.0, "unit": "s"},
+        {"value": 1.0},
+        {"value": 1.0, "unit": "m"},
+        {"formula": "1"},
+        {"formula": "1 +"},
+        {"value": None},
+    ],
+    ids=str,
+)
+def test_without_reveal_a_figure_that_does_not_exist_is_judged_as_one_that_does(claim: Body) -> None:
+    coin, handle = (handled(one, {"/flip_interval": claim}, reveal=False)["results"] for one in (COIN, FLIP))
+    if claim == {"value": None}:
+        assert coin[0]["correct"]
+        assert not handle[0]["correct"]
+    else:
+        assert coin == handle
+
+
 @pytest.mark.parametrize(
     ("question", "pointer", "unit", "how", "axis"),
     [
@@ -624,6 +667,11 @@ def test_what_is_wrong_with_samples_is_a_sentence() -> None:
         (ROD, HORIZONTAL, "rad s^-1", "closed form", None),
         (MOTION, "/period", "s", "ball arithmetic", None),
         (MOTION, "/angular_velocity/1", "rad s^-1", "closed form", None),
+        (PLANET, "/ellipticity", "1", "ball arithmetic", None),
+        (PLANET, "/flattening", "1", "ball arithmetic", None),
+        (DUMBBELLS, "/principal/moments/2", "kg m^2", "sums of two doubles", None),
+        (DUMBBELLS, "/inertia/about_origin", "kg m^2", "sums of two doubles", None),
+        (DUMBBELLS, "/principal/axes", "1", "sums of two doubles", None),
     ],
 )
 def test_a_reference_says_what_its_error_rests_on_and_to_which_axis_it_belongs(
@@ -633,6 +681,12 @@ def test_a_reference_says_what_its_error_rests_on_and_to_which_axis_it_belongs(
     assert (reference["unit"], reference["how"], reference["body_axis"]) == (unit, how, axis)
     size = np.abs(reference["value"]).max()
     assert 0.0 < reference["error"] <= 1e-14 * size
+
+
+def test_as_many_submissions_as_are_documented_fit_into_one_request() -> None:
+    claims = [{"/flip_interval": {"value": INTERVAL + 0.1 * (i % 2), "unit": "s"}} for i in range(5000)]
+    results = handled(FLIP, *claims)["results"]
+    assert [result["correct"] for result in results] == [True, False] * 2500
 
 
 def test_proven_references_agree_with_forty_digits() -> None:

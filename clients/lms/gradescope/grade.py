@@ -40,7 +40,7 @@ def main() -> None:
     try:
         answers = json.loads((root / "submission" / "answers.json").read_text(encoding="utf-8"))
         said = ""
-    except (OSError, ValueError) as fault:
+    except (OSError, ValueError, RecursionError) as fault:
         answers, said = {}, f"answers.json cannot be read: {fault}"
     answers = answers if isinstance(answers, dict) else {}
     tests = [graded(question, worth, answers.get(question)) for question, worth in points.items()]

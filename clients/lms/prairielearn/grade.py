@@ -32,7 +32,7 @@ def submission(grade: Path, answers: dict[str, Any]) -> dict[str, Any]:
             file = grade / "student" / answer["file"]
             try:
                 claims[answer["pointer"]] = json.loads(file.read_text(encoding="utf-8"))
-            except (OSError, ValueError):
+            except (OSError, ValueError, RecursionError):
                 claims[answer["pointer"]] = {"formula": ""}
             continue
         entry = fields.get(name, "")

@@ -962,6 +962,12 @@ class SceneConnection(TypedDict):
     place: NotRequired[str | Sequence[float | str | AngleInDegrees] | PolarVector]
     on: NotRequired[Mapping[str, Any]]
     inside: NotRequired[bool]
+    measure: NotRequired[Literal["gap", "turn", "length"]]
+    at_least: NotRequired[float | str | AngleInDegrees]
+    at_most: NotRequired[float | str | AngleInDegrees]
+    friction: NotRequired[float | str | Sequence[float | str | AngleInDegrees] | AngleInDegrees]
+    restitution: NotRequired[float | str | AngleInDegrees]
+    order: NotRequired[float | str | AngleInDegrees]
     through: NotRequired[Sequence[str | Sequence[float | str | AngleInDegrees] | PolarVector]]
     sides: NotRequired[Mapping[str, Any]]
     slips: NotRequired[Sequence[str]]
@@ -971,7 +977,6 @@ class SceneConnection(TypedDict):
     constant: NotRequired[float | str | AngleInDegrees]
     strength: NotRequired[float | str | AngleInDegrees]
     coefficient: NotRequired[float | str | AngleInDegrees]
-    measure: NotRequired[Literal["length", "turn"]]
     rate: NotRequired[float | str | AngleInDegrees]
     at: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
     about: NotRequired[Literal["vertical", "normal"]]
@@ -986,6 +991,7 @@ class SceneConnection(TypedDict):
         "rod",
         "rolling",
         "track",
+        "contact",
         "string",
         "spring",
         "torsion-spring",
@@ -1380,7 +1386,7 @@ class DescribedSceneRequest(TypedDict):
 
 
 class SearchOutput(TypedDict):
-    """A search between the start and the latest of the times: one of its two fields is given."""
+    """A search between the start and the latest of the times, or of a number: one of its fields is given."""
 
     when: NotRequired[WhenQuestion | None]
     extremes: NotRequired[str | None]
@@ -1408,10 +1414,13 @@ class DescribedSceneAnswer(TypedDict):
     period: float | None
     ended: str | None
     events: list[EndEvent]
+    phases: NotRequired[list[MotionPhase] | None]
+    problem: NotRequired[SceneProblem | None]
     trajectory: NotRequired[DescribedTrajectory | None]
     occurrences: NotRequired[list[SceneOccurrence] | None]
     extremes: NotRequired[list[SceneExtremes] | None]
     equilibria: NotRequired[list[SceneEquilibrium] | None]
+    thresholds: NotRequired[list[RestRange] | None]
     accuracy: NotRequired[DescribedAccuracy | None]
 
 
@@ -1474,12 +1483,37 @@ class StartEnergy(TypedDict):
 
 
 class EndEvent(TypedDict):
-    """Something that ends a motion."""
+    """Something that ends a phase of a motion, or the motion."""
 
     kind: str
     name: str
     time: float
     error: float
+    impulses: dict[str, float]
+    energy_loss: float
+
+
+class MotionPhase(TypedDict):
+    """A time in which no contact, stop or string changes its state."""
+
+    start: float
+    end: float | None
+    model: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: int
+    states: dict[str, str]
+
+
+class SceneProblem(TypedDict):
+    """Something that mechanics does not decide: the motion ends there."""
+
+    code: str
+    explanation: str
+    time: float
+    connections: list[str]
+    candidates: list[dict[str, str]]
+    decided_by: str
 
 
 class DescribedTrajectory(TypedDict):
@@ -1534,6 +1568,24 @@ class SceneEquilibrium(TypedDict):
     stable: bool | None
     modes: list[SmallMotion]
     residual: float
+
+
+class RestRange(TypedDict):
+    """In which range of a number a scene stays at rest."""
+
+    vary: str
+    written: float
+    lower: RestEnd | None
+    upper: RestEnd | None
+
+
+class RestEnd(TypedDict):
+    """One end of the range of a number in which a scene stays at rest."""
+
+    value: float
+    error: float
+    beyond: dict[str, str] | None
+    problem: str | None
 
 
 class DescribedAccuracy(TypedDict):
@@ -2117,7 +2169,7 @@ class PlannedFault(TypedDict):
 class AssessmentRequest(TypedDict):
     """A question, and what was submitted as its answer."""
 
-    question: AskedQuestion
+    question: EndpointRequest
     submissions: Sequence[Mapping[str, ClaimDocument]]
     comparison: NotRequired[RelAbs | SigFig | DecDig | Interval | Data | None]
     comparisons: NotRequired[Mapping[str, RelAbs | SigFig | DecDig | Interval | Data] | None]
@@ -2128,7 +2180,7 @@ class AssessmentRequest(TypedDict):
     reveal: NotRequired[bool]
 
 
-class AskedQuestion(TypedDict):
+class EndpointRequest(TypedDict):
     """A request to another endpoint, whose answer is the reference."""
 
     path: str
@@ -2294,7 +2346,7 @@ class ReferenceFigure(TypedDict):
 class VariantsRequest(TypedDict):
     """A question, and what varies in it."""
 
-    question: AskedQuestion
+    question: EndpointRequest
     vary: Mapping[str, VariedInput]
     seed: int
     count: NotRequired[int]

@@ -135,11 +135,9 @@ OPERATIONS: Mapping[str, Operation] = {
     "get_readiness": Operation("GET", "/readyz", "Whether every kernel is compiled and the compute processes are up"),
     "get_metrics": Operation("GET", "/metrics", "Counters in Prometheus' text format"),
     "get_openapi": Operation("GET", "/openapi.json", "The OpenAPI document"),
-    "get_start_page": Operation("GET", "/", "The energy ellipsoid and the polhode of a body, drawn"),
-    "get_documentation": Operation("GET", "/docs", "This documentation, to read and to try"),
-    "get_page_script": Operation("GET", "/page/polhode.js", "Script of the start page"),
-    "get_documentation_script": Operation("GET", "/page/docs.js", "Script of the documentation"),
-    "get_page_style": Operation("GET", "/page/style.css", "Style of the pages"),
+    "get_start_page": Operation("GET", "/", "A rotating body beside its energy ellipsoid, to look at and to change"),
+    "get_scenes_page": Operation("GET", "/scenes", "Every scene of the catalogue in motion, and your own"),
+    "get_documentation": Operation("GET", "/docs", "The reference of the API, to read and to try"),
 }
 
 
@@ -342,28 +340,18 @@ class Operations(ABC):
         return found
 
     def get_start_page(self) -> str:
-        """The energy ellipsoid and the polhode of a body, drawn."""
+        """A rotating body beside its energy ellipsoid, to look at and to change."""
         found: str = self._ask("get_start_page", None, "text/html")
         return found
 
+    def get_scenes_page(self) -> str:
+        """Every scene of the catalogue in motion, and your own."""
+        found: str = self._ask("get_scenes_page", None, "text/html")
+        return found
+
     def get_documentation(self) -> str:
-        """This documentation, to read and to try."""
+        """The reference of the API, to read and to try."""
         found: str = self._ask("get_documentation", None, "text/html")
-        return found
-
-    def get_page_script(self) -> str:
-        """Script of the start page."""
-        found: str = self._ask("get_page_script", None, "text/javascript")
-        return found
-
-    def get_documentation_script(self) -> str:
-        """Script of the documentation."""
-        found: str = self._ask("get_documentation_script", None, "text/javascript")
-        return found
-
-    def get_page_style(self) -> str:
-        """Style of the pages."""
-        found: str = self._ask("get_page_style", None, "text/css")
         return found
 
 
@@ -574,26 +562,16 @@ class AsyncOperations(ABC):
         return found
 
     async def get_start_page(self) -> str:
-        """The energy ellipsoid and the polhode of a body, drawn."""
+        """A rotating body beside its energy ellipsoid, to look at and to change."""
         found: str = await self._ask("get_start_page", None, "text/html")
         return found
 
+    async def get_scenes_page(self) -> str:
+        """Every scene of the catalogue in motion, and your own."""
+        found: str = await self._ask("get_scenes_page", None, "text/html")
+        return found
+
     async def get_documentation(self) -> str:
-        """This documentation, to read and to try."""
+        """The reference of the API, to read and to try."""
         found: str = await self._ask("get_documentation", None, "text/html")
-        return found
-
-    async def get_page_script(self) -> str:
-        """Script of the start page."""
-        found: str = await self._ask("get_page_script", None, "text/javascript")
-        return found
-
-    async def get_documentation_script(self) -> str:
-        """Script of the documentation."""
-        found: str = await self._ask("get_documentation_script", None, "text/javascript")
-        return found
-
-    async def get_page_style(self) -> str:
-        """Style of the pages."""
-        found: str = await self._ask("get_page_style", None, "text/css")
         return found

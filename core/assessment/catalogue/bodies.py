@@ -26,7 +26,7 @@ def with_body(figure: Figure, change: Callable[[Mapping[str, Any]], Mapping[str,
     body = figure.request.get("body") if isinstance(figure.request, dict) else None
     other = change(body) if isinstance(body, dict) else None
     if other is not None:
-        yield figure.asked(figure.request | {"body": other})
+        yield figure.answered(figure.request | {"body": other})
 
 
 def _other_point(figure: Figure) -> Path | None:
@@ -114,7 +114,7 @@ def _diameter(figure: Figure) -> Iterator[Any]:
     for factor in (2.0, 0.5):
         changed = _scaled(figure.request, factor)
         if changed != figure.request:
-            yield figure.asked(changed)
+            yield figure.answered(changed)
 
 
 def _scaled(node: Any, factor: float, inside: bool = False) -> Any:

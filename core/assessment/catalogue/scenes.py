@@ -20,7 +20,7 @@ def with_fields(subject: str, **fields: Any) -> Callable[[Figure], Iterator[Any]
 
     def wrong(figure: Figure) -> Iterator[Any]:
         if figure.subject == subject and any(figure.request.get(name) != value for name, value in fields.items()):
-            yield figure.asked({**figure.request, **fields})
+            yield figure.answered({**figure.request, **fields})
 
     return wrong
 
@@ -29,7 +29,7 @@ def _hoop(figure: Figure) -> Iterator[Any]:
     if figure.subject == SHAFTS:
         factors = figure.request.get("inertia_factors", [0.5, 0.5])
         if factors in ([0.5, 0.5], [1.0, 1.0]):
-            yield figure.asked({**figure.request, "inertia_factors": [1.5 - factors[0]] * 2})
+            yield figure.answered({**figure.request, "inertia_factors": [1.5 - factors[0]] * 2})
 
 
 def _rod(figure: Figure) -> Iterator[tuple[float, float, float, float]]:
@@ -68,13 +68,13 @@ def _falling_point(figure: Figure) -> Iterator[Any]:
 def _pairs_exchanged(figure: Figure) -> Iterator[Any]:
     masses = figure.request.get("masses") if isinstance(figure.request, dict) else None
     if figure.subject in (SHAFTS, CHAIN) and isinstance(masses, list) and masses[0] != masses[-1]:
-        yield figure.asked({**figure.request, "masses": masses[::-1]})
+        yield figure.answered({**figure.request, "masses": masses[::-1]})
 
 
 def _cosines(figure: Figure) -> Iterator[Any]:
     if figure.subject in (SHAFTS, CHAIN):
         slopes = [pi / 2.0 - slope for slope in figure.request["slopes"]]
-        yield figure.asked({**figure.request, "slopes": slopes})
+        yield figure.answered({**figure.request, "slopes": slopes})
 
 
 def _calculator(figure: Figure) -> Iterator[Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import Annotated, Any
 
@@ -10,12 +10,12 @@ import numpy as np
 from pydantic import Field
 
 from core.assessment.answer_key import Document, Terms, key_of
-from core.assessment.asked_question import VARIATIONS
 from core.assessment.catalogue import MISTAKES
 from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
-from core.assessment.figures import steps_of
+from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
+from core.assessment.graded_question import VARIATIONS
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
@@ -24,7 +24,7 @@ from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
 from service.requests.request_reader import Limits, Reader
-from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, AskedQuestion, QuestionTable
+from service.routes.assessments.question_table import SECONDS_OF_PROOF, WITHIN, EndpointRequest, QuestionTable
 from service.routes.assessments.submissions import SubmissionList
 from service.routes.assessments.views import AssessmentAnswer
 from service.routing import Answer, PostRoute
@@ -34,6 +34,9 @@ FEW_SUBMISSIONS = 1000
 """Submissions up to which an assessment may be begun in the event loop, if its question may."""
 
 SECONDS_OF_A_CLAIM, SECONDS_OF_SAMPLES = 2.5e-5, 1e-3
+
+SECONDS_OF_A_FORMULA = 5e-4
+"""For reading it and evaluating it at every variation."""
 
 SECONDS_OF_A_SEARCH, SECONDS_OF_SOLVERS = 5e-3, 0.15
 """For the method that wrong samples come from, and for solvers that choose their steps at times of their own."""
@@ -50,7 +53,7 @@ Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 class AssessmentRequest(Request):
     """A question, and what was submitted as its answer."""
 
-    question: AskedQuestion
+    question: EndpointRequest
     submissions: Annotated[list[Any], SubmissionList()] = Field(
         description="Each an object of claims by JSON pointer into the answer of the question. One that cannot be read "
         "is answered with its format_errors, and the others are graded."
@@ -83,6 +86,21 @@ class AssessmentRequest(Request):
     )
 
 
+WRONG_SAMPLES: Any = {
+    "question": {
+        "path": "/v1/rotation/trajectory",
+        "request": {
+            "body": {"kind": "principal-moments", "moments": [1, 2, 3]},
+            "angular_velocity": [0.1, 2, 0.1],
+            "times": [0],
+        },
+    },
+    "submissions": [
+        {"/angular_velocity": {"times": [0, 1], "value": [[0.1, 2, 0.1], [-0.1, 1.93, 0.3]], "unit": "rad/s"}}
+    ],
+}
+"""Samples whose method is looked for, which compiles the methods that are tried."""
+
 DESCRIPTION = """A claim is judged by the form of the figure: angles modulo whole turns, attitudes up to the sign of the
 quaternion, principal axes up to sign and, where moments are equal, up to rotation, eigenvalues as a set, samples at the
 times of the claim. Arrays count as wrong as their worst entry. Units are converted; for an angular rate 1 Hz is 2 pi
@@ -98,12 +116,13 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
 
     def assess(question: AssessmentRequest, budget: Budget) -> Answer:
         uncertainty = _uncertainty(question)
-        asked = table.answered(question.question, budget, uncertainty)
-        warnings = [notice.inside(*WITHIN) for notice in asked.answer.get("warnings", ())]
+        graded = table.answered(question.question, budget, uncertainty)
+        warnings = [notice.inside(*WITHIN) for notice in graded.answer.get("warnings", ())]
         credits, comparisons = question.credits or {}, question.comparisons or {}
         _check_tags(credits)
+        _check_figures(comparisons, graded.answer)
         catalogue = credited(MISTAKES, credits)
-        grader = Grader(asked, question.comparison, comparisons, question.reveal, catalogue, _names(question))
+        grader = Grader(graded, question.comparison, comparisons, question.reveal, catalogue, _names(question))
         results = [
             submission_view(i, grader.judged(submission), reveal=question.reveal)
             for i, submission in enumerate(question.submissions)
@@ -119,7 +138,8 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
         again = 1 + min(inputs, MOST_INPUTS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
-        again += VARIATIONS * min(1, len(_claims_with("formula", question.submissions)))
+        formulas = len(_claims_with("formula", question.submissions))
+        again += VARIATIONS * min(1, formulas)
         # What is right is judged in a hundredth of the time; before it is judged nobody knows.
         timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
         columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
@@ -130,6 +150,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
             SECONDS_OF_PROOF
             + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
             + samples
+            + SECONDS_OF_A_FORMULA * formulas
             + SECONDS_OF_A_CLAIM * claims
         )
 
@@ -137,7 +158,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         if len(question.submissions) > FEW_SUBMISSIONS:
             return False
         if _claims_with("formula", question.submissions) or _claims_with("times", question.submissions):
-            # The question is then asked in many variations, or methods are run.
+            # The question is then answered in many variations, or methods are run.
             return False
         return table.small(question.question)
 
@@ -152,6 +173,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         price,
         small,
         description=DESCRIPTION,
+        warming=(WRONG_SAMPLES,),
     )
 
 
@@ -164,8 +186,9 @@ def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body
         For what an assessment is refused with.
     """
     question: AssessmentRequest = Reader(AssessmentRequest, Limits()).read(body)
-    asked = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
+    graded = QuestionTable(routes, certified).answered(question.question, Budget(), _uncertainty(question))
     _check_tags(question.credits or {})
+    _check_figures(question.comparisons or {}, graded.answer)
     claimed: list[str] = []
     timed: list[tuple[str, tuple[float, ...]]] = []
     for pointer, entry in (pair for one in question.submissions if isinstance(one, dict) for pair in one.items()):
@@ -178,7 +201,7 @@ def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body
             else:
                 timed.append((pointer, tuple(times.tolist())))
     terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question))
-    return key_of(asked, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
+    return key_of(graded, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
 
 
 def _claims_with(key: str, submissions: Sequence[Any]) -> list[dict[str, Any]]:
@@ -197,12 +220,31 @@ def _uncertainty(question: AssessmentRequest) -> float | dict[Path, float] | Non
     for pointer, share in question.input_uncertainties.items():
         within = ("input_uncertainties", pointer) if len(pointer) <= LONGEST_POINTER else ("input_uncertainties",)
         try:
-            path = steps_of(pointer)
+            path = _steps(pointer, "request", "/gravity")
             relative_uncertainties(question.question.request, {path: share})
         except InvalidParameter as fault:
             raise InvalidParameter(within, fault.rule, remedy=fault.remedy) from None
         found[path] = share
     return found
+
+
+def _steps(pointer: str, document: str, example: str) -> Path:
+    try:
+        return steps_of(pointer)
+    except InvalidParameter:
+        raise InvalidParameter((), f"be a JSON pointer into the {document}", remedy=f'such as "{example}"') from None
+
+
+def _check_figures(pointers: Iterable[str], answer: Mapping[str, Any]) -> None:
+    """Refuse a comparison for a figure that the answer has not: it would be left unused without a word."""
+    for pointer in pointers:
+        within = ("comparisons", pointer) if len(pointer) <= LONGEST_POINTER else ("comparisons",)
+        try:
+            path = _steps(pointer, "answer of the question", "/flip_interval")
+        except InvalidParameter as fault:
+            raise InvalidParameter(within, fault.rule, remedy=fault.remedy) from None
+        if value_at(answer, path) is None and not is_null(answer, path):
+            raise InvalidParameter(within, "lead to a figure of the answer")
 
 
 def _names(question: AssessmentRequest) -> dict[str, Path] | None:

@@ -1,4 +1,4 @@
-"""Questions inside of other requests: a path and a request, read and asked as if they had been sent there."""
+"""Questions inside of other requests: a path and a request, read and answered as if they had been sent there."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Any
 
 from pydantic import Field
 
-from core.assessment.asked_question import AssessedQuestion
+from core.assessment.graded_question import GradedQuestion
 from core.errors import MechanicsError, Path
 from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
-from service.routes.assessments.route_source import Refused, asked_question
+from service.routes.assessments.route_source import Refused, graded_question
 from service.routes.certified.answers import ROOT
 from service.routing import PostRoute
 from service.schemas import Request
@@ -27,7 +27,7 @@ SECONDS_OF_PROOF = 1e-3
 """For proven digits."""
 
 
-class AskedQuestion(Request):
+class EndpointRequest(Request):
     """A request to another endpoint, whose answer is the reference."""
 
     path: str = Field(max_length=200, description="Of the endpoint, for example /v1/rotation/precession.")
@@ -42,7 +42,7 @@ class QuestionTable:
         self._certified: Mapping[str, PostRoute] = {route.path: route for route in certified}
         self._reader = cache(self._new_reader)
 
-    def route(self, question: AskedQuestion) -> PostRoute:
+    def route(self, question: EndpointRequest) -> PostRoute:
         """Return the route of a question, or refuse the path."""
         if question.path not in self._routes:
             near = nearest_path(question.path, self._routes)
@@ -51,31 +51,31 @@ class QuestionTable:
             raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
         return self._routes[question.path]
 
-    def asked(
-        self, question: AskedQuestion, request: Any, budget: Budget, uncertainty: float | Mapping[Path, float] | None
-    ) -> AssessedQuestion:
-        """Return what is asked by a request, that of the question or a changed one."""
+    def graded(
+        self, question: EndpointRequest, request: Any, budget: Budget, uncertainty: float | Mapping[Path, float] | None
+    ) -> GradedQuestion:
+        """Return a request, that of the question or a changed one, as one to be graded."""
         route = self.route(question)
         twin = self._certified.get(ROOT + route.path.removeprefix("/v1"))
         proven = None if twin is None else (twin, self._reader(twin.path).read)
-        return asked_question(route, self._reader(route.path).read, request, budget, uncertainty, proven)
+        return graded_question(route, self._reader(route.path).read, request, budget, uncertainty, proven)
 
     def answered(
-        self, question: AskedQuestion, budget: Budget, uncertainty: float | Mapping[Path, float] | None
-    ) -> AssessedQuestion:
+        self, question: EndpointRequest, budget: Budget, uncertainty: float | Mapping[Path, float] | None
+    ) -> GradedQuestion:
         """Return the question with its answer; refusals of it point into the document that holds it."""
-        asked = self.asked(question, question.request, budget, uncertainty)
+        graded = self.graded(question, question.request, budget, uncertainty)
         with within_question():
-            asked.answer  # noqa: B018
-        return asked
+            graded.answer  # noqa: B018
+        return graded
 
-    def price(self, question: AskedQuestion, budget: Budget) -> float:
+    def price(self, question: EndpointRequest, budget: Budget) -> float:
         """Return the predicted time of one answer (s), or refuse the question."""
         route = self.route(question)
         with within_question():
             return route.price(self._read(route, question.request), budget)
 
-    def small(self, question: AskedQuestion) -> bool:
+    def small(self, question: EndpointRequest) -> bool:
         """Return whether the question, or the problem that answers it, may be begun in the event loop."""
         try:
             route = self.route(question)

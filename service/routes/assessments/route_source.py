@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from core.assessment.asked_question import AssessedQuestion
+from core.assessment.graded_question import GradedQuestion
 from core.errors import MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
@@ -31,7 +31,7 @@ PROVING = 100
 
 @dataclass(frozen=True)
 class RouteSource:
-    """Answers of a route; see `core.assessment.asked_question.Source`.
+    """Answers of a route; see `core.assessment.graded_question.Source`.
 
     Attributes
     ----------
@@ -75,6 +75,12 @@ class RouteSource:
         except (MechanicsError, Refusal):
             return None
 
+    def errors(self, request: Any) -> tuple[Mapping[str, Any], str] | None:
+        """Return bounds of the errors of the answer's figures and what they rest on, None without."""
+        if self.route.errors is None:
+            return None
+        return self.route.errors(self.read(json.dumps(request).encode()), self.budget)
+
     def takes(self, field: str) -> bool:
         """Return whether a request may have a field."""
         return has_field(self.route.question, field)
@@ -111,13 +117,13 @@ class Refused(MechanicsError):
         self.refusal = refusal
 
 
-def asked_question(
+def graded_question(
     route: PostRoute,
     read: Callable[[bytes], Any],
     request: Any,
     budget: Budget,
     uncertainty: float | Mapping[Path, float] | None,
     proven: tuple[PostRoute, Callable[[bytes], Any]] | None = None,
-) -> AssessedQuestion:
-    """Return the question that a request to a route asks; see `RouteSource` and `AssessedQuestion`."""
-    return AssessedQuestion(RouteSource(route, read, budget, proven), request, uncertainty)
+) -> GradedQuestion:
+    """Return the question that a request to a route asks; see `RouteSource` and `GradedQuestion`."""
+    return GradedQuestion(RouteSource(route, read, budget, proven), request, uncertainty)

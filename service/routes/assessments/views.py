@@ -102,7 +102,9 @@ class ReferenceFigure(View):
     unit: str = Field(description="1 for pure numbers.")
     form: Form = Field(description="How submitted values are compared with it.")
     error: Annotated[float, OwnUnit] = Field(description="Numerical error; how says what it rests on.")
-    how: str = Field(description="closed form, ball arithmetic and measured ...: a bound; estimate ...: none.")
+    how: str = Field(
+        description="closed form, ball arithmetic, sums of two doubles and measured ...: a bound; estimate ...: none."
+    )
     inherited: Annotated[float, OwnUnit] | None = Field(
         description="Error propagated from the uncertainty of the question's numbers, to first order; null if unknown."
     )

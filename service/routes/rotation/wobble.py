@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Annotated
 
 from pydantic import Field
 
+from core.certified.wobble import wobble_errors
 from core.quantities import Quantity, Unit
-from core.rotation.wobble import Day, EarthFigures, from_ellipticity, from_period
+from core.rotation.wobble import (
+    EARTH,
+    Day,
+    EarthFigures,
+    Wobble,
+    from_ellipticity,
+    from_period,
+    rotations_of_ellipticity,
+    rotations_of_period,
+)
 from core.systems.budget import Budget
 from service.execution.cost_model import CalibratedCost, one
 from service.routing import Answer, PostRoute
@@ -40,11 +51,22 @@ class WobbleAnswer(Envelope):
 
 def wobble(question: WobbleRequest, budget: Budget) -> Answer:
     """Answer with the wobble."""
+    return fields_of(_answered(question)[0])
+
+
+def errors(question: WobbleRequest, budget: Budget) -> tuple[Answer, str]:
+    """Return bounds of the errors of the answer's figures, and what they rest on; the Earth's are as measured."""
+    earth = dict.fromkeys(fields_of(EARTH), 0.0)
+    return {**wobble_errors(*_answered(question)), "earth": earth}, "ball arithmetic"
+
+
+def _answered(question: WobbleRequest) -> tuple[Wobble, Fraction]:
+    """Return the wobble, and the period in rotations that it is computed from."""
     require_one(question, "period", "ellipticity")
     if question.period is not None:
-        return fields_of(from_period(question.period, question.day))
+        return from_period(question.period, question.day), rotations_of_period(question.period, question.day)
     assert question.ellipticity is not None
-    return fields_of(from_ellipticity(question.ellipticity, question.day))
+    return from_ellipticity(question.ellipticity, question.day), rotations_of_ellipticity(question.ellipticity)
 
 
 WOBBLE = (
@@ -58,5 +80,6 @@ WOBBLE = (
         wobble,
         CalibratedCost("wobble", one),
         lambda question: True,
+        errors=errors,
     ),
 )

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.assessment.answer_key import AnswerKey, Terms, figures_within, key_of
-from core.assessment.asked_question import AssessedQuestion
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import Data, DecDig, Interval, RelAbs, SigFig
+from core.assessment.graded_question import GradedQuestion
 from core.assessment.grader import Grader, credited
 from core.assessment.results import reference_views, submission_view
 from tests.core.assessment.test_variants import REQUEST, Pendulum
@@ -26,9 +26,9 @@ COMPARISONS = {"/period": SigFig(digits=3), "/frequency": Interval(0.4, 0.6), "/
 def graders(reveal: bool = True, comparison: Any = None, uncertainty: float | None = None) -> tuple[Grader, AnswerKey]:
     terms = Terms(comparison, COMPARISONS, reveal, None)
     catalogue = credited(MISTAKES, {"sign": 0.125})
-    key = key_of(AssessedQuestion(Pendulum(), REQUEST, uncertainty), terms, catalogue, ["/lengths/0"], [])
-    asked = AssessedQuestion(Pendulum(), REQUEST, uncertainty)
-    return Grader(asked, comparison, COMPARISONS, reveal, catalogue, None), AnswerKey(json.loads(json.dumps(key)))
+    key = key_of(GradedQuestion(Pendulum(), REQUEST, uncertainty), terms, catalogue, ["/lengths/0"], [])
+    graded = GradedQuestion(Pendulum(), REQUEST, uncertainty)
+    return Grader(graded, comparison, COMPARISONS, reveal, catalogue, None), AnswerKey(json.loads(json.dumps(key)))
 
 
 ASKED, KEY = graders()

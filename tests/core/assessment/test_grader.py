@@ -6,17 +6,17 @@ from typing import Any
 
 import pytest
 
-from core.assessment.asked_question import AssessedQuestion
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import SigFig
+from core.assessment.graded_question import GradedQuestion
 from core.assessment.grader import Grader, JudgedClaim, credited
 from tests.core.assessment.pendulum import REQUEST, Pendulum
-from tests.core.assessment.test_asked_question import PERIOD
+from tests.core.assessment.test_graded_question import PERIOD
 
 
 def grader(*, reveal: bool = True, **credits: float) -> Grader:
-    asked = AssessedQuestion(Pendulum(), REQUEST, None)
-    return Grader(asked, None, {"/rate": SigFig(4)}, reveal, credited(MISTAKES, credits), {"l": ("length",)})
+    graded = GradedQuestion(Pendulum(), REQUEST, None)
+    return Grader(graded, None, {"/rate": SigFig(4)}, reveal, credited(MISTAKES, credits), {"l": ("length",)})
 
 
 def judged(claim: Any, pointer: str = "/period", **more: Any) -> JudgedClaim:

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.assessment.method_search import Consistent, MethodSearch
+from core.assessment.method_search import MethodSearch
+from core.assessment.sample_findings import Consistent
 from core.rotation.torque_free import TorqueFree
 from tests.core.assessment.student_integrators import FIXED, SOLVERS, Rows, euler, gyration, marched, motion, submitted
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from core.assessment.compare import exchanged
-from core.assessment.samples import ExactSamples, SampleErrors
+from core.assessment.sample_findings import SampleErrors
+from core.assessment.samples import ExactSamples
 from core.bodies import PrincipalMoments
 from core.rotation.torque_free import TorqueFree
 from tests.core.assessment.student_integrators import euler, gyration, marched, motion
@@ -102,6 +103,16 @@ def test_what_is_lost_at_the_separatrix_circles_another_axis() -> None:
     # A little more energy on the same side is no crossing.
     other = near_separatrix(0.9).closed_form().sample(times)
     assert errors_of_samples(system, times, other, right, 0.01).separatrix_crossed is None
+
+
+def test_noise_is_not_lost_at_the_separatrix() -> None:
+    system = near_separatrix(0.999)
+    times = np.linspace(0.0, 30.0, 600)
+    right = system.closed_form().sample(times)
+    noisy = right + np.random.default_rng(2).normal(0.0, 0.01, right.shape)
+    found = errors_of_samples(system, times, noisy, right, 0.005)
+    assert found.within_until is not None
+    assert found.separatrix_crossed is None
 
 
 @pytest.mark.parametrize(

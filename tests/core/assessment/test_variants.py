@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.assessment.asked_question import AssessedQuestion
+from core.assessment.graded_question import GradedQuestion
 from core.assessment.variants import Constraint, Variants
 from core.assessment.varied_input import VariedInput
 from core.errors import InvalidParameter, NotApplicable, Path
@@ -36,6 +36,9 @@ class Pendulum:
         figures = {"period": period, "frequency": frequency, "difference": other - one, "lengths": given["lengths"]}
         return figures | {"warnings": warnings}
 
+    def errors(self, request: Any) -> None:
+        return None
+
     def certified(self, request: Any) -> None:
         return None
 
@@ -56,8 +59,8 @@ class Pendulum:
 
 
 def variants(vary: dict[Path, VariedInput], figures: tuple[str, ...] = ("period",), **more: Any) -> Variants:
-    def ask(request: Any) -> AssessedQuestion:
-        return AssessedQuestion(Pendulum(), request, more.get("uncertainty"))
+    def ask(request: Any) -> GradedQuestion:
+        return GradedQuestion(Pendulum(), request, more.get("uncertainty"))
 
     constraints = more.get("constraints", {})
     return Variants(

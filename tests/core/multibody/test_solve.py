@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from core.balls import precision
-from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter
+from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, NotApplicable
 from core.multibody.polynomials import BITS
 from core.multibody.solve import solve_scene
 from core.scenes.unwinding_shafts import UnwindingShafts
@@ -150,6 +150,21 @@ def test_pendulum_period_is_the_complete_integral(amplitude: str) -> None:
                 <= place.error
             )
     assert column(answer, "p0.position").error < 4e-15
+
+
+@pytest.mark.parametrize("length", ["1e-3", "1", "1e-150"])
+def test_pendulum_in_the_strongest_gravity_that_doubles_hold(length: str) -> None:
+    scene = {
+        "gravity": [0, -1e308],
+        "bodies": {"bob": {"mass": 1, "at": [length, 0]}},
+        "connections": [{"kind": "rod", "a": "bob", "b": [0, 0]}],
+    }
+    with mpmath.workdps(50):
+        period = 4 * mpmath.ellipk(mpmath.mpf(1) / 2) * mpmath.sqrt(mpmath.mpf(length) / mpmath.mpf(10) ** 308)
+    found = solve_scene(read(scene)).period
+    assert found == pytest.approx(float(period), rel=1e-15, abs=0)
+    with pytest.raises(NotApplicable, match="leaves the range of doubles"):
+        solve_scene(read(scene), [1.0])
 
 
 def test_circulating_pendulum_winds_on() -> None:

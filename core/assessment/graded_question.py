@@ -19,14 +19,14 @@ from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.work import spend
 
-ASKING = 60
+ANSWERING = 60
 """Work (`core.work`) of asking a question again, beside what the question counts itself."""
 
 SENSITIVE: Mapping[str, tuple[str, float]] = {"ellipticity": ("a/c - 1", 1.0)}
 """Figures near a number that says nothing: by their names, the figure in which errors show, and that number."""
 
 TRAJECTORY = "rotation/trajectory"
-"""The question of which all figures but the columns are the same whatever times are asked for."""
+"""The question of which all figures but the columns are the same whatever times it has."""
 
 MEASURED = "measured"
 """What a precession is answered with beside its figures if a measurement is requested."""
@@ -55,7 +55,7 @@ VARIATIONS = 20
 
 
 class Source(Protocol):
-    """Where a question is asked, and what is declared of its fields and its answer's."""
+    """What answers a question, and what is declared of its fields and its answer's."""
 
     @property
     def subject(self) -> str:
@@ -70,6 +70,9 @@ class Source(Protocol):
 
     def certified(self, request: Any) -> Mapping[str, Any] | None:
         """Return the answer in proven decimal strings, None where there is none."""
+
+    def errors(self, request: Any) -> tuple[Mapping[str, Any], str] | None:
+        """Return bounds of the errors of the answer's figures and what they rest on, None where there are none."""
 
     def takes(self, field: str) -> bool:
         """Return whether a request may have a field."""
@@ -94,8 +97,8 @@ class Variation(NamedTuple):
     figure: float
 
 
-class AssessedQuestion:
-    """A question, which is asked as often as references, uncertainties and mistakes need.
+class GradedQuestion:
+    """A question, answered as often as references, uncertainties and mistakes need.
 
     Parameters
     ----------
@@ -121,7 +124,7 @@ class AssessedQuestion:
     @cached_property
     def answer(self) -> Mapping[str, Any]:
         """The answer; raises what the question is refused with."""
-        return self._asked(self.request)
+        return self._answered(self.request)
 
     def evaluate(self, request: Any) -> Callable[[Path], Any]:
         """Ask a changed question; the result finds the value at a path of its answer, None where there is none."""
@@ -149,7 +152,7 @@ class AssessedQuestion:
         request = self.request | {"times": times.tolist()}
         if path[0] in self._source.outputs:
             request["outputs"] = [path[0]]
-        answer = self._asked(request)
+        answer = self._answered(request)
         value = value_at(answer, path)
         if not isinstance(value, np.ndarray) or len(value) != len(times):
             return None
@@ -190,8 +193,8 @@ class AssessedQuestion:
         """Return the free rotation that the question is about, None for questions about anything else."""
         return self._source.rotation(self.request) if self.subject == TRAJECTORY else None
 
-    def _asked(self, request: Any) -> Mapping[str, Any]:
-        spend(ASKING)
+    def _answered(self, request: Any) -> Mapping[str, Any]:
+        spend(ANSWERING)
         return self._source.answer(json.dumps(request))
 
     def _ask(self, request: Any, output: str | int) -> Mapping[str, Any] | None:
@@ -205,7 +208,7 @@ class AssessedQuestion:
             changes["measure"] = None
         document = json.dumps(request | changes)
         if document not in self._answers:
-            spend(ASKING)
+            spend(ANSWERING)
             try:
                 self._answers[document] = self._source.answer(document)
             except MechanicsError:
@@ -227,7 +230,7 @@ class AssessedQuestion:
     def _made(self, path: Path) -> Reference | None:
         value = value_at(self.answer, path)
         if value is None:
-            return Reference(None, form="none") if is_null(self.answer, path) else None
+            return Reference(None, self._unit(path), "none") if is_null(self.answer, path) else None
         return self._stated(path, value, form_of(path, value, self._unit(path)), self.answer)
 
     def _unit(self, path: Path) -> str:
@@ -256,11 +259,20 @@ class AssessedQuestion:
             return replace(bare, error=inside(accuracy, "error") * size, how=how, inherited=inherited)
         if form == "curve":
             return replace(bare, error=dense(value)[1], how=BETWEEN_POINTS, inherited=inherited)
+        if self._errors is not None:
+            errors, how = self._errors
+            bound = value_at(errors, path)
+            if bound is not None:
+                return replace(bare, error=_distance_of(bare, bound), how=how, inherited=inherited)
         proven = self._proven(path, bare)
         if proven is not None:
             return replace(bare, error=proven, how=CERTIFIED, inherited=inherited)
         half = inherited if self._uncertainty is None else self._in_half_ulps.of(path, bare)
         return replace(bare, error=CONDITIONING * (half or 0.0) + ROUNDING * size, how=ESTIMATE, inherited=inherited)
+
+    @cached_property
+    def _errors(self) -> tuple[Mapping[str, Any], str] | None:
+        return self._source.errors(self.request)
 
     @cached_property
     def _certified(self) -> Mapping[str, Any] | None:
@@ -295,6 +307,13 @@ class AssessedQuestion:
             return replace(bare, error=ROUNDING * norm, how=OF_METHOD, inherited=inherited)
         scale = max(norm, bare.scale) if bare.form == "samples" else bare.scale
         return replace(bare, scale=scale, error=error * norm, how=accuracy["how"], inherited=inherited)
+
+
+def _distance_of(bare: Reference, bound: float | Floats) -> float:
+    """Return how far a figure is from the true one, as its form measures it, if its entries are wrong by `bound`."""
+    wrong = float(np.max(bound))
+    # A projection is the product of a unit vector with itself.
+    return 6.0 * wrong if bare.form in ("axes", "direction") else wrong
 
 
 def _body_axis(answer: Mapping[str, Any], path: Path) -> int | None:

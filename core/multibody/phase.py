@@ -1,0 +1,132 @@
+"""A phase: a time in which nothing changes its state, with the smallest model of the scene that suffices in it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from core.multibody.accumulation import Accumulation
+from core.multibody.answer import SceneEvent
+from core.multibody.contact_start import ContactStart
+from core.multibody.contact_states import PhaseTable, Problem, State, forces_of, phase_table
+from core.multibody.crossings import is_uniform
+from core.multibody.description import Described
+from core.multibody.measures import Unilateral
+from core.multibody.modelling import Modelled, Piece, models_of
+from core.multibody.motion import Motion
+from core.multibody.numerical import Numerical
+from core.multibody.polynomials import ZERO, Ball
+from core.multibody.projection import project
+from core.multibody.tracks import Track, Tracks
+
+
+@dataclass
+class Phase:
+    """A time in which nothing changes its state.
+
+    Attributes
+    ----------
+    tracks : list of Track
+        One where the state is exact, else two.
+    models : list of Modelled
+        One for each track.
+    tables : list of PhaseTable
+    states : list of State
+    end : ball or None
+        None for the last.
+    bounces : Accumulation or None
+        In place of the models, where infinitely many impacts are in the phase.
+    """
+
+    tracks: list[Track]
+    models: list[Modelled]
+    tables: list[PhaseTable]
+    states: list[State]
+    end: Ball | None = None
+    bounces: Accumulation | None = None
+
+    @property
+    def start(self) -> Ball:
+        """Time at which it begins."""
+        return self.tracks[0].time
+
+    @property
+    def uniform(self) -> bool:
+        """Whether every acceleration is constant."""
+        return all(is_uniform(model) for model in self.models)
+
+    @property
+    def still(self) -> list[bool]:
+        """Which coordinates are constants of its motion."""
+        return [not any(expression) for expression in self.models[0].whole.reduced.expressions]
+
+
+@dataclass
+class PhaseMotion:
+    """The motion of a scene through its phases.
+
+    Attributes
+    ----------
+    base : Described
+        The scene without its unilateral measures.
+    unilateral : sequence of Unilateral
+    phases : list of Phase
+    events : list of SceneEvent
+    noticed : list of str
+    problem : Problem or None
+        What ended the motion, where mechanics does not decide.
+    ended : SceneEvent or None
+        The event that ended it.
+    """
+
+    base: Described
+    unilateral: Sequence[Unilateral]
+    phases: list[Phase] = field(default_factory=list)
+    events: list[SceneEvent] = field(default_factory=list)
+    noticed: list[str] = field(default_factory=list)
+    problem: Problem | None = None
+    ended: SceneEvent | None = None
+
+
+def phase_of(base: Described, states: Sequence[State], tracks: Tracks, start: ContactStart) -> Phase:
+    """Return the phase that begins at the present state.
+
+    Where that is known from two tracks, each is put onto the rows of the phase: it came there by a series.
+    """
+    each, models, tables = [], [], []
+    for track in tracks.each:
+        phase = phase_table(base.measures.table, base.measures.unilateral, states, track.q, track.v)
+        if not tracks.exact:
+            project(phase.table, tracks.wide()[0])
+            tracks.settle(phase.table.q, phase.table.v)
+        models.append(_model(base, states, phase, start))
+        each.append(Track(track.time, phase.table.q, phase.table.v))
+        tables.append(phase)
+    return Phase(each, models, tables, list(states))
+
+
+def _model(base: Described, states: Sequence[State], phase: PhaseTable, start: ContactStart) -> Modelled:
+    """Return the models of the table of a phase; a series runs in pairs, judged by a coarser one."""
+    measures = copy.copy(base.measures)
+    measures.table = phase.table
+    measures.forces = [*base.measures.forces, *forces_of(base.measures.unilateral, states, phase)]
+    found = models_of(replace(base, measures=measures), start.moved, start.fitted)
+    parts: list[tuple[Sequence[int], Motion]] = []
+    for (indices, motion), piece in zip(found.whole.parts, found.pieces, strict=True):
+        own = motion
+        if isinstance(motion, Numerical):
+            own = Numerical.of(piece.table, _pulls(piece), piece.chosen, motion.why)
+            own.lost_to_doubles = True
+        parts.append((indices, own))
+    return replace(found, whole=replace(found.whole, parts=parts))
+
+
+def _pulls(piece: Piece) -> list[Ball]:
+    """Return how fast a part may come to move: beside an equilibrium its accelerations say nothing of that."""
+    found = []
+    for i, x in enumerate(piece.acceleration):
+        load, mass = piece.table.load.get(i), piece.table.mass.get((i, i))
+        free: Ball = ZERO if load is None or mass is None else abs(load / mass)
+        found.append(free if float(free) > abs(float(x)) else x)
+    return found

@@ -1,0 +1,73 @@
+"""Where a phase ends: its first crossing, on every track."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.errors import AccuracyUnreachable
+from core.multibody.crossings import Crossing, first_in_closed_form, uniform_motion
+from core.multibody.description import Described
+from core.multibody.phase import Phase
+from core.multibody.polynomials import Ball
+from core.multibody.sampled_crossings import Sampled
+from core.multibody.taylor_crossings import located
+from core.multibody.watches import Watch, watches
+
+
+def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) -> list[Crossing]:
+    """Return the first crossing of a phase within the time that is left, none where nothing ends it.
+
+    There is one for each track, and two where the motion was exact and is so no more. What only grazes zero before is
+    added to what is noticed.
+
+    Raises
+    ------
+    SingularPlace
+        Where the connections lose their hold before.
+    AccuracyUnreachable
+        If the end cannot be located.
+    """
+    watched = watches(base.measures.unilateral, phase.states, phase.tables[0])
+    lengths = any(limit.length is not None for limit in base.measures.limits)
+    if phase.uniform and not lengths:
+        return _in_closed_form(phase, watched, left, noticed)
+    return _sampled(phase, watched, float(left))
+
+
+def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]) -> list[Crossing]:
+    motions = [uniform_motion(table.table, model) for table, model in zip(phase.tables, phase.models, strict=True)]
+    first, grazes = first_in_closed_form(motions[0], watched, left)
+    noticed.extend(
+        f"{w.one.name} touches at rest at {float(phase.start + t):.6g} s, and nothing comes of it"
+        for w, t in grazes
+        if w.what == "gap"
+    )
+    if first is None:
+        return []
+    found = [first]
+    for motion in motions[1:]:
+        # The other track may come there later than the first, even after the time that is left; or only just not.
+        other, _ = first_in_closed_form(motion, [w for w in watched if w == first.watch], 2 * left)
+        found.append(first if other is None else other)
+    return found
+
+
+def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
+    tables, wholes = [one.table for one in phase.tables], [model.whole for model in phase.models]
+    hit = Sampled(tables[0], wholes[0], watched).first(left)
+    if hit is None:
+        return []
+    time, watch = hit
+    first = located(tables[0], wholes[0], watch, time, "fine")
+    if not first.time > 0 or not first.time.is_finite():
+        since = float(phase.start)
+        raise AccuracyUnreachable(
+            None,
+            1.0,
+            f'the event of "{watch.one.name}" {time:.6g} s after {since:.17g} s cannot be located',
+            path=("times",),
+            remedy=f"ask for earlier times than {since:.6g} s only",
+        )
+    if first.time > left:
+        return []
+    return [first, located(tables[-1], wholes[-1], watch, float(first.time), "check")]

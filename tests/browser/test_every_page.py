@@ -1,0 +1,97 @@
+"""What holds for all three pages: no violation of axe-core, no sideways scrolling, weight, time to load."""
+
+import gzip
+import time
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+
+from tests.browser.conftest import FIGURES
+from tests.browser.serving import ROOT
+
+PAGES = (
+    "/",
+    "/#body=points&method=explicit-euler",
+    "/#body=moments&moments=1,2,3&spin=0,2,0",
+    "/scenes",
+    "/scenes#scene=lagrange-top",
+    "/docs",
+    "/docs#/rotation/rotation_trajectory",
+)
+DEPRECATED = ("Deprecated: escaping deep link whitespace",)
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_axe_finds_no_violation(opened, path):
+    page = opened(path, expected=DEPRECATED)
+    for width, scheme in ((1280, "light"), (1280, "dark"), (390, "dark"), (390, "light")):
+        page.set_viewport_size({"width": width, "height": 844})
+        page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+        # The viewer of the reference follows by a class.
+        theme = "html.dark-mode" if scheme == "dark" else "html:not(.dark-mode)"
+        page.wait_for_selector(f"{theme} body.docs, body:not(.docs)")
+        page.wait_for_timeout(700)
+        results = Axe().run(page)
+        assert results.violations_count == 0, results.generate_report()
+        assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+        passed = len(results.response["passes"])
+        FIGURES.append(f"axe-core: {path} at {width} px, {scheme}: 0 violations, {passed} rules passed")
+
+
+@pytest.mark.parametrize("path", ["/", "/scenes"])
+def test_touch_scrolls_over_the_pictures(opened, path):
+    page = opened(path, has_touch=True, is_mobile=True, viewport={"width": 390, "height": 844})
+    for canvas in page.locator(".view canvas").all():
+        assert canvas.evaluate("e => getComputedStyle(e).touchAction") in ("pan-y", "auto")
+    page.wait_for_timeout(500)
+    box = page.locator(".view:visible canvas").first.bounding_box()
+    x, y = box["x"] + 40, min(800, box["y"] + box["height"] - 60)
+    touch = page.context.new_cdp_session(page)
+    touch.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [{"x": x, "y": y}]})
+    for k in range(1, 11):
+        touch.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": [{"x": x, "y": y - 15 * k}]})
+        page.wait_for_timeout(30)
+    touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    page.wait_for_timeout(500)
+    assert page.evaluate("scrollY") > 80
+
+
+@pytest.mark.parametrize("path", ["/", "/scenes", "/docs"])
+def test_weight_and_time(opened, base, path):
+    sizes: dict[str, int] = {}
+
+    def weigh(response):
+        sizes[response.url] = len(gzip.compress(response.body(), 9))
+
+    start = time.perf_counter()
+    page = opened(path, watch=weigh)
+    seconds = time.perf_counter() - start
+    page.wait_for_load_state("networkidle")
+    files = {url: size for url, size in sizes.items() if "/v1/" not in url}
+    assert all(urlsplit(url).netloc == urlsplit(base).netloc for url in sizes)
+    assert 50_000 < sum(files.values()) <= 700_000
+    FIGURES.append(
+        f"{path}: {len(files)} files, {sum(files.values()) / 1e3:.0f} kB gzipped, ready after {seconds:.2f} s"
+    )
+
+
+def test_the_reference_asks_and_shows_the_answer(opened):
+    page = opened("/docs#/bodies/mass_properties", expected=DEPRECATED)
+    page.locator("#operations-bodies-mass_properties .btn.execute").click()
+    live = page.locator("#operations-bodies-mass_properties .live-responses-table")
+    live.wait_for()
+    assert "200" in live.inner_text()
+    assert '"center_of_mass"' in live.inner_text()
+    assert len(live.locator("pre").first.inner_text().splitlines()) > 10
+
+
+def test_every_own_script_is_loaded_by_a_page(opened):
+    loaded = set()
+    for path in ("/", "/scenes#scene=lagrange-top", "/docs"):
+        page = opened(path)
+        urls = page.evaluate("performance.getEntriesByType('resource').map(e => e.name)")
+        loaded |= {Path(urlsplit(url).path).name for url in urls}
+    own = {file.name for file in (ROOT / "service/page").glob("*.js")}
+    assert own - loaded == set()

@@ -1,0 +1,128 @@
+"""The scenes page: every scene of the catalogue moves; sliders and the text change it, faults stand at their place."""
+
+import json
+from urllib.request import urlopen
+
+import pytest
+
+from tests.browser.waiting import settle
+
+REFUSED = ("422",)
+STANDING = ("sleeping-top", "painleve-chalk")
+"""The first spins about the axis by which it is described; for the second no motion exists, which its event says."""
+
+
+def canvas(page):
+    return page.locator(".view:visible canvas").screenshot()
+
+
+def scrub(page, thousandths):
+    page.locator("#player input").fill(str(thousandths))
+    page.wait_for_timeout(120)
+
+
+def test_every_scene_of_the_catalogue_moves(opened, base):
+    names = [scene["name"] for scene in json.load(urlopen(f"{base}/v1/scenes"))["scenes"]]
+    page = opened("/scenes")
+    assert page.locator("#scene option").evaluate_all("options => options.map(o => o.value)") == names
+    page.locator("#forces").uncheck()
+    for name in names:
+        page.locator("#scene").select_option(name)
+        settle(page)
+        scrub(page, 0)
+        start = canvas(page)
+        scrub(page, 330)
+        assert (canvas(page) != start) == (name not in STANDING), name
+        assert page.locator("#faults li").count() == 0, name
+        assert page.locator("#curves option").count() >= 2 or name == "painleve-chalk", name
+        assert "freedom" in page.locator(".view:visible canvas").get_attribute("aria-label")
+
+
+def test_the_numbers_are_those_of_the_api(opened, ask):
+    page = opened("/scenes#scene=atwood-machine")
+    first, _, body = page.locator("#request pre").inner_text().partition("\n")
+    answer = ask(first.removeprefix("POST "), json.loads(body))
+    (name, force), *_ = answer["forces"].items()
+    said = page.locator(f"#answer dt:text-is('{name}, at the start') + dd").inner_text()
+    assert said == f"{force['value']:.8g} N"
+    assert answer["model"]["name"] in page.locator("#summary").inner_text()
+
+
+def test_a_slider_changes_its_number_alone(opened):
+    page = opened("/scenes#scene=simple-pendulum")
+    before = page.locator("#editor").input_value()
+    slider = page.locator("label.number[data-pointer='/bodies/bob/mass'] input")
+    picture = page.locator("#answer").inner_text()
+    slider.fill("2.5")
+    settle(page)
+    after = page.locator("#editor").input_value()
+    assert json.loads(after)["bodies"]["bob"]["mass"] == 2.5
+    assert json.loads(after) | {"bodies": None} == json.loads(before) | {"bodies": None}
+    assert page.locator("#answer").inner_text() != picture
+
+
+def test_formulas_keep_their_text(opened):
+    page = opened("/scenes#scene=cylinder-on-cylinder")
+    page.locator("label.number[data-pointer='/bodies/upper/mass'] input").fill("2")
+    settle(page)
+    assert '"0.75*sin(0.2)"' in page.locator("#editor").input_value()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "pointer", "selected"),
+    [
+        ('"kind": "pin"', '"kind": "pinn"', "/connections/0/kind", '"pinn"'),
+        ('"mass": 1', '"mass": -1', "/bodies/one/mass", "-1"),
+        ('"gravity"', '"gravitie"', "/gravitie", None),
+    ],
+)
+def test_faults_are_written_at_their_place(opened, old, new, pointer, selected):
+    page = opened("/scenes", expected=REFUSED)
+    editor = page.locator("#editor")
+    editor.fill(editor.input_value().replace(old, new, 1))
+    settle(page)
+    fault = page.locator("#faults button").first
+    assert fault.inner_text().startswith(f"{pointer}: ")
+    assert editor.get_attribute("aria-invalid") == "true"
+    fault.click()
+    chosen = editor.evaluate("e => e.value.slice(e.selectionStart, e.selectionEnd)")
+    assert chosen == selected or selected is None
+    editor.fill(editor.input_value().replace(new, old, 1))
+    settle(page)
+    assert page.locator("#faults li").count() == 0
+
+
+def test_what_is_not_json_is_said_with_its_place(opened):
+    page = opened("/scenes")
+    editor = page.locator("#editor")
+    text = editor.input_value()
+    editor.fill(text.replace('"mass": 1,', '"mass": 1', 1))
+    settle(page)
+    fault = page.locator("#faults button")
+    assert "a comma or } is missing" in fault.inner_text()
+    fault.click()
+    # The place is where the comma should be: the name that follows.
+    assert editor.evaluate("e => e.value.slice(e.selectionStart, e.selectionStart + 9)") == '"inertia"'
+
+
+def test_an_edited_scene_is_in_the_address(opened):
+    page = opened("/scenes#scene=spool")
+    page.locator("label.number[data-pointer='/bodies/weight/mass'] input").fill("2.5")
+    settle(page)
+    again = opened(page.url[page.url.index("/scenes") :])
+    assert json.loads(again.locator("#editor").input_value())["bodies"]["weight"]["mass"] == 2.5
+    assert again.locator("#summary").inner_text() == page.locator("#summary").inner_text()
+
+
+def test_an_event_is_marked_and_said(opened):
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": 1, "at": [0, -1], "velocity": [6, 0]}},
+        "connections": [{"kind": "string", "name": "cord", "through": ["bob", [0, 0]]}],
+        "times": {"start": 0, "stop": 3, "count": 7},
+    }
+    page = opened("/scenes")
+    page.locator("#editor").fill(json.dumps(scene))
+    settle(page)
+    assert page.locator(".marks span").count() == page.locator("#events li").count() > 0
+    assert "cord goes slack" in page.locator("#events").inner_text()
