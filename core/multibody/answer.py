@@ -115,7 +115,8 @@ class Energy:
     Attributes
     ----------
     conserved : bool
-        Whether nothing works on the scene: no damper, motor or torque in space.
+        Whether nothing works on the scene: no damper, motor or torque in space, and until the last time no friction
+        of what slides and no impact that costs energy.
     """
 
     kinetic: float

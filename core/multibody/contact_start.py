@@ -82,5 +82,5 @@ def _as_written(base: Described, touching: Sequence[int], fitted: list[str]) -> 
                     fitted.append(one.name)
     if fitted:
         start = replace(table, rows=[*table.rows, *rows])
-        project(start)
+        project(start, table.q)
         table.q, table.v = start.q, start.v

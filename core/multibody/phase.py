@@ -98,7 +98,7 @@ def phase_of(base: Described, states: Sequence[State], tracks: Tracks, start: Co
     for track in tracks.each:
         phase = phase_table(base.measures.table, base.measures.unilateral, states, track.q, track.v)
         if not tracks.exact:
-            project(phase.table)
+            project(phase.table, tracks.wide()[0])
             tracks.settle(phase.table.q, phase.table.v)
         models.append(_model(base, states, phase, start))
         each.append(Track(track.time, phase.table.q, phase.table.v))

@@ -30,7 +30,7 @@ from core.multibody.phase import Phase, PhaseMotion
 from core.multibody.phases import motion_in_phases
 from core.multibody.polynomials import Ball
 from core.multibody.shortened import shortened
-from core.multibody.start import accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
+from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.tracks import FLOOR, TOLD
 from core.multibody.trajectories import AskedMotion
 from core.multibody.whole import WholeStates
@@ -102,6 +102,10 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
         values = forces_at_start(found.described.measures, multipliers)
         noticed += noticed_of(found, values, multipliers)
+        still = [name for name in at_rest(found) if all(name in at_rest(phase.models[0]) for phase in motion.phases)]
+        if still:
+            last = end if motion.ended is None else motion.ended.time
+            noticed.append(f"until {last:g} s nothing moves {', '.join(still)}")
         model = scene_model(found, noticed, multipliers.rank)
         accelerations = accelerations_of(found.described, found.whole.acceleration)
         forces = forces_of_start(found.described, values)
@@ -110,7 +114,7 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         model,
         accelerations if "accelerations" in outputs else None,
         forces if "forces" in outputs else None,
-        energy_of(motion.base) if "energy" in outputs else None,
+        replace(energy_of(motion.base), conserved=_conserved(motion)) if "energy" in outputs else None,
         trajectory,
         None,
         None,
@@ -118,6 +122,19 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         motion.ended,
         phases=tuple(_told(phase, motion) for phase in motion.phases),
         problem=_problem(motion),
+    )
+
+
+def _conserved(motion: PhaseMotion) -> bool:
+    """Return whether nothing works on a scene, no impact costs energy, and nothing slides with friction."""
+    return (
+        motion.base.measures.conservative
+        and not any(event.energy_loss for event in motion.events)
+        and not any(
+            state.sense and one.kinetic
+            for phase in motion.phases
+            for one, state in zip(motion.unilateral, phase.states, strict=True)
+        )
     )
 
 

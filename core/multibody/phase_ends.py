@@ -60,8 +60,13 @@ def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossi
     time, watch = hit
     first = located(tables[0], wholes[0], watch, time, "fine")
     if not first.time > 0 or not first.time.is_finite():
+        since = float(phase.start)
         raise AccuracyUnreachable(
-            None, 1.0, f'the event of "{watch.one.name}" at {time:.6g} s cannot be located', path=("times",)
+            None,
+            1.0,
+            f'the event of "{watch.one.name}" {time:.6g} s after {since:.17g} s cannot be located',
+            path=("times",),
+            remedy=f"ask for earlier times than {since:.6g} s only",
         )
     if first.time > left:
         return []

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from flint import arb
 
 from core.multibody.assembly import least_change
 from core.multibody.contact_responses import rate_along
-from core.multibody.polynomials import evaluated
+from core.multibody.polynomials import Ball, evaluated
 from core.multibody.rank import independent
 from core.multibody.table import Table
 
@@ -16,17 +18,21 @@ HELD = 2.0**-240
 """Share of the largest coordinate to which a state is put onto its rows."""
 
 
-def project(table: Table) -> None:
-    """Put the state of a table onto its rows, by the least change: places first, then rates at the new places."""
+def project(table: Table, around: Sequence[Ball]) -> None:
+    """Put the state of a table onto its rows, by the least change: places first, then rates at the new places.
+
+    Rows are redundant if they are within `around`, the places with the width to which they are known: beside the
+    measures, redundant rows differ by what the places miss, and a change that undoes both has no bound.
+    """
     held = [row for row in table.rows if row.measure is not None]
+    chosen = independent(row.line(around) for row in held)
     for _ in range(_ROUNDS):
-        lines = [row.line(table.q) for row in held]
-        chosen = independent(lines)
+        lines = [held[i].line(table.q) for i in chosen]
         residuals = [arb(evaluated(held[i].measure or {}, table.q).mid()) for i in chosen]
-        step = least_change(table, [lines[i] for i in chosen], residuals)
+        step = least_change(table, lines, residuals)
         table.q = [arb((q - d).mid()) for q, d in zip(table.q, step, strict=True)]
+    chosen = independent(row.line(around) for row in table.rows)
     lines = [row.line(table.q) for row in table.rows]
-    chosen = independent(lines)
     for _ in range(_ROUNDS):
         residuals = [rate_along(lines[i], table.v) - table.rows[i].rate for i in chosen]
         step = least_change(table, [lines[i] for i in chosen], residuals)

@@ -23,6 +23,8 @@ _NOISE = 2.0**-44
 """Share of its terms below which the sign of something sampled in doubles is noise."""
 _CLOSER = 33
 """Samples of an interval that is looked at again."""
+_MOST_NARROWINGS = 8
+"""Of the bracket of an event, by a factor of 32 each: bounces rise and fall in a small part of an interval."""
 _UNKNOWN = 2.0**-90
 """Share of its terms below which the value of something at the start of a phase is zero."""
 _SOONEST = 1e-6
@@ -193,12 +195,14 @@ class Sampled:
             first = int(above[0]) + int(np.argmax(curve[above[0] :] < -noise[above[0] :]))
             above = above[above < first]
         before = int(above[-1])
-        for _ in range(2):
+        for narrowing in range(_MOST_NARROWINGS):
             # Newton's method needs a start on the falling side of a curve that may have risen before.
             times, curve, noise = self._closer(times[before], times[first], _CLOSER)
             below = curve < -noise
             first = int(np.argmax(below)) if below.any() else _CLOSER - 1
             before = max(first - 1, 0)
+            if narrowing > 0 and before > 0 and curve[before] <= curve[before - 1]:
+                break
         a, b = curve[before], curve[first]
         return float(times[before] + (times[first] - times[before]) * (a / (a - b) if a > 0 else 0.5))
 

@@ -20,7 +20,7 @@ from core.multibody.packed import Floats
 from core.multibody.phase_answer import ANSWERED, THRESHOLDS, answer_in_phases
 from core.multibody.phases import one_sided
 from core.multibody.polynomials import BITS
-from core.multibody.start import accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
+from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.strings import SlackAtStart
 from core.multibody.thresholds import RestOf, range_of_rest
 from core.multibody.trajectories import AskedMotion, Searched, trajectory_of
@@ -155,6 +155,9 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
     multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
     forces = forces_at_start(found.described.measures, multipliers)
     noticed = noticed_of(found, forces, multipliers)
+    still = at_rest(found)
+    if still:
+        noticed.append(f"nothing ever moves {', '.join(still)}")
     model = scene_model(found, noticed, multipliers.rank)
     trajectory: SceneTrajectory | None = None
     events: tuple[SceneEvent, ...] = ()

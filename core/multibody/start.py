@@ -112,18 +112,20 @@ def energy_of(found: Described) -> Energy:
     return Energy(_double(moving), _double(resting), _double(moving + resting), measures.conservative)
 
 
+def at_rest(found: Modelled) -> list[str]:
+    """Return the coordinates of bodies that nothing moves."""
+    bodies = set(found.described.scene.bodies)
+    return [name for name in found.whole.reduced.pinned if name.split(".")[0] in bodies]
+
+
 def noticed_of(found: Modelled, forces: list[ForceAtStart], multipliers: Multipliers) -> list[str]:
     """Return what was noticed about a scene, in sentences."""
     measures = found.described.measures
-    bodies = set(found.described.scene.bodies)
     said = []
     if found.moved:
         said.append(f"positions were moved by rounding's width so that {', '.join(found.moved)} hold exactly")
     if found.fitted:
         said.append(f"{', '.join(found.fitted)} were taken as rounded: the velocities follow from the connections")
-    still = [name for name in found.whole.reduced.pinned if name.split(".")[0] in bodies]
-    if still:
-        said.append(f"nothing ever moves {', '.join(still)}")
     for name, others in multipliers.redundant().items():
         beside = f" beside {', '.join(others)}" if others else ""
         said.append(f"{name} holds more than it has to{beside}: forces that it shares are not determined")

@@ -72,7 +72,9 @@ class StartEnergy(View):
     kinetic: Joules[float] | None
     potential: Joules[float] | None
     total: Joules[float] | None
-    conserved: bool = Field(description="Whether nothing works on the scene.")
+    conserved: bool = Field(
+        description="Whether nothing works on the scene: until the last time no friction and no impact costs energy."
+    )
 
 
 class SceneColumn(View):
