@@ -65,6 +65,10 @@ class InvalidParameter(MechanicsError, ValueError):
         return type(self)((*outer, *self.path), self.rule, remedy=self.remedy)
 
 
+class SlackAtStart(InvalidParameter):
+    """A string is longer than its way: the scene begins with it slack."""
+
+
 class UnphysicalInertia(InvalidParameter):
     """No distribution of positive mass has this tensor of inertia."""
 

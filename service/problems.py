@@ -172,6 +172,7 @@ REGISTRY: Mapping[str, ProblemType] = {
 MECHANICS: Mapping[type[errors.MechanicsError], str] = {
     errors.MechanicsError: "mechanics-error",
     errors.InvalidParameter: "invalid-parameter",
+    errors.SlackAtStart: "invalid-parameter",
     errors.UnphysicalInertia: "unphysical-inertia",
     errors.OpenMesh: "open-mesh",
     errors.NotApplicable: "not-applicable",

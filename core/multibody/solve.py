@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from core.balls import precision
-from core.errors import BudgetExceeded, InvalidParameter
+from core.errors import BudgetExceeded, InvalidParameter, SlackAtStart
 from core.multibody.answer import SceneAnswer, SceneEvent, SceneTrajectory
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equilibria import equilibria_of
@@ -21,7 +21,6 @@ from core.multibody.phase_answer import ANSWERED, THRESHOLDS, answer_in_phases
 from core.multibody.phases import one_sided
 from core.multibody.polynomials import BITS
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
-from core.multibody.strings import SlackAtStart
 from core.multibody.thresholds import RestOf, range_of_rest
 from core.multibody.trajectories import AskedMotion, Searched, trajectory_of
 from core.quantities import Uncertainty, check_value

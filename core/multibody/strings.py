@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import Any
 
-from core.errors import InvalidParameter, Path
+from core.errors import InvalidParameter, Path, SlackAtStart
 from core.multibody.contacts import bounciness
 from core.multibody.coordinates import Point, Rate
 from core.multibody.measures import Limit, Measures, Unilateral
@@ -177,10 +177,6 @@ def _at_most(measures: Measures, part: str, longer: Poly, connection: Any, path:
     restitution, order = bounciness(measures, connection, path)
     gap = combined((-ONE, longer))
     return Unilateral(part, gap, restitution=restitution, closes="taut", opens="slack", order=order)
-
-
-class SlackAtStart(InvalidParameter):
-    """A string is longer than its way: the scene begins with it slack."""
 
 
 def _require_taut(way: Ball, length: Ball, path: Path) -> None:

@@ -172,7 +172,9 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
             "motion": 1.0,
             "motions": bodies + connections,
             "motions of bodies that turn": float(turning),
-            "motions of bodies in space": bodies if len(question.gravity or ()) == 3 else 0.0,
+            "motions of bodies in space": bodies
+            if isinstance(question.gravity, list) and len(question.gravity) == 3
+            else 0.0,
             "motions by forces": pushing,
             "seconds of forces": seconds * min(1.0, pushing),
             "seconds of coupled bodies in pairs": seconds * coupled * lost,
