@@ -2,6 +2,7 @@
 
 * MechanicsError
   - InvalidParameter (ValueError)
+      - SlackAtStart
       - UnphysicalInertia
       - OpenMesh
   - NotApplicable

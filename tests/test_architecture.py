@@ -179,7 +179,7 @@ TESTED_IN |= {
         "along": "integrals",
         "complementarity": "contact_forces contact_responses contact_states",
         "contacts": (
-            "contact_start crossings expansion phase phase_answer phase_ends phases polynomial_roots projection"
+            "contact_start crossings expansion phase phase_ends phases polynomial_roots projection"
             " sampled_crossings start taylor_crossings tracks turning watches"
         ),
         "equilibria": "resting_places",
