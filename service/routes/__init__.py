@@ -19,6 +19,7 @@ from service.routes.rotation.surfaces import SURFACES
 from service.routes.rotation.trajectory import ROTATION
 from service.routes.rotation.wobble import WOBBLE
 from service.routes.scenes import questions as about_scenes
+from service.routes.studies import studying
 from service.routes.variants import varying
 from service.routes.work_precision import WORK_PRECISION
 from service.routing import PostRoute
@@ -32,5 +33,11 @@ def questions() -> tuple[PostRoute, ...]:
     ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
     in_doubles = tuple(naming_certified(route, paths) for route in ordinary)
     answering = (*in_doubles, *certified)
-    about_others = planning(answering), assessing(in_doubles, certified), varying(in_doubles, certified)
+    studies = studying(answering)
+    about_others = (
+        planning((*answering, studies)),
+        assessing(in_doubles, certified),
+        varying(in_doubles, certified),
+        studies,
+    )
     return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, *about_others))

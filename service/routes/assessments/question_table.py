@@ -16,7 +16,7 @@ from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
-from service.routes.assessments.route_source import Refused, graded_question
+from service.routes.assessments.route_source import Refused, RouteSource, graded_question
 from service.routes.certified.answers import ROOT
 from service.routing import PostRoute
 from service.schemas import Request
@@ -50,6 +50,11 @@ class QuestionTable:
             fault = Fault("/question/path", "must be the path of a question that can be assessed", remedy)
             raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
         return self._routes[question.path]
+
+    def source(self, question: EndpointRequest, budget: Budget) -> RouteSource:
+        """Return what answers a question and others to the same path."""
+        route = self.route(question)
+        return RouteSource(route, self._reader(route.path).read, budget)
 
     def graded(
         self, question: EndpointRequest, request: Any, budget: Budget, uncertainty: float | Mapping[Path, float] | None
