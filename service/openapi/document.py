@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from http import HTTPStatus
 from typing import Annotated, Any
@@ -19,7 +20,7 @@ from service.openapi import components
 from service.openapi.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
 from service.responses import npz as archive
-from service.routing import PostRoute, Route
+from service.routing import PostRoute, ResourceRoute, Route, StudyRoute
 from service.schemas import ProblemDocument
 
 DESCRIPTION = """\
@@ -40,6 +41,8 @@ Refusals are application/problem+json (RFC 9457) with a stable code and JSON poi
 """
 
 _PROBLEMS_OF_QUESTIONS = (400, 401, 406, 408, 413, 415, 422, 429, 500, 501, 503)
+
+_PROBLEMS_OF_RESOURCES = (401, 404, 406, 422, 429, 500, 503)
 
 PACKED = {
     "type": "string",
@@ -148,12 +151,13 @@ class _Route(APIRoute):
             summary=route.summary,
             description=route.description,
             tags=[route.tag],
+            status_code=202 if isinstance(route, StudyRoute) else 200,
             include_in_schema=isinstance(route, PostRoute) or route.documented,
             response_model=route.answer,
             response_description="The answer." if isinstance(route, PostRoute) else "The document.",
             response_class=_response_class(route),
             responses=_representations(route)
-            | _problems(_PROBLEMS_OF_QUESTIONS if isinstance(route, PostRoute) else (406, 500)),
+            | _problems(_problems_of(route)),
         )
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
@@ -164,6 +168,8 @@ class _Route(APIRoute):
 
 
 def _response_class(route: Route) -> type[Response]:
+    if isinstance(route, ResourceRoute):
+        return JSONResponse if route.answer is not None else Response
     if isinstance(route, PostRoute) or route.media_type == "application/json":
         return JSONResponse
     return type("_Media", (Response,), {"media_type": route.media_type})
@@ -183,6 +189,9 @@ def _endpoint(route: Route) -> Callable[..., Any]:
         }
         annotation: Any = Annotated.__class_getitem__((route.question, Body(openapi_examples=examples)))  # type: ignore[attr-defined]
         parameters = [inspect.Parameter("question", inspect.Parameter.KEYWORD_ONLY, annotation=annotation)]
+    if isinstance(route, ResourceRoute):
+        names = re.findall(r"{(\w+)}", route.path)
+        parameters = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=str) for name in names]
     endpoint.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     endpoint.__doc__ = None
     return endpoint
@@ -190,6 +199,11 @@ def _endpoint(route: Route) -> Callable[..., Any]:
 
 def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
     """Return how an answer is documented that is not JSON; the Accept header chooses."""
+    if isinstance(route, StudyRoute):
+        return {}
+    if isinstance(route, ResourceRoute):
+        binary = {"schema": {"type": "string", "format": "binary"}}
+        return {200: {"content": dict.fromkeys(route.representations, binary)}} if route.representations else {}
     if not isinstance(route, PostRoute):
         if route.example is None:
             return {}
@@ -204,6 +218,12 @@ def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
         }
     }
     return {200: {"description": "The answer.", "content": content}}
+
+
+def _problems_of(route: Route) -> tuple[int, ...]:
+    if isinstance(route, PostRoute):
+        return _PROBLEMS_OF_QUESTIONS
+    return _PROBLEMS_OF_RESOURCES if isinstance(route, ResourceRoute) else (406, 500)
 
 
 def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:

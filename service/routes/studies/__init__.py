@@ -22,8 +22,9 @@ from service.problems import Refusal
 from service.routes.assessments.declared_units import unit_at
 from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, within_question
 from service.routes.studies.members import Members, number_of
+from service.routes.studies.views import StudyState
 from service.routing import Answer, PlanningProbe, PostRoute, StudyRoute
-from service.schemas import Envelope, Request, Seconds, View
+from service.schemas import Request
 
 PATH = "/v1/studies"
 
@@ -77,33 +78,6 @@ class StudyRequest(Request):
             If the inputs do not fit the design.
         """
         return Design(tuple(self.vary), self.design, self.count, self.seed)
-
-
-class StudyAxis(View):
-    """A varied input."""
-
-    pointer: str = Field(description="Into the request of the question.")
-    unit: str | None = Field(description="As the question declares it.")
-    levels: int | None = Field(description="Number of its levels; null where it is drawn.", json_schema_extra={"x-unit": "1"})
-
-
-class StudyFigure(View):
-    """A figure of the members."""
-
-    pointer: str = Field(description="Into the answer of the question.")
-    unit: str | None = Field(description="As the answer declares it.")
-
-
-class StudyPlan(Envelope):
-    """What a study is."""
-
-    path: str = Field(description="Of the endpoint that answers the members.")
-    count: int = Field(description="Of members.", json_schema_extra={"x-unit": "1"})
-    shape: list[int] = Field(description="Lengths of the axes of the grid of members.", json_schema_extra={"x-unit": "1"})
-    inputs: list[StudyAxis] = Field(description="In the order of `vary`.")
-    figures: list[StudyFigure] = Field(description="In the order of `quantities`.")
-    together: bool = Field(description="Whether members are answered many at a time, with the same bits.")
-    seconds: Seconds[float] = Field(description="Predicted processor time of all members.")
 
 
 DESCRIPTION = """Answered with 202 and the state of the study; its address is in the Location header. Members that are
@@ -170,7 +144,7 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         "A study: any other question with varied inputs, its members answered in the background",
         "studies",
         StudyRequest,
-        StudyPlan,
+        StudyState,
         plan,
         price,
         planning_probe=probe,
@@ -221,6 +195,6 @@ def _mean_price(members: Members, route: PostRoute, budget: Budget) -> float:
     return sum(prices) / len(prices)
 
 
-__all__ = ["PATH", "StudyPlan", "StudyRequest", "studying"]
+__all__ = ["PATH", "StudyRequest", "studying"]
 
 

@@ -1,0 +1,60 @@
+"""What a process of the cluster does: the results of some members, as the bytes of their file."""
+
+from __future__ import annotations
+
+import time
+from functools import lru_cache
+from pkgutil import resolve_name
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from service.execution.worker import Terms
+from service.requests.request_reader import Reader
+from service.routing import StudyRoute
+from service.studies.chunk_files import packed
+
+OPENED = 8
+"""Studies that a process remembers, the latest ones."""
+
+
+class Computed(NamedTuple):
+    """Results of a stretch of members.
+
+    Attributes
+    ----------
+    data : bytes
+        Of their file.
+    failed : int
+        Members that have no result but a problem.
+    seconds : float
+        Processor time.
+    """
+
+    data: bytes
+    failed: int
+    seconds: float
+
+
+def compute(terms: Terms, request: bytes, start: int, stop: int) -> Computed:
+    """Return the results of the members from `start` up to `stop` of a study."""
+    members = opened(terms, request)
+    since = time.thread_time()
+    return _computed(members.block(start, stop), since)
+
+
+def without_answer(terms: Terms, request: bytes, member: int, code: str) -> Computed:
+    """Return the result of a member that no process could answer."""
+    return _computed(opened(terms, request).failed(member, member + 1, code), time.thread_time())
+
+
+@lru_cache(OPENED)
+def opened(terms: Terms, request: bytes) -> Any:
+    """Return what answers the members of a study."""
+    route = next(route for route in resolve_name(terms.table)() if isinstance(route, StudyRoute))
+    return route.members(Reader(route.question, terms.limits, route.elsewhere).read(request), terms.budget)
+
+
+def _computed(block: Any, since: float) -> Computed:
+    data = packed(block.document())
+    return Computed(data, int(np.count_nonzero(block.failures)), time.thread_time() - since)
