@@ -40,10 +40,13 @@ class Cluster:
             If the existing scheduler does not answer.
         """
         import dask
-        from distributed import Client, LocalCluster
 
         if self.client is not None:
             return self.client
+        # Its own log would repeat, for each process, what is said here once.
+        dask.config.set({"logging.distributed": "critical"})
+        from distributed import Client, LocalCluster
+
         settings = self._settings
         if settings.dask:
             self.client = Client(settings.dask, timeout=CONNECTING, name="polhode")
@@ -54,7 +57,13 @@ class Cluster:
         workers = settings.study_workers or cores
         memory = settings.study_memory_bytes or int(SHARE_OF_MEMORY * MEMORY_LIMIT)
         # A member that ends its process is found by halves; it need not end three others first.
-        dask.config.set({"distributed.scheduler.allowed-failures": 0, "distributed.worker.profile.enabled": False})
+        dask.config.set(
+            {
+                "distributed.scheduler.allowed-failures": 0,
+                "distributed.worker.multiprocessing-method": "forkserver",
+                "distributed.worker.profile.enabled": False,
+            }
+        )
         self._local = LocalCluster(
             n_workers=workers,
             threads_per_worker=1,

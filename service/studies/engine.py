@@ -25,11 +25,17 @@ from service.studies.task import Computed, compute, without_answer
 CHUNK_SECONDS = 0.5
 """Processor time that a stretch should take."""
 
+LEAST_SECONDS = 0.05
+"""Processor time below which a stretch is not divided among processes."""
+
 LARGEST_CHUNK = 100_000
 """Members of a stretch."""
 
 AHEAD = 2
 """Stretches that each process of the cluster is given at a time, so that none waits for work."""
+
+FASTEST = 1e-6
+"""Processor time of a member at least (s)."""
 
 TURN = 0.1
 """Seconds between two looks at the database."""
@@ -67,9 +73,10 @@ class Work:
     def next_stretch(self, processes: int) -> Stretch:
         """Take a stretch of about `CHUNK_SECONDS`, less where otherwise some processes would have none."""
         start, stop = self.missing.popleft()
-        size = max(1, min(LARGEST_CHUNK, int(CHUNK_SECONDS / max(self.each, 1e-9)), -(-(stop - start) // processes)))
         if (start, stop) in self.deaths:
             return start, stop
+        share = max(-(-(stop - start) // processes), int(LEAST_SECONDS / self.each))
+        size = max(1, min(LARGEST_CHUNK, int(CHUNK_SECONDS / self.each), share))
         if start + size < stop:
             self.missing.appendleft((start + size, stop))
         return start, min(stop, start + size)
@@ -115,10 +122,11 @@ class Engine:
         for identity in [*self._works]:
             if identity not in unfinished:
                 self._let_go(self._works.pop(identity))
+                self._files.remove(identity)
         for identity, study in unfinished.items():
             if identity not in self._works:
                 stored = self._store.chunks(identity)
-                each = study.plan["seconds"] / study.count
+                each = max(study.plan["seconds"] / study.count, FASTEST)
                 self._works[identity] = Work(study, deque(_gaps(stored, study.count)), each)
                 self._store.begin(identity)
                 LOG.info("a study is worked on", extra={"study": identity, "members": study.count, "done": study.done})
@@ -134,7 +142,6 @@ class Engine:
             if busy:
                 client.restart_workers(busy, timeout=30, raise_for_error=False)
         work.in_flight.clear()
-        self._files.remove(work.study.id)
 
     def _hand_over(self) -> None:
         client = self._cluster.open()
@@ -184,6 +191,7 @@ class Engine:
             self._after_death(work, stretch, "worker-lost")
             return
         LOG.error("a study has failed", extra={"study": work.study.id, "fault": repr(fault)})
+        self._let_go(self._works.pop(work.study.id))
         self._store.end(work.study.id, FAILED, f"the cluster could not compute its members: {type(fault).__name__}")
 
     def _after_death(self, work: Work, stretch: Stretch, code: str) -> None:
@@ -210,7 +218,7 @@ class Engine:
             time.sleep(PAUSE)
             return
         count = stretch[1] - stretch[0]
-        work.each = 0.5 * (work.each + found.seconds / count) if count > 1 else max(work.each, found.seconds)
+        work.each = max(FASTEST, 0.5 * (work.each + found.seconds / count))
 
     def _end_overdue(self) -> None:
         """End processes that have had a stretch for much longer than predicted."""
@@ -239,6 +247,7 @@ class Engine:
                 work.missing.append((start, stop))
         if not work.missing:
             self._store.finish(study.id, summary(study, chunks))
+            del self._works[study.id]
 
     def _say(self, message: str) -> None:
         LOG.error(message)

@@ -11,6 +11,7 @@ import signal
 import sys
 import threading
 import time
+from multiprocessing import forkserver
 
 from service.execution.worker import terms_of
 from service.observability.logs import LOG, configure
@@ -41,6 +42,8 @@ def main() -> None:
     if not ownership.acquire():
         LOG.info("another process works on the studies of this folder", extra={"folder": str(folder)})
         return
+    if not settings.dask:
+        prepare_processes()
     stopped = threading.Event()
     signal.signal(signal.SIGTERM, lambda number, frame: stopped.set())
     threading.Thread(target=_end_with_server, args=(stopped,), daemon=True).start()
@@ -53,6 +56,14 @@ def main() -> None:
     threading.Thread(target=_end_in_any_case, daemon=True).start()
     engine.stop()
     ownership.release()
+
+
+def prepare_processes() -> None:
+    """Start the fork server of the local cluster, which imports what it needs while this process does so, too."""
+    # A process has one core: threads of libraries would take those of the others.
+    os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"))
+    forkserver.set_forkserver_preload(["service.studies.preload"])
+    forkserver.ensure_running()
 
 
 def work(engine: Engine, stopped: threading.Event, idle: float) -> None:
