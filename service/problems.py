@@ -78,7 +78,10 @@ REGISTRY: Mapping[str, ProblemType] = {
             "method-not-allowed", 405, "This path does not answer this method", "The Allow header lists the methods."
         ),
         ProblemType(
-            "results-not-ready", 404, "The study has no results", "Ask when its status is successful; a dismissed study never has."
+            "results-not-ready",
+            404,
+            "The study has no results",
+            "Ask when its status is successful; a dismissed study never has.",
         ),
         ProblemType("not-acceptable", 406, "No representation fits the Accept header", "Accept application/json."),
         ProblemType(

@@ -158,7 +158,7 @@ class StudyRoute(PostRoute):
         From question and budget to what answers the study's members.
     """
 
-    members: Callable[[Any, Budget], Any] = never
+    members: Callable[[Any, Budget], Any] = free
 
 
 @dataclass(frozen=True)

@@ -96,8 +96,8 @@ class Settings(BaseSettings):
     )
     studies_results: str = Field(
         default="",
-        description="URL, as fsspec has it, of where the results of studies are stored, such as s3://bucket/studies; by "
-        "default the folder of data.",
+        description="URL, as fsspec has it, of where the results of studies are stored, such as s3://bucket/studies; "
+        "by default the folder of data.",
     )
     studies_keep_days: float = Field(
         default=30.0, gt=0, description="Days after its end after which a study and its results are removed."
@@ -119,7 +119,9 @@ class Settings(BaseSettings):
     study_idle_seconds: float = Field(
         default=60.0, gt=0, le=LONGEST, description="Time without studies after which their processes are ended."
     )
-    max_studies: int = Field(default=100, ge=1, description="Unfinished studies of one key, or of all without keys (429).")
+    max_studies: int = Field(
+        default=100, ge=1, description="Unfinished studies of one key, or of all without keys (429)."
+    )
     max_study_members: int = Field(default=10_000_000, ge=1, description="Largest number of members of a study (422).")
     max_study_seconds: float = Field(
         default=1e6, gt=0, description="Largest predicted processor time of a study, in seconds (422)."

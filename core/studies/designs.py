@@ -62,7 +62,9 @@ class Design:
             for k, entry in enumerate(self.inputs):
                 if entry.count is not None:
                     remedy = "the study's own count says how many members there are"
-                    raise InvalidParameter(("vary", k, "count"), f"be left out in the design {self.kind}", remedy=remedy)
+                    raise InvalidParameter(
+                        ("vary", k, "count"), f"be left out in the design {self.kind}", remedy=remedy
+                    )
             return
         if self.count is not None:
             remedy = "each varied input has its own count"

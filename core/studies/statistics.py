@@ -99,7 +99,7 @@ def column_statistics(
     found: dict[str, Any] = {}
     low, high = int(values.argmin()), int(values.argmax())
     # Exact scaling, so that no sum or square leaves the range of doubles.
-    exponent = max(math.frexp(values[low])[1], math.frexp(values[high])[1])
+    exponent = math.frexp(max(abs(values[low]), abs(values[high])))[1]
     if "mean" in wanted or "std" in wanted:
         scaled = np.ldexp(values, -exponent)
         mean = math.fsum(scaled.tolist()) / values.size

@@ -156,8 +156,7 @@ class _Route(APIRoute):
             response_model=route.answer,
             response_description="The answer." if isinstance(route, PostRoute) else "The document.",
             response_class=_response_class(route),
-            responses=_representations(route)
-            | _problems(_problems_of(route)),
+            responses=_representations(route) | _problems(_problems_of(route)),
         )
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:

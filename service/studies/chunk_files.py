@@ -1,4 +1,4 @@
-"""Results of stretches of members as files: numpy archives, written whole or not at all, in a folder or object store."""
+"""Results of stretches of members as files: numpy archives, written whole or not at all, in a folder or elsewhere."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from service.responses import npz as archive
+
+ARRAYS = ("inputs", "figures", "failures", "warnings")
 
 
 class CorruptedChunk(Exception):
@@ -49,13 +51,10 @@ def unpacked(data: bytes) -> Chunk:
     """
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as file:
-            rest = json.loads(file[archive.METADATA] if archive.METADATA in file.files else b"")
-            return Chunk(
-                rest["start"],
-                *(file[name] for name in ("inputs", "figures", "failures", "warnings")),
-                tuple(rest["failure_names"]),
-                tuple(rest["warning_names"]),
-            )
+            rest: dict[str, Any] = json.loads(file[archive.METADATA] if archive.METADATA in file.files else b"")
+            inputs, figures, failures, warnings = (file[name] for name in ARRAYS)
+            names = tuple(rest["failure_names"]), tuple(rest["warning_names"])
+            return Chunk(rest["start"], inputs, figures, failures, warnings, *names)
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as fault:
         raise CorruptedChunk(str(fault)) from None
 

@@ -62,13 +62,16 @@ class Cluster:
                 "distributed.scheduler.allowed-failures": 0,
                 "distributed.worker.multiprocessing-method": "forkserver",
                 "distributed.worker.profile.enabled": False,
+                # Its pages are not needed, and would tell every user of the machine what is computed.
+                "distributed.scheduler.http.routes": ["distributed.http.health"],
+                "distributed.worker.http.routes": ["distributed.http.health"],
             }
         )
         self._local = LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
             memory_limit=memory // workers,
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",
             local_directory=str(self._scratch),
             silence_logs=logging.CRITICAL,
         )

@@ -1,8 +1,11 @@
 """Works on the studies of a folder: hands stretches of members to the cluster and stores what comes back.
 
 Which members make a stretch, which process has it and when it ends has no influence on any result. Studies have their
-turns in rotation. A stretch that ends its process is tried once more, then in halves, until a single member is left,
-whose result is then that it has none.
+turns in rotation.
+
+A stretch whose process has ended is suspect: it may have been the reason, or merely have waited in that process. It is
+tried again with nothing beside it. If the process ends again it is divided, until a single member is left, whose result
+is then that it has none.
 """
 
 from __future__ import annotations
@@ -10,17 +13,19 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from typing import Any
 
 from service.execution.worker import Terms
 from service.observability.logs import LOG
+from service.problems import Refusal
 from service.studies.chunk_files import ChunkFiles, CorruptedChunk
 from service.studies.cluster import Cluster
 from service.studies.store import FAILED, Store, Study
 from service.studies.summary import summary
-from service.studies.task import Computed, compute, without_answer
+from service.studies.task import Computed, compute, end_process, without_answer
 
 CHUNK_SECONDS = 0.5
 """Processor time that a stretch should take."""
@@ -36,6 +41,9 @@ AHEAD = 2
 
 FASTEST = 1e-6
 """Processor time of a member at least (s)."""
+
+MOST_ENDED = 100
+"""Processes that a study may end, with waiting stretches counted as well; beyond, it has failed."""
 
 TURN = 0.1
 """Seconds between two looks at the database."""
@@ -58,8 +66,12 @@ class Work:
     missing : deque of (int, int)
         Stretches that are not stored and not being computed.
     in_flight : mapping of future to stretch and when it was handed over
+    suspects : deque of (int, int)
+        Stretches that are to be tried alone.
     deaths : mapping
-        How many processes a stretch has ended.
+        How many processes a stretch has ended while it was alone.
+    ended : int
+        How many processes the study has ended.
     each : float
         Processor time of a member (s), as predicted and then as measured.
     """
@@ -68,13 +80,18 @@ class Work:
     missing: deque[Stretch]
     each: float
     in_flight: dict[Any, tuple[Stretch, float]] = field(default_factory=dict)
+    suspects: deque[Stretch] = field(default_factory=deque)
     deaths: dict[Stretch, int] = field(default_factory=dict)
+    ended: int = 0
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing is left to be computed."""
+        return not (self.missing or self.suspects or self.in_flight)
 
     def next_stretch(self, processes: int) -> Stretch:
         """Take a stretch of about `CHUNK_SECONDS`, less where otherwise some processes would have none."""
         start, stop = self.missing.popleft()
-        if (start, stop) in self.deaths:
-            return start, stop
         share = max(-(-(stop - start) // processes), int(LEAST_SECONDS / self.each))
         size = max(1, min(LARGEST_CHUNK, int(CHUNK_SECONDS / self.each), share))
         if start + size < stop:
@@ -90,6 +107,7 @@ class Engine:
         self._works: dict[str, Work] = {}
         self._done: SimpleQueue[Any] = SimpleQueue()
         self._processes, self._counted = 0, 0.0
+        self._alone = False
 
     def turn(self) -> bool:
         """Do what there is to do now, waiting a moment for results; return whether studies are unfinished."""
@@ -107,7 +125,7 @@ class Engine:
         self._collect()
         self._end_overdue()
         for work in [*self._works.values()]:
-            if not work.missing and not work.in_flight:
+            if work.done:
                 self._finish(work)
         return True
 
@@ -140,7 +158,7 @@ class Engine:
             busy = _processes_with({future.key for future in futures}, client) if long else []
             client.cancel(futures, force=True)
             if busy:
-                client.restart_workers(busy, timeout=30, raise_for_error=False)
+                client.run(end_process, workers=busy, wait=False, on_error="ignore")
         work.in_flight.clear()
 
     def _hand_over(self) -> None:
@@ -148,17 +166,28 @@ class Engine:
         if time.monotonic() - self._counted > 1.0:
             self._processes = max(1, sum(client.nthreads().values()))
             self._counted = time.monotonic()
-        room = AHEAD * self._processes - sum(len(work.in_flight) for work in self._works.values())
-        while room > 0:
+        busy = sum(len(work.in_flight) for work in self._works.values())
+        suspected = next((work for work in self._works.values() if work.suspects), None)
+        if suspected is not None:
+            # What is in flight comes back first.
+            if not busy:
+                self._alone = True
+                self._submit(suspected, suspected.suspects.popleft())
+            return
+        if self._alone and busy:
+            return
+        self._alone = False
+        for _ in range(AHEAD * self._processes - busy):
             waiting = [work for work in self._works.values() if work.missing]
             if not waiting:
                 return
             work = min(waiting, key=lambda one: len(one.in_flight))
-            stretch = work.next_stretch(self._processes)
-            future = client.submit(compute, self._terms, work.study.request, *stretch, pure=False)
-            work.in_flight[future] = stretch, time.monotonic()
-            future.add_done_callback(self._done.put)
-            room -= 1
+            self._submit(work, work.next_stretch(self._processes))
+
+    def _submit(self, work: Work, stretch: Stretch) -> None:
+        future = self._cluster.client.submit(compute, self._terms, work.study.request, *stretch, pure=False)
+        work.in_flight[future] = stretch, time.monotonic()
+        future.add_done_callback(self._done.put)
 
     def _collect(self) -> None:
         """Store what has come back, after waiting for the first of it."""
@@ -190,22 +219,28 @@ class Engine:
         if isinstance(fault, KilledWorker):
             self._after_death(work, stretch, "worker-lost")
             return
-        LOG.error("a study has failed", extra={"study": work.study.id, "fault": repr(fault)})
-        self._let_go(self._works.pop(work.study.id))
-        self._store.end(work.study.id, FAILED, f"the cluster could not compute its members: {type(fault).__name__}")
+        self._fail(work, f"the cluster could not compute its members: {fault!r}")
 
     def _after_death(self, work: Work, stretch: Stretch, code: str) -> None:
         start, stop = stretch
-        deaths = work.deaths[stretch] = work.deaths.get(stretch, 0) + 1
-        if deaths < 2:
-            work.missing.append(stretch)
+        work.ended += 1
+        if work.ended > MOST_ENDED:
+            self._fail(work, f"its members ended {work.ended} processes")
+        elif not self._alone:
+            work.suspects.append(stretch)
         elif stop - start > 1:
             middle = (start + stop) // 2
-            for half in ((start, middle), (middle, stop)):
-                work.deaths[half] = 1
-                work.missing.append(half)
+            work.suspects.extendleft(((middle, stop), (start, middle)))
+        elif (deaths := work.deaths.get(stretch, 0) + 1) < 2:
+            work.deaths[stretch] = deaths
+            work.suspects.append(stretch)
         else:
             self._keep(work, stretch, without_answer(self._terms, work.study.request, start, code))
+
+    def _fail(self, work: Work, message: str) -> None:
+        LOG.error("a study has failed", extra={"study": work.study.id, "reason": message})
+        self._let_go(self._works.pop(work.study.id))
+        self._store.end(work.study.id, FAILED, message)
 
     def _keep(self, work: Work, stretch: Stretch, found: Computed) -> None:
         try:
@@ -223,7 +258,7 @@ class Engine:
     def _end_overdue(self) -> None:
         """End processes that have had a stretch for much longer than predicted."""
         now = time.monotonic()
-        for work in self._works.values():
+        for work in [*self._works.values()]:
             for future, (stretch, since) in [*work.in_flight.items()]:
                 expected = work.each * (stretch[1] - stretch[0])
                 if now - since > AHEAD * (self._longest + 20.0 * expected):
@@ -232,7 +267,7 @@ class Engine:
                     busy = _processes_with({future.key}, client)
                     client.cancel([future], force=True)
                     if busy:
-                        client.restart_workers(busy, timeout=30, raise_for_error=False)
+                        client.run(end_process, workers=busy, wait=False, on_error="ignore")
                     self._after_death(work, stretch, "deadline-exceeded")
 
     def _finish(self, work: Work) -> None:
@@ -252,7 +287,9 @@ class Engine:
     def _say(self, message: str) -> None:
         LOG.error(message)
         for work in self._works.values():
-            self._store.note(work.study.id, message)
+            # On a full disk there may be no room for it.
+            with suppress(Refusal):
+                self._store.note(work.study.id, message)
 
 
 def _gaps(stored: list[Stretch], count: int) -> Iterator[Stretch]:

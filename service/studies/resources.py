@@ -19,6 +19,7 @@ from service.http.request_context import RequestContext
 from service.problems import Fault, Refusal, headline
 from service.responses import npz as archive
 from service.routes.studies import PATH
+from service.routes.studies.views import StudyList, StudyResults, StudyState
 from service.routing import ResourceRoute
 from service.schemas import SIGNATURE
 from service.settings import Settings
@@ -26,7 +27,6 @@ from service.studies.chunk_files import CorruptedChunk
 from service.studies.results import Results
 from service.studies.store import DISMISSED, SUCCESSFUL, Study, storage_unavailable
 from service.studies.supervisor import Supervisor
-from service.routes.studies.views import StudyList, StudyResults, StudyState
 
 MOST_LISTED = 200
 
@@ -74,8 +74,8 @@ class Studies:
                 "studies",
                 self.results,
                 StudyResults,
-                description="`?start=` and `?count=` (at most 10000) choose the members of a page. Other media types have "
-                "all members.",
+                description="`?start=` and `?count=` (at most 10000) choose the members of a page. Other media types "
+                "have all members.",
                 representations=(archive.MEDIA_TYPE,),
             ),
             ResourceRoute(

@@ -54,9 +54,7 @@ class Results:
         figures = np.concatenate([chunk.figures for chunk in chunks])
         inputs = np.concatenate([chunk.inputs for chunk in chunks])
         return {
-            "inputs": {
-                entry["pointer"]: values(entry, inputs[:, k]) for k, entry in enumerate(self.request["vary"])
-            },
+            "inputs": {entry["pointer"]: values(entry, inputs[:, k]) for k, entry in enumerate(self.request["vary"])},
             "figures": {
                 entry["pointer"]: [None if np.isnan(x) else x for x in figures[:, k].tolist()]
                 for k, entry in enumerate(self.study.plan["figures"])
@@ -131,5 +129,5 @@ def _part(chunk: Chunk, start: int, stop: int) -> Chunk:
 def _labels(labels: np.ndarray[Any, Any], own: Sequence[str], known: list[str]) -> np.ndarray[Any, Any]:
     """Return labels that stand for the same names in a list for all chunks, which grows."""
     known += [name for name in own if name not in known]
-    table = np.array([0, *(known.index(name) + 1 for name in own)], dtype="<u2")
-    return table[labels]
+    found: np.ndarray[Any, Any] = np.array([0, *(known.index(name) + 1 for name in own)], dtype="<u2")[labels]
+    return found

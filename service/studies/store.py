@@ -188,10 +188,9 @@ class Store:
             return [(start, stop) for start, stop in rows]
 
     def add_chunk(self, identity: str, start: int, stop: int, failed: int, seconds: float) -> None:
-        """Record that the results of a stretch are stored."""
-        self._write(
-            "INSERT OR REPLACE INTO chunks VALUES (?, ?, ?, ?, ?)", (identity, start, stop, failed, seconds)
-        )
+        """Record that the results of a stretch are stored; what hindered the study no longer does."""
+        self._write("INSERT OR REPLACE INTO chunks VALUES (?, ?, ?, ?, ?)", (identity, start, stop, failed, seconds))
+        self._write("UPDATE studies SET message = '' WHERE id = ? AND message != '' AND finished IS NULL", (identity,))
 
     def drop_chunk(self, identity: str, start: int) -> None:
         """Record that the results of a stretch cannot be read; a study that was finished goes on."""

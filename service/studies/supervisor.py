@@ -53,7 +53,9 @@ class Supervisor:
         if (self._runner is not None and self._runner.poll() is None) or self._ownership.taken:
             return
         environment = {
-            f"POLHODE_{name.upper()}": str(value) for name, value in self._settings.model_dump().items() if value is not None
+            f"POLHODE_{name.upper()}": str(value)
+            for name, value in self._settings.model_dump().items()
+            if value is not None
         }
         self._runner = subprocess.Popen(
             [sys.executable, "-m", "service.studies.runner", self._table],

@@ -55,4 +55,4 @@ def _figure(found: Precessions, path: Path) -> Any:
         return found.figures[:, FIGURES.index(str(name))]
     if name == "tumbles":
         return found.tumbles.astype(np.float64)
-    return (found.tilt if name == "middle_axis_tilt" else found.axis)[:, place[0]]
+    return (found.tilt if name == "middle_axis_tilt" else found.axis)[:, int(place[0])]

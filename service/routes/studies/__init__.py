@@ -196,5 +196,3 @@ def _mean_price(members: Members, route: PostRoute, budget: Budget) -> float:
 
 
 __all__ = ["PATH", "StudyRequest", "studying"]
-
-

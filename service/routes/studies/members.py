@@ -129,7 +129,9 @@ class Members:
 
     def _many(self, numbers: Floats) -> Any:
         many = self._source.route.many
-        if many is None or any(entry.values is not None and not _all_numbers(entry.values) for entry in self.design.inputs):
+        if many is None or any(
+            entry.values is not None and not _all_numbers(entry.values) for entry in self.design.inputs
+        ):
             return None
         columns: Columns = {
             place: self._column(k, numbers[:, k]) for k, places in enumerate(self._places) for place in places
@@ -193,6 +195,3 @@ def _figure(answer: Mapping[str, Any], path: Path) -> float | None:
 
 def _all_numbers(values: Sequence[Any]) -> bool:
     return all(type(value) in (int, float) for value in values)
-
-
-
