@@ -173,6 +173,8 @@ class ResourceRoute:
         Pydantic model that documents a JSON answer.
     representations : sequence of str
         Media types of other answers.
+    example : mapping or None
+        An example of a JSON answer.
     """
 
     method: str
@@ -184,6 +186,7 @@ class ResourceRoute:
     answer: type[BaseModel] | None = None
     description: str = ""
     representations: Sequence[str] = ()
+    example: Mapping[str, Any] | None = None
     documented: bool = True
 
 

@@ -201,8 +201,9 @@ def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
     if isinstance(route, StudyRoute):
         return {}
     if isinstance(route, ResourceRoute):
-        binary = {"schema": {"type": "string", "format": "binary"}}
-        return {200: {"content": dict.fromkeys(route.representations, binary)}} if route.representations else {}
+        content = {} if route.example is None else {"application/json": {"example": dict(route.example)}}
+        content |= dict.fromkeys(route.representations, {"schema": {"type": "string", "format": "binary"}})
+        return {200: {"content": content}}
     if not isinstance(route, PostRoute):
         if route.example is None:
             return {}

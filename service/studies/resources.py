@@ -19,7 +19,7 @@ from service.http.request_context import RequestContext
 from service.problems import Fault, Refusal, headline
 from service.responses import npz as archive
 from service.routes.studies import PATH
-from service.routes.studies.views import StudyList, StudyResults, StudyState
+from service.routes.studies.views import RESULTS, STATE, StudyList, StudyResults, StudyState
 from service.routing import ResourceRoute
 from service.schemas import SIGNATURE
 from service.settings import Settings
@@ -55,8 +55,26 @@ class Studies:
         """Return the routes of studies that exist."""
         one = PATH + "/{study}"
         return (
-            ResourceRoute("GET", PATH, "list_studies", "The client's own studies", "studies", self.list_all, StudyList),
-            ResourceRoute("GET", one, "get_study", "The state of a study", "studies", self.state, StudyState),
+            ResourceRoute(
+                "GET",
+                PATH,
+                "list_studies",
+                "The client's own studies",
+                "studies",
+                self.list_all,
+                StudyList,
+                example=_signed({"studies": [STATE]}),
+            ),
+            ResourceRoute(
+                "GET",
+                one,
+                "get_study",
+                "The state of a study",
+                "studies",
+                self.state,
+                StudyState,
+                example=_signed(dict(STATE)),
+            ),
             ResourceRoute(
                 "DELETE",
                 one,
@@ -65,6 +83,7 @@ class Studies:
                 "studies",
                 self.dismiss,
                 StudyState,
+                example=_signed(STATE | {"status": "dismissed"}),
             ),
             ResourceRoute(
                 "GET",
@@ -77,6 +96,7 @@ class Studies:
                 description="`?start=` and `?count=` (at most 10000) choose the members of a page. Other media types "
                 "have all members.",
                 representations=(archive.MEDIA_TYPE,),
+                example=_signed(dict(RESULTS)),
             ),
             ResourceRoute(
                 "GET",

@@ -22,7 +22,7 @@ from service.problems import Refusal
 from service.routes.assessments.declared_units import unit_at
 from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, within_question
 from service.routes.studies.members import Members, number_of
-from service.routes.studies.views import StudyState
+from service.routes.studies.views import STATE, StudyState
 from service.routing import Answer, PlanningProbe, PostRoute, StudyRoute
 from service.schemas import Request
 
@@ -133,7 +133,8 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
 
     def probe(question: StudyRequest, budget: Budget) -> PlanningProbe:
         found = plan(question, budget)
-        return PlanningProbe(found, seconds=found["seconds"])
+        # The plan and what is answered beside it.
+        return PlanningProbe({**STATE, **found}, seconds=found["seconds"])
 
     def members(question: StudyRequest, budget: Budget) -> Members:
         return Members(question, table.source(question.question, budget))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Literal
 
 from pydantic import Field
@@ -69,6 +70,50 @@ class StudyList(Signed):
     """The studies of a client, the latest first."""
 
     studies: list[StudyStatus]
+
+
+STATE: Mapping[str, Any] = {
+    "jobID": "Zq3mJ0yN8cXb1VtLr5wUeK7a",
+    "type": "process",
+    "processID": "study",
+    "status": "accepted",
+    "message": "",
+    "created": "2026-11-22T12:00:00.000+00:00",
+    "started": None,
+    "finished": None,
+    "updated": "2026-11-22T12:00:00.001+00:00",
+    "progress": 0,
+    "path": "/v1/rotation/precession",
+    "count": 4096,
+    "shape": [4096],
+    "inputs": [{"pointer": "/angular_velocity/0", "unit": "rad s^-1", "levels": 4096}],
+    "figures": [{"pointer": "/flip_interval", "unit": "s"}],
+    "together": True,
+    "done": 0,
+    "failed": 0,
+    "seconds": 0.0,
+    "predicted_seconds": 0.033,
+    "predicted_end": "2026-11-22T12:00:00.034+00:00",
+    "links": [
+        {"href": "/v1/studies/Zq3mJ0yN8cXb1VtLr5wUeK7a", "rel": "self", "type": "application/json"},
+        {"href": "/v1/studies/Zq3mJ0yN8cXb1VtLr5wUeK7a/events", "rel": "events", "type": "text/event-stream"},
+    ],
+}
+"""An example: the state of a study that has just been submitted."""
+
+RESULTS: Mapping[str, Any] = {
+    "warnings": [],
+    "jobID": STATE["jobID"],
+    "count": 2,
+    "shape": [2],
+    "statistics": {"figures": {}, "failures": {}, "warnings": {}},
+    "start": 0,
+    "inputs": {"/angular_velocity/0": [0.01, 0.02]},
+    "figures": {"/flip_interval": [33.3, None]},
+    "failures": [{"member": 1, "code": "accuracy-unreachable"}],
+    "next": None,
+}
+"""An example of results."""
 
 
 class StudyQuantile(View):

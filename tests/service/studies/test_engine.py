@@ -64,7 +64,9 @@ def test_faults_of_the_service_are_results_too(desk_on: Desks, in_process: str) 
     assert b'"failures": {"accuracy-unreachable": 1, "internal-error": 2}' in statistics
 
 
-def test_a_killed_process_costs_what_it_was_computing(desk_on: Desks, in_process: str, processes: str, tmp_path: Path) -> None:
+def test_a_killed_process_costs_what_it_was_computing(
+    desk_on: Desks, in_process: str, processes: str, tmp_path: Path
+) -> None:
     request = sleeping(0.004, 120)
     desk = desk_on(processes)
     identity = desk.submit(request, 0.02)
