@@ -31,7 +31,9 @@ class Value:
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
-        return {}
+        vector = {"type": "array", "items": {"type": "number", "x-unit": "1"}}
+        plain = ({"type": "number", "x-unit": "1"}, {"type": "string"}, {"type": "boolean"}, {"type": "object"})
+        return {"anyOf": [*plain, vector]}
 
 
 @dataclass(frozen=True)

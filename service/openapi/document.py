@@ -201,9 +201,11 @@ def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
     if isinstance(route, StudyRoute):
         return {}
     if isinstance(route, ResourceRoute):
-        content = {} if route.example is None else {"application/json": {"example": dict(route.example)}}
-        content |= dict.fromkeys(route.representations, {"schema": {"type": "string", "format": "binary"}})
-        return {200: {"content": content}}
+        forms: dict[str, Any] = {} if route.example is None else {"application/json": {"example": dict(route.example)}}
+        for media in route.representations:
+            text = {"type": "string"}
+            forms[media] = {"schema": text if media.startswith("text/") else text | {"format": "binary"}}
+        return {200: {"content": forms}}
     if not isinstance(route, PostRoute):
         if route.example is None:
             return {}

@@ -83,7 +83,7 @@ class Studies:
                 "studies",
                 self.dismiss,
                 StudyState,
-                example=_signed(STATE | {"status": "dismissed"}),
+                example=_signed({**STATE, "status": "dismissed"}),
             ),
             ResourceRoute(
                 "GET",

@@ -69,8 +69,8 @@ class Results:
     def archive(self) -> Iterator[bytes]:
         """Yield all results as a numpy archive, one stretch of members in memory at a time.
 
-        Its arrays are ``inputs``, ``figures``, ``failures`` and ``warnings``; metadata.json has what their columns and
-        labels mean.
+        Its arrays are ``inputs``, ``figures``, ``failures`` and ``warnings``; metadata.json has what their columns
+        (``axes``, ``columns``) and labels (``failure_names``, ``warning_names``, from 1) mean.
         """
         names: dict[str, list[str]] = {"failures": [], "warnings": []}
         count = self.study.count
@@ -93,18 +93,20 @@ class Results:
                         member.write(_labels(getattr(chunk, name), own, known).tobytes())
                         yield sink.drained()
             with file.open(ZipInfo(METADATA), "w") as member:
-                member.write(json.dumps(self.metadata() | names).encode())
+                rest = self.metadata() | {"failure_names": names["failures"], "warning_names": names["warnings"]}
+                references = {name: {"array": name} for name in (*widths, *names)}
+                member.write(json.dumps(rest | references).encode())
         yield sink.drained()
 
     def metadata(self) -> dict[str, Any]:
-        """Return what the columns of inputs and figures mean; `failures` and `warnings` name the labels from 1."""
+        """Return what the columns of inputs and figures mean."""
         varied = zip(self.study.plan["inputs"], self.request["vary"], strict=True)
         return {
             "jobID": self.study.id,
             "request": self.request,
             "shape": self.study.plan["shape"],
-            "inputs": [{**axis, "values": entry.get("values")} for axis, entry in varied],
-            "figures": self.study.plan["figures"],
+            "axes": [{**axis, "values": entry.get("values")} for axis, entry in varied],
+            "columns": self.study.plan["figures"],
             "statistics": self._store.statistics(self.study.id),
         }
 
