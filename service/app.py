@@ -141,6 +141,7 @@ class Service(FastAPI):
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             await asyncio.gather(self.compute.stop(), self._supervisor.stop())
+            self._supervisor.store.close()
             remove_temporary_files()
 
     async def _warm(self) -> None:

@@ -68,6 +68,7 @@ class Sink(io.RawIOBase):
     def __init__(self) -> None:
         super().__init__()
         self._parts: list[bytes] = []
+        self._written = 0
 
     def writable(self) -> bool:
         """Return that it can be written to."""
@@ -76,7 +77,12 @@ class Sink(io.RawIOBase):
     def write(self, data: Any) -> int:
         """Take some bytes."""
         self._parts.append(bytes(data))
-        return len(data)
+        self._written += len(self._parts[-1])
+        return len(self._parts[-1])
+
+    def tell(self) -> int:
+        """Return how many bytes it has taken."""
+        return self._written
 
     def drained(self) -> bytes:
         """Return what was written since the last time."""

@@ -23,6 +23,7 @@ from service.routes.studies.views import RESULTS, STATE, StudyList, StudyResults
 from service.routing import ResourceRoute
 from service.schemas import SIGNATURE
 from service.settings import Settings
+from service.studies import grids, tables
 from service.studies.chunk_files import CorruptedChunk
 from service.studies.results import Results
 from service.studies.store import DISMISSED, SUCCESSFUL, Study, storage_unavailable
@@ -95,7 +96,7 @@ class Studies:
                 StudyResults,
                 description="`?start=` and `?count=` (at most 10000) choose the members of a page. Other media types "
                 "have all members.",
-                representations=(archive.MEDIA_TYPE,),
+                representations=(archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE),
                 example=_signed(dict(RESULTS)),
             ),
             ResourceRoute(
@@ -166,13 +167,21 @@ class Studies:
             detail = f"the study is {study.status}"
             raise Refusal("results-not-ready", detail, retry_after=1.0 if study.unfinished else None)
         accept = context.headers.get(b"accept", b"*/*")
-        media = negotiated(accept, (JSON_TYPE, archive.MEDIA_TYPE))
+        media = negotiated(accept, (JSON_TYPE, archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE))
         try:
             found = await self._in_thread(lambda: Results(study, self._store, self._supervisor.files()))
             if media == JSON_TYPE:
                 await self._page(context, study, found)
             else:
-                await context.stream_made_elsewhere(found.archive(), media.encode(), self._settings.stalled_seconds)
+                pieces = {
+                    archive.MEDIA_TYPE: found.archive,
+                    tables.MEDIA_TYPE: lambda: tables.table(found),
+                    grids.MEDIA_TYPE: lambda: grids.grid(found, self._store.folder / "scratch"),
+                }[media]()
+                await context.stream_made_elsewhere(pieces, media.encode(), self._settings.stalled_seconds)
+        except ImportError as missing:
+            detail = f"this service is installed without {missing.name}, which writes {media}"
+            raise Refusal("not-acceptable", detail) from None
         except CorruptedChunk:
             await run_in_daemon_thread(self._supervisor.ensure)
             detail = "some of the results were damaged and are being computed again"
@@ -235,7 +244,7 @@ class Studies:
         try:
             return await run_in_daemon_thread(work)
         except OSError as fault:
-            raise storage_unavailable(self._store.folder, fault) from fault
+            raise storage_unavailable(fault) from fault
 
     async def _send(
         self, context: RequestContext, document: Any, status: int = 200, headers: tuple[tuple[bytes, bytes], ...] = ()

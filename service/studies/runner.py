@@ -47,14 +47,15 @@ def main() -> None:
     stopped = threading.Event()
     signal.signal(signal.SIGTERM, lambda number, frame: stopped.set())
     threading.Thread(target=_end_with_server, args=(stopped,), daemon=True).start()
-    files = ChunkFiles(settings.studies_results or str(folder / "studies"))
+    store, files = Store(folder), ChunkFiles(settings.studies_results or str(folder / "studies"))
     engine = Engine(
-        Store(folder), files, Cluster(settings, folder / "scratch"), terms_of(settings, table),
+        store, files, Cluster(settings, folder / "scratch"), terms_of(settings, table),
         settings.deadline_seconds,
     )  # fmt: skip
     work(engine, stopped, settings.study_idle_seconds)
     threading.Thread(target=_end_in_any_case, daemon=True).start()
     engine.stop()
+    store.close()
     ownership.release()
 
 

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from service.problems import Refusal
@@ -104,6 +105,18 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._turn = Lock()
+        self._connection: sqlite3.Connection | None = None
+
+    def close(self) -> None:
+        """Close the connection; the next call opens another."""
+        with self._turn:
+            self._drop()
+
+    def _drop(self) -> None:
+        if self._connection is not None:
+            self._connection.close()
+            self._connection = None
 
     @property
     def exists(self) -> bool:
@@ -112,18 +125,30 @@ class Store:
 
     @contextmanager
     def _connected(self) -> Iterator[sqlite3.Connection]:
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            connection = sqlite3.connect(self.folder / DATABASE, timeout=PATIENCE, isolation_level=None)
+        # Closing the last connection to a database writes its log into it: this one stays open.
+        with self._turn:
             try:
-                connection.execute("PRAGMA journal_mode = WAL")
-                connection.execute("PRAGMA synchronous = NORMAL")
-                connection.executescript(_TABLES)
-                yield connection
-            finally:
-                connection.close()
-        except (OSError, sqlite3.Error) as fault:
-            raise storage_unavailable(self.folder, fault) from fault
+                if self._connection is None:
+                    self._connection = self._opened()
+                yield self._connection
+            except (OSError, sqlite3.Error) as fault:
+                self._drop()
+                raise storage_unavailable(fault) from fault
+            except BaseException:
+                # Nothing is left half written.
+                self._drop()
+                raise
+
+    def _opened(self) -> sqlite3.Connection:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        # Used by one thread at a time.
+        connection = sqlite3.connect(
+            self.folder / DATABASE, timeout=PATIENCE, isolation_level=None, check_same_thread=False
+        )
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("PRAGMA synchronous = NORMAL")
+        connection.executescript(_TABLES)
+        return connection
 
     def create(self, owner: str, request: bytes, plan: Mapping[str, Any], most: int) -> str:
         """Record a study and return its id, which cannot be guessed.
@@ -246,9 +271,7 @@ def _study(row: tuple[Any, ...]) -> Study:
     return Study(identity, owner, request, json.loads(plan), *rest)
 
 
-def storage_unavailable(place: object, fault: Exception) -> Refusal:
+def storage_unavailable(fault: Exception) -> Refusal:
     """Return the refusal of what cannot be stored."""
-    if isinstance(fault, Refusal):
-        return fault
     reason = getattr(fault, "strerror", None) or str(fault)
     return Refusal("storage-unavailable", f"the folder of data cannot be used: {reason}", retry_after=10.0)

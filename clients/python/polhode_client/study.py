@@ -141,9 +141,10 @@ def _bar(count: int) -> Any:
 def _names(pointers: list[str]) -> list[str]:
     """Return short names: the last steps of pointers, as many as are needed to tell them apart."""
     steps = [pointer.strip("/").split("/") for pointer in pointers]
+    # Numbers alone say nothing.
+    leasts = [next((k for k, step in enumerate(entry[::-1], 1) if not step.isdigit()), 1) for entry in steps]
     for length in range(1, max(map(len, steps)) + 1):
-        # A number alone says nothing.
-        names = ["_".join(entry[-max(length, 2 if entry[-1].isdigit() else 1) :]) for entry in steps]
+        names = ["_".join(entry[-max(length, least) :]) for entry, least in zip(steps, leasts, strict=True)]
         if len(set(names)) == len(names):
             return names
     return ["_".join(entry) for entry in steps]

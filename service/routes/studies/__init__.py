@@ -90,14 +90,14 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     table = QuestionTable(routes, ())
 
     def plan(question: StudyRequest, budget: Budget) -> Answer:
-        design, (inputs, figures) = question.all_members(), _paths(question)
+        route, design = table.route(question.question), question.all_members()
         if design.members > budget.members:
             remedy = "take fewer levels or a smaller count, or several studies"
             raise BudgetExceeded("members", design.members, budget.members, path=("vary",), remedy=remedy)
-        route = table.route(question.question)
         source = table.source(question.question, budget)
         with within_question():
             answer = source.answer(json.dumps(question.question.request))
+        inputs, figures = _paths(question)
         for k, figure in enumerate(figures):
             value = value_at(answer, figure)
             if number_of(value) is None and not is_null(answer, figure):

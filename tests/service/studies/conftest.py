@@ -128,3 +128,4 @@ def desk_on(tmp_path: Path) -> Iterator[Callable[..., Desk]]:
     yield make
     for desk in made:
         desk.engine.stop()
+        desk.store.close()
