@@ -261,14 +261,18 @@ class Engine:
         for work in [*self._works.values()]:
             for future, (stretch, since) in [*work.in_flight.items()]:
                 expected = work.each * (stretch[1] - stretch[0])
-                if now - since > AHEAD * (self._longest + 20.0 * expected):
-                    del work.in_flight[future]
-                    client = self._cluster.client
-                    busy = _processes_with({future.key}, client)
-                    client.cancel([future], force=True)
-                    if busy:
-                        client.run(end_process, workers=busy, wait=False, on_error="ignore")
-                    self._after_death(work, stretch, "deadline-exceeded")
+                if now - since <= AHEAD * (self._longest + 20.0 * expected):
+                    continue
+                client = self._cluster.client
+                busy = _processes_with({future.key}, client)
+                if not busy:
+                    # It still waits for a process.
+                    work.in_flight[future] = stretch, now
+                    continue
+                del work.in_flight[future]
+                client.cancel([future], force=True)
+                client.run(end_process, workers=busy, wait=False, on_error="ignore")
+                self._after_death(work, stretch, "deadline-exceeded")
 
     def _finish(self, work: Work) -> None:
         """Form the statistics; stretches whose files are damaged are computed again."""

@@ -309,6 +309,7 @@ assert polhode_client.__file__.startswith({str(tmp_path)!r})
 assert not {{"core", "service"}} & set(sys.modules)
 """
     subprocess.run([sys.executable, "-I", "-c", script], cwd=tmp_path, check=True, timeout=100)
+    # The optional ones are imported by name, where they are used.
     declared = tomllib.loads((source / "pyproject.toml").read_text())["project"]["dependencies"]
     trees = [ast.parse(file.read_text()) for file in (source / "polhode_client").glob("*.py")]
     imported = {

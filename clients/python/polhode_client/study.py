@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from importlib import import_module
+from typing import Any, Protocol
 
 import numpy as np
 
 from polhode_client import documents
-
-if TYPE_CHECKING:
-    import xarray
 
 UNFINISHED = ("accepted", "running")
 
@@ -99,15 +97,14 @@ class Study:
         """
         return self._client.archive(self.id)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Return all results as a Dataset; needs xarray.
+    def to_xarray(self) -> Any:
+        """Return all results as an `xarray.Dataset`; needs xarray, which is imported only here.
 
         A product has a dimension per varied input, named by the last steps of its pointer, with its levels as
         coordinate. Other designs have the dimension ``member``, with the inputs as coordinates of it. Units are
         attributes. ``failure`` holds the codes of problems.
         """
-        import xarray
-
+        xarray = import_module("xarray")
         found = self.results()
         shape, grid = tuple(found["shape"]), found["request"].get("design", "product") == "product"
         names = _names([axis["pointer"] for axis in found["axes"]])
@@ -133,9 +130,8 @@ class Study:
 
 
 def _bar(count: int) -> Any:
-    from tqdm.auto import tqdm
-
-    return tqdm(total=count, unit="member")
+    # An optional package, which has no types of its own.
+    return import_module("tqdm.auto").tqdm(total=count, unit="member")
 
 
 def _names(pointers: list[str]) -> list[str]:
