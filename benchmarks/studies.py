@@ -175,9 +175,7 @@ def main(members: int = 1_000_000) -> None:
     result: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as folder:
         for workers in (1, 2):
-            with service(
-                data=folder, study_workers=str(workers), study_idle_seconds="600", log_level="error"
-            ) as server:
+            with service(data=folder, study_workers=str(workers), study_idle_seconds="600") as server:
                 warm(server)
                 if workers == 1:
                     result["single requests"] = single_requests(server, 5.0)
