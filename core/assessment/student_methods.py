@@ -17,7 +17,7 @@ import numpy as np
 from core.compiled import kernel
 from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import Family
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 
 @kernel(march_by(VECTOR_FIELD))
@@ -128,7 +128,7 @@ class SemiImplicitEuler(FixedStep):
     order: ClassVar[int] = 1
     family: ClassVar[Family] = "explicit"
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return int(system.initial_state.size)
 
     def _compiled(self) -> Any:
@@ -151,7 +151,7 @@ class ExplicitMidpoint(FixedStep):
     order: ClassVar[int] = 2
     family: ClassVar[Family] = "explicit"
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2
 
     def _compiled(self) -> Any:
@@ -174,7 +174,7 @@ class Heun(FixedStep):
     order: ClassVar[int] = 2
     family: ClassVar[Family] = "explicit"
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2
 
     def _compiled(self) -> Any:

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from core.errors import InvalidParameter
 from core.quantities import members_of
 from core.scenes import Scene
-from core.scenes.answer import MOTION
 from core.scenes.chain_on_wedge import ChainOnWedge
+from core.scenes.figures import MOTION
 from core.scenes.rod_in_hole import RodInHole
 from core.scenes.unwinding_shafts import UnwindingShafts
 
@@ -69,9 +69,12 @@ Samples = dict[str, np.ndarray]
 
 
 def samples_of(scene: Any, times: np.ndarray) -> Samples:
-    trajectory = scene.answer(times).trajectory
-    assert trajectory is not None
-    return dict(trajectory)
+    return columns_of(scene.answer(times))
+
+
+def columns_of(answer: Any) -> Samples:
+    assert answer.trajectory is not None
+    return {name: answer.trajectory[name] for name in ("time", *answer.trajectory.columns)}
 
 
 def span_of(scene: Any) -> float:
@@ -165,7 +168,7 @@ def test_every_scene_of_the_catalogue_is_under_contract() -> None:
 @given(scene=any_scene)
 def test_energy_is_conserved_but_for_the_stated_cost_of_jerks(scene: Any) -> None:
     answer = scene.answer(np.linspace(0, span_of(scene), 33))
-    s = dict(answer.trajectory)
+    s = columns_of(answer)
     kinetic, potential = ENERGY[type(scene)](scene, s)
     # A velocity near the smallest double has an energy below it, which is left out.
     given_energy = {name: value or 0.0 for name, value in answer.figures["energy"].items()}
@@ -192,7 +195,7 @@ def test_forces_balance_the_motion_of_the_samples(scene: Any) -> None:
     middles = np.linspace(0.1, 0.9, 5) * span
     stencil = np.concatenate([middles + k * h for k in (-2, -1, 0, 1, 2)])
     answer = scene.answer(stencil, accuracy=1e-8)
-    s = {name: column.reshape(5, 5, *column.shape[1:]) for name, column in answer.trajectory.items()}
+    s = {name: column.reshape(5, 5, *column.shape[1:]) for name, column in columns_of(answer).items()}
     jerky = [phase["start"] for phase in answer.figures.get("phases", [])]
     jerky += [phase["end"] for phase in answer.figures.get("phases", []) if phase["end"] is not None]
     if any(phase["jerks"] != 0 for phase in answer.figures.get("phases", [])[:1]):
@@ -294,8 +297,9 @@ def test_questions_that_make_no_sense_are_refused(member: type) -> None:
     for times in (np.array([np.nan]), np.array([np.inf]), np.zeros((2, 2))):
         with pytest.raises(InvalidParameter) as refusal:
             scene.answer(times)
-        assert refusal.value.path == ("times",)
-    assert scene.answer(np.zeros(0)).trajectory["time"].size == 0
+        assert refusal.value.path[:1] == ("times",)
+    with pytest.raises(InvalidParameter):
+        scene.answer(np.zeros(0))
     assert scene.answer(np.zeros(1)).accuracy.error < 1e-13, "rest at the start is exact"
 
 

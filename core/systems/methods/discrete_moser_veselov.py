@@ -21,7 +21,7 @@ from core.errors import NotApplicable
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import Family, Invariance
-from core.systems.system import DISCRETE_STEP, Floats, Integers, System
+from core.systems.system import DISCRETE_STEP, Floats, InitialValueProblem, Integers
 
 
 @kernel(march_by(DISCRETE_STEP))
@@ -81,14 +81,14 @@ class DiscreteMoserVeselov(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         self._law(system)
         return 1
 
     def _compiled(self) -> Any:
         return _march
 
-    def _law(self, system: System) -> Any:
+    def _law(self, system: InitialValueProblem) -> Any:
         discrete = system.structure.discrete
         if discrete is None:
             raise NotApplicable(

@@ -28,7 +28,7 @@ from core.double_double import two_prod
 from core.errors import InvalidParameter
 from core.quantities import Duration
 from core.systems.methods.method import Leg, Marching, Units
-from core.systems.system import PROJECTION, Floats, Integers, System, unconstrained
+from core.systems.system import PROJECTION, Floats, InitialValueProblem, Integers, unconstrained
 
 _doubles = types.float64[::1]
 _integers = types.int64[::1]
@@ -147,14 +147,14 @@ class FixedStep(Marching):
         return Halved(self)
 
     @abstractmethod
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         """Return the evaluations that every step needs, as long as iterations need no more."""
 
     @abstractmethod
     def _compiled(self) -> Any:
         """Return the compiled march, to be called as `march_by` says."""
 
-    def _law(self, system: System) -> Any:
+    def _law(self, system: InitialValueProblem) -> Any:
         """Return what the march evaluates: the equation of motion, unless the method goes by another law.
 
         Raises
@@ -164,11 +164,11 @@ class FixedStep(Marching):
         """
         return system.equation
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         return self._march_divided(system, start, targets, limit, units, 1)
 
     def _march_divided(
-        self, system: System, start: Floats, targets: Floats, limit: int, units: Units, parts: int
+        self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units, parts: int
     ) -> Leg:
         """March as `_march` does, with every step divided into `parts`."""
         shape = (targets.size, 2)
@@ -215,5 +215,5 @@ class Halved(Marching):
         """Return None: it is there to compare with, not to go on from."""
         return None
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         return self.method._march_divided(system, start, targets, limit, units, 2)

@@ -20,7 +20,7 @@ from core.double_double import two_sum
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep, march_by, replace
 from core.systems.methods.method import PROJECTED, Family, Invariance
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 ITERATIONS = 100
 
@@ -113,7 +113,7 @@ class ImplicitMidpoint(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 1
 
     def _compiled(self) -> Any:

@@ -64,7 +64,7 @@ def test_samples_agree_with_the_hyperbola_in_many_digits(masses, slopes, density
     for j, name in enumerate(("position", "velocity", "apex_tension")):
         true = [state[j] for state in states]
         largest = max(abs(value) for value in true)
-        if name not in answer.trajectory:
+        if name not in answer.trajectory.columns:
             assert largest < 1e-280
             continue
         if largest < 1e-60 * scene.gravity * last:
@@ -266,7 +266,8 @@ def test_an_end_at_the_apex_agrees_with_the_certified_answer(masses, slopes, den
         assert event["time"] == pytest.approx(float(sure["time"]), rel=1e-15)
     assert answer.trajectory is not None
     assert proven.trajectory is not None
-    for name, column in answer.trajectory.items():
+    for name in ("time", *answer.trajectory.columns):
+        column = answer.trajectory[name]
         true = [float(value) for value in proven.trajectory[name]]
         largest = max(np.max(np.abs(true), initial=0.0), np.max(np.abs(column), initial=0.0))
         assert np.max(np.abs(column - true)) <= (answer.accuracy.error + 2.0**-53) * largest, name
