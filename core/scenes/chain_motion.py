@@ -116,7 +116,7 @@ class Slide:
             return gained / self.acceleration if turned else 2 * gone / total
         # x' + k (x - x_eq) grows as e^(kt), x' - k (x - x_eq) decays: the larger of the two tells the time.
         growing, decaying = self.acceleration + k * self.velocity, self.acceleration - k * self.velocity
-        if abs(growing) > abs(decaying) or sign(decaying) == 0:
+        if not abs(growing) < abs(decaying):
             return (k * (gained + k * gone) / growing).log1p() / k
         return -(-k * (gained - k * gone) / decaying).log1p() / k
 

@@ -231,7 +231,9 @@ class NamedScene(ABC):
             work=Work(samples),
             requested_samples=0 if question is None else question.times.size,
         )
-        return answer, rounded.sharp
+        # A time that is a quotient by what may be zero is decided with more digits.
+        decided = motion is None or all(event.time.is_finite() for event in motion.events())
+        return answer, rounded.sharp and decided
 
     def _sampled(self, motion: Motion, question: MotionQuestion, ended: str) -> Trajectory:
         """Return the samples that exist."""

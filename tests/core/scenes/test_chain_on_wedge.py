@@ -273,6 +273,17 @@ def test_an_end_at_the_apex_agrees_with_the_certified_answer(masses, slopes, den
         assert np.max(np.abs(column - true)) <= (answer.accuracy.error + 2.0**-53) * largest, name
 
 
+def test_a_velocity_far_below_the_first_precision_still_ends_the_motion() -> None:
+    """Balanced but for 1e-309 m/s: with x' = v e^(kt) the chain takes 709/k to get anywhere."""
+    scene = ChainOnWedge((1.0, 1.0), (1.0, 1.0), 9.81, 1.0, 1.0, 0.5, 2.2e-309)
+    answer = scene.answer(np.array([0.1, 1.0]))
+    assert answer.trajectory is not None
+    assert answer.trajectory["position"].tolist() == [0.5, 0.5]
+    (event,) = scene.answer(outputs=frozenset({"events"})).figures["events"]
+    rate = math.sqrt(2 * 9.81 * math.sin(1.0) / 3)
+    assert event["time"] == pytest.approx((math.log(2 * 0.5 * rate) - math.log(2.2e-309)) / rate, rel=1e-9)
+
+
 def test_a_string_released_with_its_end_at_the_apex_is_over_at_once() -> None:
     scene = ChainOnWedge((1.0, 2.0), (0.5, 0.5), 9.81, 1.0, 0.0, 0.0)
     answer = scene.answer(np.array([0.0, 1.0]))
