@@ -142,7 +142,7 @@ class SceneProblem(View):
 
 
 class SceneOccurrence(View):
-    """A time at which a quantity takes the value that was asked for."""
+    """A time at which a quantity takes the requested value."""
 
     quantity: str
     equals: Annotated[float, OwnUnit]
@@ -208,7 +208,7 @@ class DescribedAccuracy(View):
     )
     inherited: Ratio[float] | None = Field(
         description="Largest change of any column by input_uncertainty, to first order, relative "
-        "to the largest value in its unit; null where it is not asked for or not known."
+        "to the largest value in its unit; null where it is not requested or not known."
     )
     horizon: Seconds[float] | None = Field(
         description="Until when that change stays below the accuracy, one of 64 times up to the farthest; null where "
@@ -241,8 +241,8 @@ class DescribedSceneAnswer(AtStart[float]):
     )
     problem: SceneProblem | None = Field(default=None, description="If mechanics leaves something undecided.")
     trajectory: DescribedTrajectory | None = None
-    occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was asked for, in its order.")
-    extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were asked for.")
+    occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was requested, in its order.")
+    extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were requested.")
     equilibria: list[SceneEquilibrium] | None = None
-    thresholds: list[RestRange] | None = Field(default=None, description="If thresholds were asked for, in order.")
+    thresholds: list[RestRange] | None = Field(default=None, description="If thresholds were requested, in order.")
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

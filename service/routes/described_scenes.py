@@ -38,7 +38,7 @@ vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are l
 Forces that the scene does not determine are null. `outputs` may also ask when a quantity takes a value,
 `{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
 `{"extremes": "rod.force"}`, between the start and the latest of the times. Between which
-values of a number a scene stays at rest is asked by its JSON pointer,
+values of a number a scene stays at rest is requested by its JSON pointer,
 `{"thresholds": {"vary": "/connections/0/friction", "between": [0, 2]}}`.
 
 Contacts push and do not pull, with friction and restitution, in the plane; strings become slack and taut again. The
@@ -81,7 +81,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     found = solve_scene(
         question.scene(),
         times,
-        question.asked(),
+        question.requested(),
         question.accuracy,
         method=question.method,
         input_uncertainty=question.input_uncertainty,

@@ -14,7 +14,7 @@ from service.requests.described_scene import SceneDescription
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP
 from service.routes.described_answer import AtStart, OwnUnit
-from service.routes.described_scenes import DESCRIBED_SCENES, NEAR, model_fields
+from service.routes.described_scenes import DESCRIBED_SCENES, model_fields
 from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routing import Answer, PlanningProbe
 from service.schemas import DecimalString, Seconds, View, fields_of, sample_count
@@ -23,6 +23,8 @@ NUMBERS_OF_A_BODY = 8
 """Numbers in a sample of a body, about."""
 PER_SECOND = 0.7
 """Time to prove a second of the motion of a pendulum to 28 digits (s)."""
+NEAR = 1e-4
+"""How far (s) a motion is followed when it is planned: one step, most often."""
 LONGEST = 20.0
 """Time after which the steps that core allows are used up, about (s)."""
 
