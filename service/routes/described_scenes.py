@@ -21,12 +21,12 @@ from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
-from service.routes.described_answer import DescribedSceneAnswer
-from service.routes.described_figure import drawn
+from service.routes.described_answer import DescribedAccuracy, DescribedSceneAnswer, SceneColumn
+from service.routes.motion_figure import Curves, motion_figure, without_motion
 from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
-from service.schemas import Request, fields_of, sample_count, sample_times
+from service.schemas import Request, View, fields_of, sample_count, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
 
@@ -97,7 +97,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     ):
         if getattr(found, name) is not None:
             answer[name] = _in_range(start, name, answer["warnings"])
-    if motion is not None and motion.method is not None:
+    if motion is not None and question.method is not None:
         answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
     answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
@@ -107,9 +107,9 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if found.problem is not None:
         answer["problem"] = fields_of(found.problem)
     if motion is not None:
-        columns = {name: fields_of(column) for name, column in motion.columns.items()}
+        columns = {name: _picked(column, SceneColumn) for name, column in motion.columns.items()}
         answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}
-        answer["accuracy"] = motion.accuracy
+        answer["accuracy"] = _picked(motion.accuracy, DescribedAccuracy)
     if found.occurrences is not None:
         answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
@@ -117,6 +117,11 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if found.thresholds is not None:
         answer["thresholds"] = [_of_rest(one) for one in found.thresholds]
     return answer
+
+
+def _picked(found: Any, view: type[View]) -> dict[str, Any]:
+    """Return those fields of core's dataclass that a view has."""
+    return {name: getattr(found, name) for name in view.model_fields}
 
 
 def _of_rest(found: RestRange) -> dict[str, Any]:
@@ -142,6 +147,33 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
         warnings.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
         return None
     return value
+
+
+def drawn(answer: Answer) -> bytes:
+    """Return the motion in an answer as a figure; places in the plane as paths.
+
+    Raises
+    ------
+    InvalidParameter
+        If no motion was requested.
+    """
+    motion = answer.get("trajectory")
+    if motion is None:
+        raise without_motion()
+    found = motion["columns"]
+    paths = {
+        name.removesuffix(".position"): column["values"]
+        for name, column in found.items()
+        if name.endswith(".position") and column["values"].shape[1] == 2
+    }
+    columns = {
+        # Quaternions begin with their scalar part.
+        name: Curves(column["values"], column["unit"], "xyz" if column["values"].shape[-1] < 4 else "wxyz")
+        for name, column in found.items()
+        if not (paths and name.endswith(".position"))
+    }
+    title = f"Motion by {answer.get('method') or answer['model']['name']}"
+    return motion_figure(title, motion["time"], columns, paths)
 
 
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:

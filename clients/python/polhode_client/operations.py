@@ -210,14 +210,29 @@ class Operations(ABC):
         found: documents.UnwindingShaftsAnswer = self._ask("scene_unwinding_shafts", question, None)
         return found
 
+    def scene_unwinding_shafts_svg(self, **question: Unpack[documents.UnwindingShaftsRequest]) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound, as a drawing."""
+        found: str = self._ask("scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     def scene_rod_in_hole(self, **question: Unpack[documents.RodInHoleRequest]) -> documents.RodInHoleAnswer:
         """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall."""
         found: documents.RodInHoleAnswer = self._ask("scene_rod_in_hole", question, None)
         return found
 
+    def scene_rod_in_hole_svg(self, **question: Unpack[documents.RodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall, as a drawing."""
+        found: str = self._ask("scene_rod_in_hole", question, "image/svg+xml")
+        return found
+
     def scene_chain_on_wedge(self, **question: Unpack[documents.ChainOnWedgeRequest]) -> documents.ChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
         found: documents.ChainOnWedgeAnswer = self._ask("scene_chain_on_wedge", question, None)
+        return found
+
+    def scene_chain_on_wedge_svg(self, **question: Unpack[documents.ChainOnWedgeRequest]) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end, as a drawing."""
+        found: str = self._ask("scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
     def list_scenes(self) -> documents.SceneCatalogue:
@@ -426,9 +441,19 @@ class AsyncOperations(ABC):
         found: documents.UnwindingShaftsAnswer = await self._ask("scene_unwinding_shafts", question, None)
         return found
 
+    async def scene_unwinding_shafts_svg(self, **question: Unpack[documents.UnwindingShaftsRequest]) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound, as a drawing."""
+        found: str = await self._ask("scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     async def scene_rod_in_hole(self, **question: Unpack[documents.RodInHoleRequest]) -> documents.RodInHoleAnswer:
         """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall."""
         found: documents.RodInHoleAnswer = await self._ask("scene_rod_in_hole", question, None)
+        return found
+
+    async def scene_rod_in_hole_svg(self, **question: Unpack[documents.RodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall, as a drawing."""
+        found: str = await self._ask("scene_rod_in_hole", question, "image/svg+xml")
         return found
 
     async def scene_chain_on_wedge(
@@ -436,6 +461,11 @@ class AsyncOperations(ABC):
     ) -> documents.ChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
         found: documents.ChainOnWedgeAnswer = await self._ask("scene_chain_on_wedge", question, None)
+        return found
+
+    async def scene_chain_on_wedge_svg(self, **question: Unpack[documents.ChainOnWedgeRequest]) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end, as a drawing."""
+        found: str = await self._ask("scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
     async def list_scenes(self) -> documents.SceneCatalogue:
