@@ -16,8 +16,10 @@ from core.systems.budget import Budget
 from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, numbers
+from service.responses.svg import SVG
 from service.routes.bodies import few_times
 from service.routes.examples import examples
+from service.routes.motion_figures import scene_drawing
 from service.routes.planning_probes import FEW, few_of
 from service.routes.rotation.trajectory import Accuracy
 from service.routing import Answer, PlanningProbe, PostRoute
@@ -219,21 +221,24 @@ def scene_probe(
 @cache
 def questions() -> tuple[PostRoute, ...]:
     """Return one route for each scene."""
-    return tuple(
-        PostRoute(
-            f"/v1/scenes/{name_of(scene)}",
-            operation_of(scene),
-            summary_of(scene),
-            "scenes",
-            request_of(scene),
-            answer_model(scene, SceneAnswerInDoubles, "", float),
-            answering(scene),
-            CalibratedCost(operation_of(scene), scene_counts),
-            lambda question: question.times is None or few_times(question.times),
-            partial(scene_probe, answering(scene), sample_times, FEW),
-            warming=WARMING.get(name_of(scene), ()),
-        )
-        for scene in members()
+    return tuple(map(_route, members()))
+
+
+def _route(scene: type[ConstrainedSystem]) -> PostRoute:
+    answer = answer_model(scene, SceneAnswerInDoubles, "", float)
+    return PostRoute(
+        f"/v1/scenes/{name_of(scene)}",
+        operation_of(scene),
+        summary_of(scene),
+        "scenes",
+        request_of(scene),
+        answer,
+        answering(scene),
+        CalibratedCost(operation_of(scene), scene_counts),
+        lambda question: question.times is None or few_times(question.times),
+        partial(scene_probe, answering(scene), sample_times, FEW),
+        warming=WARMING.get(name_of(scene), ()),
+        representations={SVG: scene_drawing(answer)},
     )
 
 
