@@ -9,11 +9,14 @@ from pathlib import Path
 import pytest
 
 from docs.site.__main__ import write
+from docs.site.figures import FIGURES, FOLDER, polhodes
 from docs.site.links import linked_files, moved
 from docs.site.navigation import DOCS, GENERATED, ROOT, navigation, pages, paths_in
 from docs.site.reference import reference
 from service.problems import REGISTRY
 from service.settings import Settings
+
+NUMBER = re.compile(r"-?\d+\.\d+")
 
 
 def test_every_page_has_one_place_in_the_navigation() -> None:
@@ -63,3 +66,16 @@ def test_what_is_written_is_what_mkdocs_reads(tmp_path: Path) -> None:
         for image in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text):
             assert ((tmp_path / "pages" / place).parent / image).exists()
     assert "nav: [" in (tmp_path / "mkdocs.yml").read_text()
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_figures_are_those_of_the_script(name: str) -> None:
+    assert (FOLDER / f"{name}.svg").read_text() == FIGURES[name]().document(), "run python -m docs.site.figures"
+
+
+def test_the_polhodes_are_those_that_the_service_draws() -> None:
+    drawn, kept = polhodes(), (FOLDER / "polhodes.svg").read_text()
+    assert NUMBER.sub("", drawn) == NUMBER.sub("", kept)
+    ours, theirs = ([float(x) for x in NUMBER.findall(text)] for text in (drawn, kept))
+    # Pixels are rounded to tenths.
+    assert ours == pytest.approx(theirs, abs=0.11)
