@@ -2,6 +2,8 @@
 # targets install what the tests need, too.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 ENV := .venv
+# Byte code that is written once saves every process seconds at its start.
+unexport PYTHONDONTWRITEBYTECODE
 BIN := $(ENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.

@@ -8,6 +8,7 @@ import email.utils
 import io
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -16,14 +17,13 @@ import tomllib
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from threading import Event
 from typing import Any
 from zipfile import ZipFile
 
 import httpx
 import numpy as np
 import pytest
-from polhode_client import AsyncClient, Client, Progress, Refused, bar
+from polhode_client import AsyncClient, Client, Refused
 from polhode_client.arrays import body_of
 from polhode_client.exchange import exchange
 from polhode_client.operations import OPERATIONS, AsyncOperations, Operations
@@ -326,99 +326,29 @@ assert not {{"core", "service"}} & set(sys.modules)
     assert others == {one.partition(">")[0] for one in declared}
 
 
-@pytest.mark.parametrize(
-    ("line", "fault"),
-    [
-        ('rate: float | None = polhode.precession(body=coin, angular_velocity=[1, 1, 1])["space_rate"]', None),
-        ('polhode.precession(body=coin, angular_velocity=[1, 1, 1])["space_rates"]', "typeddict-item"),
-        ("polhode.precession(body=coin, angular_velocities=[1, 1, 1])", "call-arg"),
-        ('polhode.precession(body={"kind": "ball", "mass": 1.0}, angular_velocity=[1, 1, 1])', "arg-type"),
-        ('polhode.wobble(period="430")', "arg-type"),
-    ],
-)
-def test_a_type_checker_knows_questions_and_answers(tmp_path: Path, line: str, fault: str | None) -> None:
-    head = "from polhode_client import Client\nfrom polhode_client.documents import PrincipalMoments\n"
-    coin = 'coin: PrincipalMoments = {"kind": "principal-moments", "moments": [1, 1, 2]}\n'
-    (tmp_path / "script.py").write_text(f'{head}polhode = Client("http://test")\n{coin}{line}\n')
+TYPED = {
+    'rate: float | None = polhode.precession(body=coin, angular_velocity=[1, 1, 1])["space_rate"]': None,
+    'polhode.precession(body=coin, angular_velocity=[1, 1, 1])["space_rates"]': "typeddict-item",
+    "polhode.precession(body=coin, angular_velocities=[1, 1, 1])": "call-arg",
+    'polhode.precession(body={"kind": "ball", "mass": 1.0}, angular_velocity=[1, 1, 1])': "arg-type",
+    'polhode.wobble(period="430")': "arg-type",
+}
+"""By line, which fault of types it has."""
+
+
+def test_a_type_checker_knows_questions_and_answers(tmp_path: Path) -> None:
+    head = [
+        "from polhode_client import Client",
+        "from polhode_client.documents import PrincipalMoments",
+        'polhode = Client("http://test")',
+        'coin: PrincipalMoments = {"kind": "principal-moments", "moments": [1, 1, 2]}',
+    ]
+    (tmp_path / "script.py").write_text("\n".join([*head, *TYPED, ""]))
     command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), "script.py"]
     done = subprocess.run(
         command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=200,
         env=os.environ | {"MYPYPATH": str(ROOT / "clients" / "python")},
     )  # fmt: skip
-    if fault is None:
-        assert done.returncode == 0, done.stdout
-    else:
-        assert f"[{fault}]" in done.stdout
-
-
-class TestProgress:
-    """Reports come while a request is under way; nothing here depends on how fast."""
-
-    @pytest.fixture
-    def reports(self, monkeypatch: pytest.MonkeyPatch) -> list[Progress]:
-        monkeypatch.setattr("polhode_client.progress.FIRST", 0.01)
-        monkeypatch.setattr("polhode_client.progress.EVERY", 0.01)
-        return []
-
-    @pytest.mark.parametrize("blocking", [True, False])
-    def test_it_is_reported_with_the_planned_time(self, blocking: bool, reports: list[Progress]) -> None:
-        seen = Event()
-
-        def report(progress: Progress) -> None:
-            reports.append(progress)
-            seen.set()
-
-        def handler(request: httpx.Request) -> httpx.Response:
-            if request.url.path == "/v1/plan":
-                assert json.loads(request.content) == {"path": "/v1/rotation/wobble", "request": {"period": 430.0}}
-                return httpx.Response(200, json={"cost": {"milliseconds": 2500.0}})
-            assert seen.wait(60)
-            return httpx.Response(200, json={"ellipticity": 1.0})
-
-        if blocking:
-            with Client("http://test", transport=httpx.MockTransport(handler), progress=report) as polhode:
-                polhode.wobble(period=430.0)
-        else:
-
-            async def ask() -> None:
-                async def slow(request: httpx.Request) -> httpx.Response:
-                    return await asyncio.to_thread(handler, request)
-
-                transport = httpx.MockTransport(slow)
-                async with AsyncClient("http://test", transport=transport, progress=report) as polhode:
-                    await polhode.wobble(period=430.0)
-
-            asyncio.run(ask())
-        assert {report.path for report in reports if report.expected} == {"/v1/rotation/wobble"}
-        last = [report for report in reports if report.path == "/v1/rotation/wobble"]
-        assert [report.done for report in last] == [False] * (len(last) - 1) + [True]
-        assert last[0].expected == 2.5
-        assert [report.elapsed for report in last] == sorted(report.elapsed for report in last)
-
-    def test_a_question_that_is_not_planned_has_no_expected_time(self, reports: list[Progress]) -> None:
-        def handler(request: httpx.Request) -> httpx.Response:
-            if request.url.path == "/v1/plan":
-                return httpx.Response(422, json={})
-            while not any(report.path != "/v1/plan" for report in reports):
-                time.sleep(0.001)
-            return httpx.Response(200, json={})
-
-        with Client("http://test", transport=httpx.MockTransport(handler), progress=reports.append) as polhode:
-            polhode.wobble(period=430.0)
-        assert {report.expected for report in reports} == {None}
-
-    def test_the_service_plans_what_the_client_sends(self, service: str) -> None:
-        with Client(service, progress=lambda progress: None) as polhode:
-            assert polhode.wobble(period=430.0)["ellipticity"] > 1.0
-
-    def test_the_bar(self, capsys: pytest.CaptureFixture[str]) -> None:
-        bar(Progress("/v1/scenes", 2.0, 8.0))
-        bar(Progress("/v1/scenes", 9.0, 8.0))
-        bar(Progress("/v1/scenes", 3.0, None))
-        bar(Progress("/v1/scenes", 4.0, None, done=True))
-        first, second, third, last = capsys.readouterr().err.split("\r")[1:]
-        assert first.count("#") == 8
-        assert first.endswith("2 s of about 8 s")
-        assert second.count("#") == 30
-        assert third == "/v1/scenes 3 s"
-        assert last == "\033[K"
+    for number, fault in enumerate(TYPED.values(), len(head) + 1):
+        found = re.findall(rf"^script.py:{number}: error: .*\[([\w-]+)\]$", done.stdout, re.MULTILINE)
+        assert set(found) == (set() if fault is None else {fault}), done.stdout
