@@ -158,9 +158,19 @@ class Operations(ABC):
         found: documents.TrajectoryAnswer = self._ask("rotation_trajectory", question, None)
         return found
 
+    def rotation_trajectory_svg(self, **question: Unpack[documents.TrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times, as a drawing."""
+        found: str = self._ask("rotation_trajectory", question, "image/svg+xml")
+        return found
+
     def rotation_ensemble(self, **question: Unpack[documents.EnsembleRequest]) -> documents.EnsembleAnswer:
         """Many free rotations of one body, from given starts or a sample of one energy."""
         found: documents.EnsembleAnswer = self._ask("rotation_ensemble", question, None)
+        return found
+
+    def rotation_ensemble_svg(self, **question: Unpack[documents.EnsembleRequest]) -> str:
+        """Many free rotations of one body, from given starts or a sample of one energy, as a drawing."""
+        found: str = self._ask("rotation_ensemble", question, "image/svg+xml")
         return found
 
     def precession(self, **question: Unpack[documents.PrecessionRequest]) -> documents.PrecessionAnswer:
@@ -257,6 +267,11 @@ class Operations(ABC):
         found: documents.CertifiedTrajectoryAnswer = self._ask("certified_rotation_trajectory", question, None)
         return found
 
+    def certified_rotation_trajectory_svg(self, **question: Unpack[documents.CertifiedTrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven, as a drawing."""
+        found: str = self._ask("certified_rotation_trajectory", question, "image/svg+xml")
+        return found
+
     def certified_precession(
         self, **question: Unpack[documents.CertifiedPrecessionRequest]
     ) -> documents.CertifiedPrecessionAnswer:
@@ -290,6 +305,13 @@ class Operations(ABC):
         found: documents.CertifiedUnwindingShaftsAnswer = self._ask("certified_scene_unwinding_shafts", question, None)
         return found
 
+    def certified_scene_unwinding_shafts_svg(
+        self, **question: Unpack[documents.CertifiedUnwindingShaftsRequest]
+    ) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven, as a drawing."""
+        found: str = self._ask("certified_scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     def certified_scene_rod_in_hole(
         self, **question: Unpack[documents.CertifiedRodInHoleRequest]
     ) -> documents.CertifiedRodInHoleAnswer:
@@ -297,11 +319,21 @@ class Operations(ABC):
         found: documents.CertifiedRodInHoleAnswer = self._ask("certified_scene_rod_in_hole", question, None)
         return found
 
+    def certified_scene_rod_in_hole_svg(self, **question: Unpack[documents.CertifiedRodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven, as a drawing."""
+        found: str = self._ask("certified_scene_rod_in_hole", question, "image/svg+xml")
+        return found
+
     def certified_scene_chain_on_wedge(
         self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
     ) -> documents.CertifiedChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven."""
         found: documents.CertifiedChainOnWedgeAnswer = self._ask("certified_scene_chain_on_wedge", question, None)
+        return found
+
+    def certified_scene_chain_on_wedge_svg(self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven, as a drawing."""
+        found: str = self._ask("certified_scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
     def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
@@ -389,9 +421,19 @@ class AsyncOperations(ABC):
         found: documents.TrajectoryAnswer = await self._ask("rotation_trajectory", question, None)
         return found
 
+    async def rotation_trajectory_svg(self, **question: Unpack[documents.TrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times, as a drawing."""
+        found: str = await self._ask("rotation_trajectory", question, "image/svg+xml")
+        return found
+
     async def rotation_ensemble(self, **question: Unpack[documents.EnsembleRequest]) -> documents.EnsembleAnswer:
         """Many free rotations of one body, from given starts or a sample of one energy."""
         found: documents.EnsembleAnswer = await self._ask("rotation_ensemble", question, None)
+        return found
+
+    async def rotation_ensemble_svg(self, **question: Unpack[documents.EnsembleRequest]) -> str:
+        """Many free rotations of one body, from given starts or a sample of one energy, as a drawing."""
+        found: str = await self._ask("rotation_ensemble", question, "image/svg+xml")
         return found
 
     async def precession(self, **question: Unpack[documents.PrecessionRequest]) -> documents.PrecessionAnswer:
@@ -492,6 +534,11 @@ class AsyncOperations(ABC):
         found: documents.CertifiedTrajectoryAnswer = await self._ask("certified_rotation_trajectory", question, None)
         return found
 
+    async def certified_rotation_trajectory_svg(self, **question: Unpack[documents.CertifiedTrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_rotation_trajectory", question, "image/svg+xml")
+        return found
+
     async def certified_precession(
         self, **question: Unpack[documents.CertifiedPrecessionRequest]
     ) -> documents.CertifiedPrecessionAnswer:
@@ -527,6 +574,13 @@ class AsyncOperations(ABC):
         )
         return found
 
+    async def certified_scene_unwinding_shafts_svg(
+        self, **question: Unpack[documents.CertifiedUnwindingShaftsRequest]
+    ) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     async def certified_scene_rod_in_hole(
         self, **question: Unpack[documents.CertifiedRodInHoleRequest]
     ) -> documents.CertifiedRodInHoleAnswer:
@@ -534,11 +588,23 @@ class AsyncOperations(ABC):
         found: documents.CertifiedRodInHoleAnswer = await self._ask("certified_scene_rod_in_hole", question, None)
         return found
 
+    async def certified_scene_rod_in_hole_svg(self, **question: Unpack[documents.CertifiedRodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_scene_rod_in_hole", question, "image/svg+xml")
+        return found
+
     async def certified_scene_chain_on_wedge(
         self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
     ) -> documents.CertifiedChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven."""
         found: documents.CertifiedChainOnWedgeAnswer = await self._ask("certified_scene_chain_on_wedge", question, None)
+        return found
+
+    async def certified_scene_chain_on_wedge_svg(
+        self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
+    ) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
     async def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
