@@ -8,6 +8,7 @@ from core.scenes.named_scene import NamedScene
 from service.routes.assessments import assessing
 from service.routes.bodies import BODIES
 from service.routes.certified.answers import naming_certified
+from service.routes.certified.described import CERTIFIED_DESCRIBED
 from service.routes.certified.rotation import CERTIFIED_ROTATION
 from service.routes.certified.scenes import certified_scenes
 from service.routes.certified.surfaces import CERTIFIED_ELLIPSOID
@@ -34,7 +35,7 @@ def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostR
         The named scenes; those of core's catalogue if omitted.
     """
     scenes = members() if scenes is None else scenes
-    certified = (*CERTIFIED_ROTATION, CERTIFIED_ELLIPSOID, *certified_scenes(scenes))
+    certified = (*CERTIFIED_ROTATION, CERTIFIED_ELLIPSOID, *certified_scenes(scenes), CERTIFIED_DESCRIBED)
     paths = [route.path for route in certified]
     rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
     ordinary = (*rotations, *scene_routes(scenes), *DESCRIBED_SCENES)
