@@ -348,6 +348,11 @@ class Operations(ABC):
         found: documents.CertifiedDescribedAnswer = self._ask("certified_described_scene", question, None)
         return found
 
+    def certified_described_scene_svg(self, **question: Unpack[documents.CertifiedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven, as a drawing."""
+        found: str = self._ask("certified_described_scene", question, "image/svg+xml")
+        return found
+
     def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
         """Model, method, cost, error and refusals of any other question, which is not answered."""
         found: documents.PlanAnswer = self._ask("plan", question, None)
@@ -624,6 +629,11 @@ class AsyncOperations(ABC):
     ) -> documents.CertifiedDescribedAnswer:
         """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven."""
         found: documents.CertifiedDescribedAnswer = await self._ask("certified_described_scene", question, None)
+        return found
+
+    async def certified_described_scene_svg(self, **question: Unpack[documents.CertifiedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_described_scene", question, "image/svg+xml")
         return found
 
     async def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
