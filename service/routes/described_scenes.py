@@ -22,7 +22,7 @@ from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
 from service.routes.described_answer import DescribedAccuracy, DescribedSceneAnswer, SceneColumn
-from service.routes.motion_figure import Curves, motion_figure, without_motion
+from service.routes.described_figure import drawn
 from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
@@ -148,33 +148,6 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
         warnings.append(Notice("out-of-range", f"{name} leaves the range of double precision and is null"))
         return None
     return value
-
-
-def drawn(answer: Answer) -> bytes:
-    """Return the motion in an answer as a figure; places in the plane as paths.
-
-    Raises
-    ------
-    InvalidParameter
-        If no motion was requested.
-    """
-    motion = answer.get("trajectory")
-    if motion is None:
-        raise without_motion()
-    found = motion["columns"]
-    paths = {
-        name.removesuffix(".position"): column["values"]
-        for name, column in found.items()
-        if name.endswith(".position") and column["values"].shape[1] == 2
-    }
-    columns = {
-        # Quaternions begin with their scalar part.
-        name: Curves(column["values"], column["unit"], "xyz" if column["values"].shape[-1] < 4 else "wxyz")
-        for name, column in found.items()
-        if not (paths and name.endswith(".position"))
-    }
-    title = f"Motion by {answer.get('method') or answer['model']['name']}"
-    return motion_figure(title, motion["time"], columns, paths)
 
 
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:

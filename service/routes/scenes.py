@@ -19,7 +19,7 @@ from core.systems.trajectory import HORIZON, Work
 from service.execution.cost_model import CalibratedCost, calibration, numbers
 from service.responses.svg import SVG
 from service.routes.bodies import few_times
-from service.routes.motion_figure import Curves, motion_figure, without_motion
+from service.routes.motion_figures import scene_drawing
 from service.routes.planning_probes import FEW, few_of
 from service.routes.rotation.trajectory import Accuracy, accuracy_fields
 from service.routing import Answer, Example, PlanningProbe, PostRoute
@@ -204,15 +204,6 @@ def scene_probe(
     return PlanningProbe(handle(question.model_copy(update={"times": few}), budget), growth)
 
 
-def drawn(scene: type[NamedScene], answer: Answer) -> bytes:
-    """Return the motion in an answer as a figure, or raise `InvalidParameter` if none was requested."""
-    motion, units = answer.get("trajectory"), scene.units()
-    if motion is None:
-        raise without_motion()
-    columns = {name: Curves(values, units[name], "12") for name, values in motion.items() if name != "time"}
-    return motion_figure(f"{summary_of(scene)}: {answer['model'].regime}", motion["time"], columns, {})
-
-
 def price_of(scene: type[NamedScene]) -> CalibratedCost:
     """Return the price of questions about a scene; as long as it is not measured, that of the costliest that is."""
     operation, measured = operation_of(scene), calibration().seconds
@@ -226,23 +217,25 @@ def price_of(scene: type[NamedScene]) -> CalibratedCost:
 @cache
 def scene_routes(scenes: tuple[type[NamedScene], ...]) -> tuple[PostRoute, ...]:
     """Return one route for each scene."""
-    return tuple(
-        PostRoute(
-            f"/v1/scenes/{name_of(scene)}",
-            operation_of(scene),
-            summary_of(scene),
-            "scenes",
-            request_of(scene),
-            answer_model(scene, SceneAnswerInDoubles, "", float),
-            answering(scene),
-            price_of(scene),
-            lambda question: question.times is None or few_times(question.times),
-            partial(scene_probe, answering(scene), sample_times, FEW),
-            examples={name: Example(one.summary, one.question) for name, one in scene.examples.items()},
-            warming=scene.warming,
-            representations={SVG: partial(drawn, scene)},
-        )
-        for scene in scenes
+    return tuple(map(_route, scenes))
+
+
+def _route(scene: type[NamedScene]) -> PostRoute:
+    answer = answer_model(scene, SceneAnswerInDoubles, "", float)
+    return PostRoute(
+        f"/v1/scenes/{name_of(scene)}",
+        operation_of(scene),
+        summary_of(scene),
+        "scenes",
+        request_of(scene),
+        answer,
+        answering(scene),
+        price_of(scene),
+        lambda question: question.times is None or few_times(question.times),
+        partial(scene_probe, answering(scene), sample_times, FEW),
+        examples={name: Example(one.summary, one.question) for name, one in scene.examples.items()},
+        warming=scene.warming,
+        representations={SVG: scene_drawing(answer)},
     )
 
 

@@ -205,7 +205,7 @@ class FixedStep(Marching):
         return start[None].copy(), 0
 
     def _law(self, system: InitialValueProblem) -> Any:
-        """Return what the steps evaluates: the equation of motion, unless the method goes by another law.
+        """Return what the steps evaluate: the equation of motion, unless the method goes by another law.
 
         Raises
         ------

@@ -11,9 +11,11 @@ from core.multibody.proven_answer import PROVEN_OUTPUTS, proven_answer
 from core.systems.budget import Budget
 from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants
 from service.requests.described_scene import SceneDescription
+from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP
 from service.routes.described_answer import AtStart, OwnUnit
+from service.routes.described_figure import drawn
 from service.routes.described_scenes import DESCRIBED_SCENES, model_fields
 from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routing import Answer, PlanningProbe
@@ -133,4 +135,5 @@ CERTIFIED_DESCRIBED = certified_route(
     handle=answer_certified_scene,
     price=certified_scene_cost,
     planning_probe=certified_scene_probe,
+    representations={SVG: drawn},
 )

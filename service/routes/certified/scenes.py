@@ -20,8 +20,10 @@ from service.requests.decimal_models import (
     fields_in_numerals,
     instants,
 )
+from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable
+from service.routes.motion_figures import scene_drawing
 from service.routes.planning_probes import FEW_CERTIFIED
 from service.routes.scenes import (
     TIMES,
@@ -98,16 +100,18 @@ def _route(ordinary: PostRoute, scene: type[NamedScene]) -> PostRoute:
         return SET_UP + _samples(question, budget) * each.seconds(question.digits)
 
     own = fields_in_numerals(scene) | {"times": (DecimalTimes | None, TIMES), "digits": (DigitCount, ...)}
+    answer = answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString)
     return certified_route(
         ordinary,
         question=request_model(scene, "Certified", **own),
-        answer=answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString),
+        answer=answer,
         handle=answering(scene),
         price=cost,
         planning_probe=partial(scene_probe, answering(scene), _instants, FEW_CERTIFIED),
         examples={
             "digits": Example(f"{SHOWN_DIGITS} proven digits", in_decimals(shown.question) | {"digits": SHOWN_DIGITS})
         },
+        representations={SVG: scene_drawing(answer)},
     )
 
 

@@ -20,7 +20,9 @@ from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, effort, judged, numbers, speed_of
+from service.responses.svg import SVG
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
+from service.routes.motion_figures import draw_ensemble
 from service.routes.planning_probes import few_of, in_closed_form, probe_in_samples
 from service.routes.rotation.surfaces import Count, Seed
 from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy, accuracy_fields
@@ -193,5 +195,6 @@ ENSEMBLE = (
         CalibratedCost("rotation_ensemble", ensemble_counts),
         is_small_ensemble,
         ensemble_probe,
+        representations={SVG: draw_ensemble},
     ),
 )
