@@ -10,7 +10,7 @@ twice the requested digits, relative to the terms of the difference that gives i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
 from types import NoneType, UnionType
@@ -22,13 +22,11 @@ from core.balls import Undetermined
 from core.certified.adaptive_precision import bits_for, check_digits, until_determined, working_bits
 from core.certified.decimals import decimal, place_of
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
-from core.errors import InvalidParameter, inside_field
+from core.errors import InvalidParameter, Path, inside_field
 from core.notices import Notice
 from core.scenes.enclosure import BITS
-from core.scenes.figures import MOTION
 from core.scenes.named_scene import NamedScene
 from core.systems.system import Model
-from core.systems.trajectory import HORIZON
 
 LARGEST = Fraction(10**300)
 """Largest magnitude of a parameter, so that the scenes can check the range as a double."""
@@ -117,27 +115,17 @@ class _Question:
     def answer(self, given: Sequence[Number] | None) -> CertifiedScene:
         # A scene caches its constants; a copy computes them again, at the current precision.
         scene: Any = replace(self.scene)
-        table: dict[str, Callable[[], Any]] = dict(scene.figures())
-        motion, ended, trajectory = None, None, None
-        if self.wanted & {*MOTION, *scene.of_motion}:
-            points = [enclosed(t) for t in self.instants or ()]
-            horizon = max((float(t) for t in self.instants), default=0.0) if self.instants is not None else float("inf")
-            motion = scene.motion(horizon)
-            fault = scene.inexact(motion)
-            if fault is not None:
-                raise fault
-            end = motion.end
-            last = None if self.instants is None else enclosed(max((*self.instants, Fraction(0))))
-            over = end is not None and (last is None or not end.time > last)
-            ended = end.kind if over else HORIZON if last is not None else None
-            table |= scene.motion_figures(motion)
-            happened = [event for event in motion.events() if last is None or not event.time > last]
-            table["events"] = lambda: [{"kind": event.kind, "time": event.time} for event in happened]
-            if "trajectory" in self.wanted and given is not None:
-                trajectory = self._trajectory(points, motion, given)
-        figures = {n: self._written(table[n]()) for n in scene.outputs if n in self.wanted and n in table}
-        model = scene.static_model() if motion is None else motion.model
-        return CertifiedScene(model, figures, trajectory, ended, scene.notices(self.wanted))
+        last = None if self.instants is None else max((*self.instants, Fraction(0)))
+        horizon = float("inf") if last is None else float(last)
+        bound = None if last is None else enclosed(last)
+        found = scene.outline(self.wanted, horizon, lambda time: bound is None or not time > bound, self._written)
+        fault = None if found.motion is None else scene.inexact(found.motion)
+        if fault is not None:
+            raise fault
+        trajectory = None
+        if found.motion is not None and "trajectory" in self.wanted and given is not None:
+            trajectory = self._trajectory([enclosed(t) for t in self.instants or ()], found.motion, given)
+        return CertifiedScene(found.model, found.figures, trajectory, found.ended, scene.notices(self.wanted))
 
     def _trajectory(self, points: Sequence[arb], motion: Any, given: Sequence[Number]) -> Mapping[str, list[Any]]:
         existing = []
@@ -156,7 +144,7 @@ class _Question:
                 columns.setdefault(name, []).append(self._written(value))
         return columns
 
-    def _written(self, value: Any) -> Any:
+    def _written(self, value: Any, path: Path = ()) -> Any:
         """Return a value with every ball in it, at any depth, as a numeral."""
         if isinstance(value, arb):
             return self._numeral(value)

@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, ClassVar, Literal, get_type_hints
+from typing import Any, ClassVar, Literal, NamedTuple, get_type_hints
 
 import numpy as np
 
@@ -18,9 +18,9 @@ from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.notices import Notice
 from core.quantities import Tolerance, Unit, check_value
-from core.scenes.enclosure import BITS, MORE_BITS, Rounding
+from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding
 from core.scenes.figures import MOTION, SceneEvent, SceneExample
-from core.scenes.motion import Motion
+from core.scenes.motion import Event, Motion
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.question import MotionQuestion
@@ -71,6 +71,16 @@ class SceneAnswer:
     def warnings(self) -> tuple[Notice, ...]:
         """What the reader must know."""
         return self.notices if self.trajectory is None else (*self.notices, *self.trajectory.warnings)
+
+
+class Outline(NamedTuple):
+    """What is computed of a scene beside its samples; see `SceneAnswer`. Events are those up to the horizon."""
+
+    model: Model
+    figures: Mapping[str, Any]
+    motion: Motion | None
+    ended: str | None
+    events: list[Event]
 
 
 @dataclass(frozen=True)
@@ -208,42 +218,62 @@ class NamedScene(ABC):
         spend(WORK_OF_A_SCENE)
         horizon = math.inf if question is None else max(0.0, float(np.max(question.times)))
         rounded = Rounding()
-        table = dict(self.figures())
-        motion, ended, trajectory = None, None, None
-        if wanted & {*MOTION, *self.of_motion}:
-            motion = self.motion(horizon)
-            ended = _ended(motion, horizon)
-            table |= self.motion_figures(motion)
-            table["events"] = lambda: _events(motion, horizon)
-        figures = {name: rounded(table[name](), (name,)) for name in self.outputs if name in wanted and name in table}
-        if motion is not None and question is not None and "trajectory" in wanted:
-            trajectory = self._sampled(motion, question, ended or HORIZON)
-        samples = 0 if trajectory is None else trajectory.time.size
+        found = self.outline(wanted, horizon, lambda time: float(time) <= horizon, rounded)
+        trajectory = None
+        if found.motion is not None and question is not None and "trajectory" in wanted:
+            trajectory = self._sampled(found, question)
         answer = SceneAnswer(
-            model=self.static_model() if motion is None else motion.model,
-            figures=figures,
+            model=found.model,
+            figures=found.figures,
             trajectory=trajectory,
-            ended=ended,
+            ended=found.ended,
             accuracy=Accuracy(
                 accuracy, max(rounded.error, trajectory.accuracy.error if trajectory else 0.0), "closed form"
             ),
             notices=(*rounded.notices, *self.notices(wanted)),
-            work=Work(samples),
+            work=Work(0 if trajectory is None else trajectory.time.size),
             requested_samples=0 if question is None else question.times.size,
         )
         # A time that is a quotient by what may be zero is decided with more digits.
-        decided = motion is None or all(event.time.is_finite() for event in motion.events())
+        decided = found.motion is None or all(event.time.is_finite() for event in found.motion.events())
         return answer, rounded.sharp and decided
 
-    def _sampled(self, motion: Motion, question: MotionQuestion, ended: str) -> Trajectory:
+    def outline(
+        self, wanted: frozenset[str], horizon: float, happened: Callable[[Ball], bool], written: Callable[..., Any]
+    ) -> Outline:
+        """Return what is requested beside the samples, at the present precision.
+
+        Parameters
+        ----------
+        horizon : float
+            Up to which the motion is needed; infinite without one (s).
+        happened : callable
+            Whether a time is not beyond it.
+        written : callable
+            From a figure and its path to the same with numbers in place of balls.
+        """
+        table, events = dict(self.figures()), list[Event]()
+        motion, ended = None, None
+        if wanted & {*MOTION, *self.of_motion}:
+            motion = self.motion(horizon)
+            over = motion.end is not None and happened(motion.end.time)
+            ended = motion.end.kind if over and motion.end else HORIZON if math.isfinite(horizon) else None
+            events += [event for event in motion.events() if happened(event.time)]
+            table |= self.motion_figures(motion)
+            table["events"] = lambda: [{"kind": event.kind, "time": event.time} for event in events]
+        figures = {name: written(table[name](), (name,)) for name in self.outputs if name in wanted and name in table}
+        return Outline(self.static_model() if motion is None else motion.model, figures, motion, ended, events)
+
+    def _sampled(self, found: Outline, question: MotionQuestion) -> Trajectory:
         """Return the samples that exist."""
+        motion = found.motion
+        assert motion is not None
         rows = _existing(motion, question.times)
         times = question.times[rows]
         samples = motion.sample(times)
         columns = samples.columns(self.units())
         error = max((_relative(column.error, column.scale or 0.0) for column in columns.values()), default=0.0)
         why = None if question.input_uncertainty is None else _NOT_KNOWN
-        horizon = float(np.max(question.times))
         return Trajectory(
             times,
             columns,
@@ -251,9 +281,9 @@ class NamedScene(ABC):
             motion.model,
             ClosedFormEvaluation().kind,
             Work(times.size),
-            ended=ended,
+            ended=found.ended or HORIZON,
             rows=rows,
-            events=[SceneEvent(event["kind"], float(event["time"])) for event in _events(motion, horizon)],
+            events=[SceneEvent(event.kind, float(event.time)) for event in found.events],
             warnings=samples.notices,
         )
 
@@ -290,17 +320,6 @@ def _marks(hint: Any) -> tuple[Any, ...]:
 
 def _relative(error: float, scale: float) -> float:
     return error / scale if scale > 0.0 else 0.0 if error == 0.0 else math.inf
-
-
-def _ended(motion: Motion, horizon: float) -> str | None:
-    if motion.end is not None and float(motion.end.time) <= horizon:
-        return motion.end.kind
-    return HORIZON if math.isfinite(horizon) else None
-
-
-def _events(motion: Motion, horizon: float) -> list[Mapping[str, Any]]:
-    happened = [event for event in motion.events() if float(event.time) <= horizon]
-    return [{"kind": event.kind, "time": event.time} for event in happened]
 
 
 def _existing(motion: Motion, instants: Floats) -> Any:
