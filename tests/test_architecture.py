@@ -165,6 +165,7 @@ TESTED_IN = {
     "core/scenes/motion.py": "core/scenes/test_named_scene.py",
     "core/scenes/pendulum_in_balls.py": "core/certified/test_scenes.py",
     "core/scenes/rod_motion.py": "core/scenes/test_rod_in_hole.py",
+    "core/scenes/shaft_figures.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
 }

@@ -14,7 +14,7 @@ import numpy as np
 
 from core.errors import InvalidParameter, Path
 from core.multibody.along import watched_times
-from core.multibody.answer import Extremes, Occurrence
+from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole
 from core.systems.trajectory import Column
@@ -93,7 +93,7 @@ def occurrences(whole: Whole, sampler: Sampler, search: When, end: float, most: 
     return [_located(sampler, search, low, high, number) for number, (low, high) in numbered]
 
 
-def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Extremes:
+def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> SceneExtremes:
     """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
     periods = {
         None if motion.period is None else float(motion.period) for _, motion in whole.parts if motion.name != "rest"
@@ -119,7 +119,7 @@ def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Extre
         if np.all(np.ptp(values, axis=1) <= _FLAT * np.abs(values).max(axis=1)):
             break
     error = sampler(np.array([found[0][1], found[1][1]])).error
-    return Extremes(
+    return SceneExtremes(
         quantity, column.unit, found[0][0], found[0][1], found[1][0], found[1][1], error, float(end), repeats
     )
 

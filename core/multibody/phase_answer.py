@@ -12,9 +12,9 @@ from core.errors import InvalidParameter, NotApplicable
 from core.multibody.answer import (
     BodyAcceleration,
     ForceAnswer,
+    MotionPhase,
     SceneAnswer,
     SceneModel,
-    ScenePhase,
     SceneProblem,
 )
 from core.multibody.columns import Columns, require_reached, scales_of, worst
@@ -133,7 +133,7 @@ def _noticed(motion: PhaseMotion) -> list[str]:
     return list(dict.fromkeys(motion.noticed))
 
 
-def _told(phase: Phase, motion: PhaseMotion) -> ScenePhase:
+def _told(phase: Phase, motion: PhaseMotion) -> MotionPhase:
     model = phase.models[0]
     names = list(dict.fromkeys(part.name for _, part in model.whole.parts))
     if phase.bounces is not None:
@@ -147,7 +147,7 @@ def _told(phase: Phase, motion: PhaseMotion) -> ScenePhase:
         name, why = names[0], model.whole.parts[0][1].why
     else:
         name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
-    return ScenePhase(
+    return MotionPhase(
         nearest(phase.start),
         None if phase.end is None else nearest(phase.end),
         name,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence, Sized
 from dataclasses import replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -41,18 +41,7 @@ Output = Literal[
     "paths-in-time",
     "equilibria",
 ]
-OUTPUTS: tuple[Output, ...] = (
-    "accelerations",
-    "forces",
-    "energy",
-    "trajectory",
-    "forces-in-time",
-    "energy-in-time",
-    "momenta-in-time",
-    "work-in-time",
-    "paths-in-time",
-    "equilibria",
-)
+OUTPUTS: tuple[Output, ...] = get_args(Output)
 DEFAULT_OUTPUTS: tuple[Output, ...] = ("accelerations", "forces", "energy", "trajectory")
 
 

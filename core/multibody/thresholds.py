@@ -168,7 +168,7 @@ def _end(varied: _Varied, inside: Ball, bound: Ball) -> RestEnd:
         if not varied.rests(outside):
             return _bisected(varied, inside, outside)
         inside = outside
-    return RestEnd(nearest(bound), 0.0, None)
+    return RestEnd(nearest(bound), 0.0, None, None)
 
 
 def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
@@ -190,4 +190,4 @@ def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
     states = decided(table, unilateral, varied.touching, table.q, table.v)
     if isinstance(states, Problem):
         return RestEnd(value, error, {}, states.code)
-    return RestEnd(value, error, {unilateral[i].name: states[i].value for i in varied.touching})
+    return RestEnd(value, error, {unilateral[i].name: states[i].value for i in varied.touching}, None)

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError, NotApplicable, inside_field
 from core.multibody.along import Along
-from core.multibody.answer import Extremes, Occurrence, SceneEvent
+from core.multibody.answer import Occurrence, SceneEvent, SceneExtremes
 from core.multibody.columns import (
     COLUMNS_OF_STATES,
     FINEST,
@@ -252,7 +252,9 @@ class DescribedSystem:
             output in ("work-in-time", "paths-in-time") or not isinstance(output, str) for output in self.outputs
         )
 
-    def searched(self, found: Trajectory, times: Floats) -> tuple[tuple[Occurrence, ...], tuple[Extremes, ...]] | None:
+    def searched(
+        self, found: Trajectory, times: Floats
+    ) -> tuple[tuple[Occurrence, ...], tuple[SceneExtremes, ...]] | None:
         """Return when quantities take values and how large they become, between the start and the latest of the times.
 
         None where no search is among the outputs.
@@ -262,7 +264,7 @@ class DescribedSystem:
         end = min((event.time for event in found.events if event.time >= 0.0), default=np.inf)
         end = min(end, float(np.max(times)))
         times_found: list[Occurrence] = []
-        ranges: list[Extremes] = []
+        ranges: list[SceneExtremes] = []
         with np.errstate(over="ignore", invalid="ignore"):
             for index, output in enumerate(self.outputs):
                 if isinstance(output, When):

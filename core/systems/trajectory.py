@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 
@@ -125,18 +125,6 @@ class Work:
     step: Duration | None = None
 
 
-class Event(Protocol):
-    """Something that happens at an instant, and may end a motion."""
-
-    @property
-    def kind(self) -> str:
-        """What happens."""
-
-    @property
-    def time(self) -> float | None:
-        """When, from the given state (s); None where no double holds it."""
-
-
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """Samples of a motion.
@@ -158,8 +146,8 @@ class Trajectory:
         `HORIZON`, or the event that ended the motion before it.
     rows : ndarray of int, shape (n,), or None
         Which of the times of the question these are; None for all.
-    events : sequence of Event
-        What happens in the motion.
+    events : sequence
+        What happens in the motion, each with its `kind` and its `time`.
     warnings : tuple of Notice
         What the reader of the samples should know.
     """

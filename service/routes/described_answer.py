@@ -6,6 +6,7 @@ from typing import Annotated, Generic, Literal
 
 from pydantic import Field
 
+from core.multibody.answer import MotionPhase, RestRange, SceneExtremes, SceneProblem
 from core.quantities import Unit
 from core.systems.trajectory import Work
 from service.schemas import Envelope, Joules, N, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
@@ -115,32 +116,6 @@ class EndEvent(View):
     energy_loss: Joules[float] = Field(description="Of an impact; of several at once, it stands with the first.")
 
 
-class MotionPhase(View):
-    """A time in which no contact, stop or string changes its state."""
-
-    start: Seconds[float]
-    end: Seconds[float] | None = Field(description="null for the last.")
-    model: str
-    why: str
-    degrees_of_freedom: int
-    coordinates: int = Field(description="Coordinates that remain.")
-    states: dict[str, str] = Field(description="By contact, stop or string: open, closed, stick, slide, slide back.")
-
-
-class SceneProblem(View):
-    """Something that mechanics does not decide: the motion ends there."""
-
-    code: str = Field(
-        description="no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, "
-        "several-impacts, no-impact, energy-gain or no-progress."
-    )
-    explanation: str
-    time: Seconds[float]
-    connections: list[str] = Field(description="Between which it is undecided.")
-    candidates: list[dict[str, str]] = Field(description="What is possible.")
-    decided_by: str = Field(description="Which further assumption would decide it.")
-
-
 class SceneOccurrence(View):
     """A time at which a quantity takes the requested value."""
 
@@ -151,40 +126,6 @@ class SceneOccurrence(View):
     time: Seconds[float]
     error: Seconds[float] = Field(description="Of the time.")
     how: How = Field(description="How the error of the quantity is known.")
-
-
-class SceneExtremes(View):
-    """Least and largest value of a quantity."""
-
-    quantity: str
-    unit: str
-    least: Annotated[float, OwnUnit]
-    least_time: Seconds[float]
-    largest: Annotated[float, OwnUnit]
-    largest_time: Seconds[float] = Field(description="Near a smooth extreme known to half of the digits only.")
-    error: Annotated[float, OwnUnit] = Field(description="Of both values.")
-    until: Seconds[float] = Field(description="End of what was searched, from the start.")
-    periodic: bool = Field(description="Whether that is a period, so that the extremes are those of all time.")
-
-
-class RestEnd(View):
-    """One end of the range of a number in which a scene stays at rest."""
-
-    value: Annotated[float, OwnUnit]
-    error: Annotated[float, OwnUnit]
-    beyond: dict[str, str] | None = Field(
-        description="What the contacts that touch do just beyond; null where rest lasts up to the bound."
-    )
-    problem: str | None = Field(description="Code of what is undecided just beyond.")
-
-
-class RestRange(View):
-    """In which range of a number a scene stays at rest."""
-
-    vary: str = Field(description="JSON pointer of the number.")
-    written: Annotated[float, OwnUnit] = Field(description="Its value in the scene.")
-    lower: RestEnd | None = Field(description="null where the scene does not rest as it is written.")
-    upper: RestEnd | None
 
 
 class SceneEquilibrium(View):
