@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 from core.compiled import kernel
 from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import Family
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 
 @kernel(steps_by(VECTOR_FIELD))
@@ -103,7 +103,7 @@ class SemiImplicitEuler(FixedStep):
     family: ClassVar[Family] = "explicit"
     work_vectors: ClassVar[int] = 1
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return int(system.initial_state.size)
 
     def _compiled(self) -> Any:
@@ -127,7 +127,7 @@ class ExplicitMidpoint(FixedStep):
     family: ClassVar[Family] = "explicit"
     work_vectors: ClassVar[int] = 2
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2
 
     def _compiled(self) -> Any:
@@ -151,7 +151,7 @@ class Heun(FixedStep):
     family: ClassVar[Family] = "explicit"
     work_vectors: ClassVar[int] = 3
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2
 
     def _compiled(self) -> Any:

@@ -14,9 +14,6 @@ from service.responses.linear_svg import Line, Panel
 
 Floats = NDArray[np.float64]
 
-AXES = {2: "12", 3: "xyz", 4: "wxyz"}
-"""Names of the components of pairs, vectors and quaternions, by their number."""
-
 
 @dataclass(frozen=True)
 class Column:
@@ -26,11 +23,14 @@ class Column:
     ----------
     name, unit : str
     values : ndarray, shape (n,) or (n, k)
+    components : str
+        Their names, a letter each; those of quaternions are w, x, y, z.
     """
 
     name: str
     unit: str
     values: Floats
+    components: str = "xyz"
 
 
 def numbers(values: Any) -> Floats:
@@ -62,5 +62,6 @@ def _lines(column: Column, time: Floats, values: Floats) -> Iterator[Line]:
     if values.ndim == 1:
         yield Line(column.name, time, values)
         return
-    for k, axis in enumerate(AXES[values.shape[1]]):
-        yield Line(f"{column.name}.{axis}", time, values[:, k])
+    components = "wxyz" if values.shape[1] == 4 else column.components
+    for k in range(values.shape[1]):
+        yield Line(f"{column.name}.{components[k]}", time, values[:, k])

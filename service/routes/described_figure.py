@@ -6,7 +6,7 @@ import numpy as np
 
 from core.errors import InvalidParameter
 from service.responses.linear_svg import Line, Panel, panels
-from service.responses.motion_svg import Column, over_time
+from service.responses.motion_svg import Column, numbers, over_time
 from service.routing import Answer
 
 
@@ -21,19 +21,14 @@ def drawn(answer: Answer) -> bytes:
     motion = answer.get("trajectory")
     if motion is None:
         raise InvalidParameter("times", "be given where a figure is wanted", remedy="give times, or accept JSON")
-    order = np.argsort(motion["time"], kind="stable")
-    places = {
-        name: column["values"]
-        for name, column in motion["columns"].items()
-        if name.endswith(".position") and column["values"].shape[1] == 2
-    }
+    order = np.argsort(numbers(motion["time"]), kind="stable")
+    samples = {name: numbers(column["values"]) for name, column in motion["columns"].items()}
+    places = {name: one for name, one in samples.items() if name.endswith(".position") and one.shape[1] == 2}
     paths = [
         Line(name.removesuffix(".position"), values[order, 0], values[order, 1]) for name, values in places.items()
     ]
     columns = [
-        Column(name, column["unit"], column["values"])
-        for name, column in motion["columns"].items()
-        if name not in places
+        Column(name, column["unit"], samples[name]) for name, column in motion["columns"].items() if name not in places
     ]
     shown = [Panel("x (m)", "y (m)", paths, one_scale=True)] if paths else []
     title = f"Motion by {answer.get('method') or answer['model']['name']}"

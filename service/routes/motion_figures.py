@@ -58,7 +58,7 @@ def scene_drawing(view: Any) -> Callable[[Answer], bytes]:
         if motion is None:
             raise InvalidParameter("times", "be given, and trajectory among the outputs, for a figure", remedy=REMEDY)
         columns = [
-            Column(name, unit_at(view, ("trajectory", name, 0)) or "1", numbers(values))
+            Column(name, unit_at(view, ("trajectory", name, 0)) or "1", numbers(values), "12")
             for name, values in motion.items()
             if name != "time" and values is not None
         ]

@@ -115,6 +115,11 @@ OPERATIONS: Mapping[str, Operation] = {
         "/v1/certified/scenes/chain-on-wedge",
         "An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven",
     ),
+    "certified_described_scene": Operation(
+        "POST",
+        "/v1/certified/scenes",
+        "A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven",
+    ),
     "plan": Operation(
         "POST", "/v1/plan", "Model, method, cost, error and refusals of any other question, which is not answered"
     ),
@@ -334,6 +339,18 @@ class Operations(ABC):
     def certified_scene_chain_on_wedge_svg(self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]) -> str:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven, as a drawing."""
         found: str = self._ask("certified_scene_chain_on_wedge", question, "image/svg+xml")
+        return found
+
+    def certified_described_scene(
+        self, **question: Unpack[documents.CertifiedSceneRequest]
+    ) -> documents.CertifiedDescribedAnswer:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven."""
+        found: documents.CertifiedDescribedAnswer = self._ask("certified_described_scene", question, None)
+        return found
+
+    def certified_described_scene_svg(self, **question: Unpack[documents.CertifiedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven, as a drawing."""
+        found: str = self._ask("certified_described_scene", question, "image/svg+xml")
         return found
 
     def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
@@ -605,6 +622,18 @@ class AsyncOperations(ABC):
     ) -> str:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven, as a drawing."""
         found: str = await self._ask("certified_scene_chain_on_wedge", question, "image/svg+xml")
+        return found
+
+    async def certified_described_scene(
+        self, **question: Unpack[documents.CertifiedSceneRequest]
+    ) -> documents.CertifiedDescribedAnswer:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven."""
+        found: documents.CertifiedDescribedAnswer = await self._ask("certified_described_scene", question, None)
+        return found
+
+    async def certified_described_scene_svg(self, **question: Unpack[documents.CertifiedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_described_scene", question, "image/svg+xml")
         return found
 
     async def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:

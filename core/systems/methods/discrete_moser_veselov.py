@@ -21,7 +21,7 @@ from core.errors import NotApplicable
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
-from core.systems.system import DISCRETE_STEP, Floats, Integers, System
+from core.systems.system import DISCRETE_STEP, Floats, InitialValueProblem, Integers
 
 
 @kernel(steps_by(DISCRETE_STEP))
@@ -71,17 +71,17 @@ class DiscreteMoserVeselov(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         self._law(system)
         return 1
 
     def _compiled(self) -> Any:
         return _advance
 
-    def _carried(self, system: System, start: Floats) -> tuple[Floats, int]:
+    def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
         return np.stack([start, np.zeros_like(start)]), 0
 
-    def _law(self, system: System) -> Any:
+    def _law(self, system: InitialValueProblem) -> Any:
         discrete = system.structure.discrete
         if discrete is None:
             raise NotApplicable(

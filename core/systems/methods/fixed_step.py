@@ -34,8 +34,8 @@ from core.systems.system import (
     PROJECTION,
     VECTOR_FIELD,
     Floats,
+    InitialValueProblem,
     Integers,
-    System,
     unconstrained,
 )
 
@@ -193,19 +193,19 @@ class FixedStep(Marching):
         return Halved(self)
 
     @abstractmethod
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         """Return the evaluations that every step needs, as long as iterations need no more."""
 
     @abstractmethod
     def _compiled(self) -> Any:
         """Return the compiled steps, to be called as `steps_by` says."""
 
-    def _carried(self, system: System, start: Floats) -> tuple[Floats, int]:
+    def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
         """Return what the first step starts from, with the state as its first row, and the evaluations it took."""
         return start[None].copy(), 0
 
-    def _law(self, system: System) -> Any:
-        """Return what the steps evaluates: the equation of motion, unless the method goes by another law.
+    def _law(self, system: InitialValueProblem) -> Any:
+        """Return what the steps evaluate: the equation of motion, unless the method goes by another law.
 
         Raises
         ------
@@ -214,11 +214,11 @@ class FixedStep(Marching):
         """
         return system.equation
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         return self._march_divided(system, start, targets, limit, units, 1)
 
     def _march_divided(
-        self, system: System, start: Floats, targets: Floats, limit: int, units: Units, parts: int
+        self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units, parts: int
     ) -> Leg:
         """March as `_march` does, with every step divided into `parts`."""
         shape = (targets.size, 2)
@@ -269,5 +269,5 @@ class Halved(Marching):
         """Return None: it is there to compare with, not to go on from."""
         return None
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         return self.method._march_divided(system, start, targets, limit, units, 2)

@@ -20,7 +20,7 @@ from core.double_double import two_sum
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family, Invariance
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 ITERATIONS = 100
 
@@ -96,13 +96,13 @@ class ImplicitMidpoint(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 1
 
     def _compiled(self) -> Any:
         return _advance
 
-    def _carried(self, system: System, start: Floats) -> tuple[Floats, int]:
+    def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
         # The slope of the last step is the first guess; for the first step it is the one at the start.
         carried = np.zeros((3, start.size))
         carried[0] = start

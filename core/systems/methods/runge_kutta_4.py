@@ -15,7 +15,7 @@ from core.compiled import kernel
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 
 @kernel(steps_by(VECTOR_FIELD))
@@ -77,7 +77,7 @@ class RungeKutta4(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 4
 
     def _compiled(self) -> Any:

@@ -17,7 +17,7 @@ from core.errors import NotApplicable
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
-from core.systems.system import PART_FLOW, Floats, Integers, Splitting, System
+from core.systems.system import PART_FLOW, Floats, InitialValueProblem, Integers, Splitting
 
 
 @kernel(steps_by(PART_FLOW))
@@ -68,16 +68,16 @@ class SymmetricSplitting(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2 * self._splitting(system).parts - 1
 
     def _compiled(self) -> Any:
         return _advance
 
-    def _law(self, system: System) -> Any:
+    def _law(self, system: InitialValueProblem) -> Any:
         return self._splitting(system).flow
 
-    def _splitting(self, system: System) -> Splitting:
+    def _splitting(self, system: InitialValueProblem) -> Splitting:
         splitting = system.structure.splitting
         if splitting is None:
             raise NotApplicable(
