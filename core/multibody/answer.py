@@ -335,13 +335,13 @@ class ScenePhase:
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """Something that mechanics does not decide.
+    """Something that mechanics does not decide, or that is not followed any further.
 
     Attributes
     ----------
     code : str
         "no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "several-impacts", "no-impact",
-        "energy-gain" or "no-progress".
+        "energy-gain", "no-progress", "event-limit" or "lost-event".
     explanation : str
     time : float
     connections : tuple of str

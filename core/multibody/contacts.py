@@ -62,7 +62,11 @@ def bounciness(measures: Measures, connection: Any, path: Path) -> tuple[Ball, B
     if connection.restitution is not None:
         restitution = measures.numerals.number(connection.restitution, (*path, "restitution"))
         if restitution < 0 or restitution > 1:
-            raise InvalidParameter((*path, "restitution"), "be at least 0 and at most 1")
+            raise InvalidParameter(
+                (*path, "restitution"),
+                "be at least 0 and at most 1",
+                remedy="it is the speed apart over the speed together: 1 is elastic, 0 leaves both in touch",
+            )
     if connection.order is not None:
         order = measures.numerals.number(connection.order, (*path, "order"))
     return restitution, order
@@ -142,11 +146,15 @@ def _sum(*rates: Rate) -> Rate:
 def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
     point, radius, rolls = _rim(measures, connection.place, (*path, "place"))
     where, on = (*path, "on"), connection.on
-    if point.body is None:
-        raise InvalidParameter((*path, "place"), "belong to a body")
     if not isinstance(on, Mapping) or "at" not in on:
         raise InvalidParameter((*where, "at"), "be given")
     at = measures.coordinates.point(on["at"], (*where, "at"))
+    if point.body is None and at.body is None:
+        raise InvalidParameter(
+            (*path, "place"),
+            "belong to a body: a fixed point does not move on what is fixed",
+            remedy='name a body or a place of one, as "rod.end"; or let the face in "on" be that of a body',
+        )
     if at.body == point.body:
         raise InvalidParameter((*where, "at"), "belong to another body than the place")
     keys = set(on) - {"at"}

@@ -150,11 +150,19 @@ def _group(
         "several contacts take impulses at once, and rigid bodies do not say in which order",
         names,
         tuple(
-            {"order": told} | {unilateral[i].name: f"opens at {float(then[normal[i]]):.10g}" for i in group}
+            {"order": told} | {unilateral[i].name: _told(unilateral[i], normal[i], then) for i in group}
             for told, then in different
         ),
         'the order in which they happen, as "order" of the contacts',
     )
+
+
+def _told(one: Unilateral, line: int, after: Rates) -> str:
+    """Return in words how a gap changes after an impact; what is left of a zero by rounding is zero."""
+    rate = float(after[line])
+    if abs(rate) <= LIMIT * max(abs(float(x)) for x in after.values()):
+        return "stays closed"
+    return f"opens at {rate:.10g} {'rad/s' if one.unit == 'N m' else 'm/s'}"
 
 
 def _endless(names: tuple[str, ...]) -> Problem:

@@ -395,9 +395,18 @@ class Scene:
                 check_name(given, ("connections", i, "name"))
             name = f"{connection.kind}-{i + 1}" if given is None else given
             if name in found or name in self.bodies:
-                raise InvalidParameter(("connections", i, "name"), f'be a name of its own; "{name}" has another owner')
+                raise InvalidParameter(
+                    ("connections", i, "name"),
+                    f'be a name of its own; "{name}" has another owner',
+                    remedy=f'call it "{_unlike(name, {*found, *self.bodies})}", say',
+                )
             found[name] = i
         return tuple(found)
+
+
+def _unlike(name: str, others: set[str]) -> str:
+    """Return a name followed by the first number that makes it another."""
+    return next(new for k in range(2, len(others) + 3) if (new := f"{name[: LONGEST_NAME - 5]}-{k}") not in others)
 
 
 def check_name(name: object, path: Path) -> None:

@@ -209,11 +209,12 @@ def _trajectory(motion: PhaseMotion, asked: AskedMotion) -> SceneTrajectory:
         )
     stated = SceneAccuracy(asked.accuracy, worst(columns), how)
     if stated.error > asked.accuracy:
+        lost = next((float(times[mine[0]]) for mine, own in pieces if worst(own) > asked.accuracy), times[-1])
         raise AccuracyUnreachable(
             asked.accuracy,
             stated.error,
             "the motion amplifies rounding, even that of pairs of doubles",
-            remedy="ask for a shorter time or a larger accuracy",
+            remedy=f"ask for times before {lost:.6g} s, or for a larger accuracy",
         )
     if asked.input_uncertainty is not None:
         stated = replace(stated, why=_NOT_KNOWN)

@@ -13,7 +13,7 @@ from dataclasses import replace
 from flint import arb
 
 from core.balls import precision
-from core.errors import BudgetExceeded
+from core.errors import AccuracyUnreachable
 from core.multibody.answer import SceneEvent
 from core.multibody.complementarity import decided
 from core.multibody.contact_responses import gap_rate
@@ -57,8 +57,8 @@ def motion_in_phases(scene: Scene, end: float) -> PhaseMotion:
     ------
     InvalidParameter
         For a scene that cannot be.
-    BudgetExceeded
-        For more events than one question may have.
+    AccuracyUnreachable
+        If the first event cannot be located; a later one ends the motion.
     """
     for bits in (BITS, *FINER_BITS):
         with precision(bits):
@@ -101,17 +101,24 @@ class _Run:
             self.motion.phases.append(phase)
             if self._accumulate(phase):
                 continue
-            if not self._advance(phase):
+            try:
+                if not self._advance(phase):
+                    return
+            except AccuracyUnreachable as lost:
+                if len(self.motion.phases) == 1:
+                    raise
+                self._stop(Problem("lost-event", lost.detail, (), decided_by="an answer up to an earlier time"))
                 return
             now = float(self.tracks.time)
             still, last = (still + 1, last) if now <= last else (0, now)
             if still > _STILL:
                 self._stop(Problem("no-progress", "events follow one another without any time between them", ()))
                 return
-            if len(self.motion.events) > MOST_EVENTS:
-                raise BudgetExceeded(
-                    "events", len(self.motion.events), MOST_EVENTS, path=("times",), remedy="ask for a shorter time"
-                )
+            if len(self.motion.events) >= MOST_EVENTS:
+                explanation = f"{MOST_EVENTS} events are as many as one question may have, and more would follow"
+                decided_by = "another question, from the state that is answered last"
+                self._stop(Problem("event-limit", explanation, (), decided_by=decided_by))
+                return
 
     def _stop(self, problem: Problem) -> None:
         """End the motion where mechanics does not decide."""
@@ -139,6 +146,9 @@ class _Run:
                 tracks.floor = max(tracks.floor, share)
                 tracks.part(self.motion.phases[-1].still, share)
                 q, v = tracks.wide()
+                # What is within that of another contact touches it.
+                near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
+                self.touching = sorted({*self.touching, *near})
             outcome = impact(table, unilateral, self.touching, q, v)
             if isinstance(outcome, Problem):
                 self._stop(outcome)
@@ -258,8 +268,10 @@ class _Run:
             ]
             if not self.tracks.exact:
                 # Over the bounces the acceleration changes in proportion to their length.
-                share = 0.0 if found.exact else (float(length) / own_time) ** 2
-                self.tracks.part(phase.still, max(FLOOR, share))
+                part = 0.0 if found.exact else float(length) / own_time
+                self.tracks.part(phase.still, max(FLOOR, part**2), max(FLOOR, part**3))
+                if part:
+                    self.tracks.delay(own_time * part**2)
             self.touching = sorted({*(j for j, s in enumerate(phase.states) if s is not State.OPEN), i})
             self._event("settle", self.unilateral[i].name)
             self.bounced = {}
