@@ -21,7 +21,7 @@ from core.multibody.contact_states import State
 from core.multibody.dynamics import weightless
 from core.multibody.expansion import saddle
 from core.multibody.measures import Unilateral
-from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero
+from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero
 from core.multibody.rank import independent
 from core.multibody.table import Row, Table
 
@@ -39,7 +39,7 @@ def rate_along(line: Mapping[int, Ball], v: Sequence[Ball]) -> Ball:
 
 def gap_rate(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> Ball:
     """Return the rate of a gap."""
-    return sum((evaluated(poly, q) * v[j] for j, poly in gradient(one.gap).items()), ZERO)
+    return sum((evaluated(poly, q) * v[j] for j, poly in one.normal.items()), ZERO)
 
 
 def slip_rate(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> Ball:
@@ -141,7 +141,7 @@ def responses(table: Table, unilateral: Sequence[Unilateral], chosen: Sequence[i
     for i in chosen:
         one = unilateral[i]
         normal[i] = len(rows)
-        rows.append(Row.held(one.name, one.gap))
+        rows.append(Row(one.name, one.gap, one.normal))
         if one.slip is not None:
             slips[i] = len(rows)
             rows.append(Row(one.name, None, one.slip))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from core.multibody.measures import Force, Unilateral
-from core.multibody.polynomials import ONE, Ball, combined, constant, gradient
+from core.multibody.polynomials import ONE, Ball, combined, constant
 from core.multibody.table import Rates, Row, Table
 
 
@@ -104,7 +104,7 @@ def phase_table(
             factor = -state.sense * one.kinetic
             drag = {j: scaled for j, poly in one.slip.items() if (scaled := combined((factor, poly)))}
         normal[-1] = len(table.rows)
-        table.rows.append(Row(one.name, one.gap, gradient(one.gap), drag=drag))
+        table.rows.append(Row(one.name, one.gap, one.normal, drag=drag))
         if state is State.STICK and one.slip is not None:
             slip[-1] = len(table.rows)
             table.rows.append(Row(one.name, None, one.slip))

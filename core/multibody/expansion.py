@@ -151,9 +151,14 @@ class _Entry:
 
     def __init__(self, slopes: Mapping[int, Ball], places: Sequence[Series]) -> None:
         self.slopes, self.places = slopes, places
+        self._known: dict[int, Ball] = {}
 
     def __call__(self, power: int) -> Ball:
-        return sum((x * self.places[i][power] for i, x in self.slopes.items()), ZERO)
+        found = self._known.get(power)
+        if found is None:
+            found = sum((x * self.places[i][power] for i, x in self.slopes.items()), ZERO)
+            self._known[power] = found
+        return found
 
 
 def _varying(line: Rates, places: Sequence[Series]) -> dict[int, _Entry]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from core.errors import InvalidParameter, Path
@@ -24,6 +25,7 @@ from core.multibody.polynomials import (
     difference,
     dot,
     evaluated,
+    gradient,
     is_zero,
     product,
 )
@@ -134,6 +136,11 @@ class Unilateral:
     rolls: bool = False
     unit: str = "N"
     order: Ball | None = None
+
+    @cached_property
+    def normal(self) -> Rate:
+        """The gradient of the gap: its rate as a linear form."""
+        return gradient(self.gap)
 
 
 class Measures:

@@ -25,7 +25,7 @@ from core.multibody.language import Scene
 from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phase_ends import crossings_of
-from core.multibody.polynomials import BITS, ZERO, evaluated, is_zero
+from core.multibody.polynomials import ZERO, evaluated, is_zero
 from core.multibody.recurring_bounces import LISTED, recurring
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
@@ -34,8 +34,8 @@ MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
 SLOW = 2.0**-42
 """Share of the largest rate below which several contacts that bounce in turn come to rest."""
-FINER_BITS = (1280,)
-"""Precisions in which a motion in closed form is tried again whose balls have become wide."""
+PRECISIONS = (480, 1280)
+"""Precisions of a motion: the second where, in closed form, balls have become wide. An impact takes three bits."""
 EXACT = 2.0**-130
 """Share up to which the width of a state in balls is nothing."""
 _STILL = 60
@@ -60,9 +60,9 @@ def motion_in_phases(scene: Scene, end: float) -> PhaseMotion:
     AccuracyUnreachable
         If the first event cannot be located; a later one ends the motion.
     """
-    for bits in (BITS, *FINER_BITS):
+    for bits in PRECISIONS:
         with precision(bits):
-            run = _Run(described(scene, one_sided=True), end, last=bits == FINER_BITS[-1])
+            run = _Run(described(scene, one_sided=True), end, last=bits == PRECISIONS[-1])
             try:
                 run.go()
             except _TooWide:
