@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.errors import InvalidParameter, Path
+from core.multibody.contacts_in_space import contact_in_space
 from core.multibody.coordinates import Point, Rate
 from core.multibody.language import GROUND
 from core.multibody.measures import Measures, Unilateral
@@ -26,13 +27,27 @@ def contact(measures: Measures, name: str, connection: Any, path: Path) -> None:
     InvalidParameter
         Where it names nothing that can touch, or coefficients out of their ranges.
     """
-    if measures.dimension != 2:
-        raise InvalidParameter(
-            (*path, "kind"), "be used in the plane: contacts in space are not answered yet", remedy="describe a plane"
-        )
     static, kinetic = _friction(measures, connection.friction, (*path, "friction"))
     restitution, order = bounciness(measures, connection, path)
     rubs = not is_zero(static)
+    if measures.dimension == 3:
+        touching = contact_in_space(measures, connection, path, rubs=rubs)
+        slips = touching.slips or (None, None)
+        measures.unilateral.append(
+            Unilateral(
+                name,
+                touching.gap,
+                slips[0],
+                static,
+                kinetic,
+                restitution,
+                rolls=touching.rolls,
+                order=order,
+                across=slips[1],
+                tangents=touching.tangents,
+            )
+        )
+        return
     if connection.measure == "turn":
         if rubs:
             raise InvalidParameter((*path, "friction"), "be left out of a stop that limits a turn")

@@ -14,12 +14,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
 
-from core.multibody.contact_responses import Forces, Responses, gap_rate, require_few, responses, slip_rate
+from core.multibody.contact_responses import (
+    Forces,
+    Responses,
+    across_rate,
+    gap_rate,
+    require_few,
+    responses,
+    slip_rate,
+)
 from core.multibody.contact_states import Problem, phase_table
 from core.multibody.dynamics import kinetic
 from core.multibody.impulses import LIMIT, Rates, alike, impulses_at_once, rates_after
 from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ZERO, Ball, is_zero
+from core.multibody.slip_directions import along_slip
 from core.multibody.table import Table
 
 _MOST_IN_TURN = 400
@@ -36,8 +45,10 @@ class Impact:
     ----------
     v : list of ball
         Rates afterwards.
-    impulses : mapping of int to (ball, ball)
-        Of every measure that takes one: along its gap, and along its slip.
+    impulses : mapping of int to (ball, ball, ball)
+        Of every measure that takes one: along its gap, and along its slip, of which there are two in space.
+    unilateral : sequence of Unilateral
+        The measures, those that slip in space turned into the direction in which they did.
     loss : ball
         Kinetic energy that is lost.
     together : bool
@@ -45,8 +56,9 @@ class Impact:
     """
 
     v: list[Ball]
-    impulses: dict[int, tuple[Ball, Ball]]
+    impulses: dict[int, tuple[Ball, Ball, Ball]]
     loss: Ball
+    unilateral: Sequence[Unilateral]
     together: bool = False
 
 
@@ -58,7 +70,7 @@ def approaching(unilateral: Sequence[Unilateral], touching: Sequence[int], q: li
 
 def impact(
     base: Table,
-    unilateral: Sequence[Unilateral],
+    measures: Sequence[Unilateral],
     touching: Sequence[int],
     q: list[Ball],
     v: list[Ball],
@@ -75,8 +87,9 @@ def impact(
         For more than eight touching contacts that push one another.
     """
     table = phase_table(base, (), (), q, v).table
+    unilateral = along_slip(measures, touching, q, v)
     found = responses(table, unilateral, touching)
-    normal, slips = found.normal, found.slips
+    normal, slips, across = found.normal, found.slips, found.across
     before = kinetic(table)
     after, impulses, together = list(v), {}, False
     for group in found.clusters():
@@ -91,7 +104,8 @@ def impact(
                 after = [a + x * y for a, y in zip(after, found.columns[b], strict=True)]
         taking = [i for i in group if outcome.get(normal[i], ZERO) != 0]
         together = together or len(taking) > 1
-        impulses.update({i: (outcome[normal[i]], outcome.get(slips.get(i, -1), ZERO)) for i in taking})
+        rubs = [[outcome.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
+        impulses.update({i: (outcome[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
     loss = before - kinetic(replace(table, v=after))
     if not is_zero(loss) and loss < 0 and not settled:
         return Problem(
@@ -100,7 +114,7 @@ def impact(
             tuple(unilateral[i].name for i in impulses),
             decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
         )
-    return Impact(after, impulses, ZERO if is_zero(loss) else loss, together)
+    return Impact(after, impulses, ZERO if is_zero(loss) else loss, unilateral, together)
 
 
 def _group(
@@ -116,6 +130,7 @@ def _group(
     normal, slips = found.normal, found.slips
     rates = {normal[i]: gap_rate(unilateral[i], q, v) for i in group}
     rates |= {slips[i]: slip_rate(unilateral[i], q, v) for i in group if i in slips}
+    rates |= {line: across_rate(unilateral[i], q, v) for i in group if (line := found.across.get(i)) is not None}
     rates = {a: ZERO if is_zero(x) else x for a, x in rates.items()}
     names = tuple(unilateral[i].name for i in group)
     given = [i for i in group if unilateral[i].order is not None]

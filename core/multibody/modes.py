@@ -189,7 +189,7 @@ class Modes:
         ]
 
     def _seen(self, start: list[Ball]) -> list[int]:
-        """Return what is not zero for ever: what is zero at the start and stays so would make the root zero multiple."""
+        """Return what is not zero for ever: what stays zero would only make the root zero multiple."""
         seen = {i for i, x in enumerate(start) if not is_zero(x)}
         while True:
             more = {i for i, row in enumerate(self.matrix) if any(not is_zero(row[j]) for j in seen)} - seen

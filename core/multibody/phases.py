@@ -15,13 +15,14 @@ from flint import arb
 from core.balls import precision
 from core.errors import AccuracyUnreachable
 from core.multibody.answer import SceneEvent
-from core.multibody.complementarity import decided
-from core.multibody.contact_responses import gap_rate
+from core.multibody.complementarity import LOOKED, Decided, decided
+from core.multibody.contact_responses import gap_rate, slip_rate
 from core.multibody.contact_start import assemble_contacts
-from core.multibody.contact_states import Problem, State, change_of
+from core.multibody.contact_states import Problem, State, change_of, phase_table
 from core.multibody.description import Described, described
 from core.multibody.impacts import Impact, approaching, impact
 from core.multibody.language import Scene
+from core.multibody.measures import COMPONENTS
 from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phase_ends import crossings_of
@@ -29,6 +30,7 @@ from core.multibody.polynomials import ZERO, evaluated, is_zero
 from core.multibody.recurring_bounces import LISTED, recurring
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
+from core.multibody.turning_slip import turns
 
 MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
@@ -85,6 +87,8 @@ class _Run:
         table = base.measures.table
         self.tracks = Tracks(table.units, table.q, table.v)
         self.states = [State.OPEN] * len(self.unilateral)
+        self.decided = Decided(self.states, list(self.unilateral))
+        self.turning: list[str] = []
         self.bounced: dict[int, int] = {}
 
     def go(self) -> None:
@@ -97,7 +101,7 @@ class _Run:
             if problem is not None:
                 self._stop(problem)
                 return
-            phase = phase_of(self.base, self.states, self.tracks, self.start)
+            phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start)
             self.motion.phases.append(phase)
             if self._accumulate(phase):
                 continue
@@ -185,9 +189,12 @@ class _Run:
         self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
         loss = nearest(outcome.loss)
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
-            one, (push, rub) = self.unilateral[i], outcome.impulses[i]
+            one, (push, rub, beside) = outcome.unilateral[i], outcome.impulses[i]
             impulses = {"normal": nearest(push)}
-            if one.slip is not None:
+            if one.tangents is not None:
+                for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
+                    impulses[f"friction.{axis}"] = nearest(rub * x + beside * y)
+            elif one.slip is not None:
                 impulses["friction"] = nearest(rub)
             time, late = nearest(self.tracks.time), self.tracks.late()
             self.motion.events.append(SceneEvent(one.closes, one.name, time, late, impulses, loss))
@@ -196,16 +203,27 @@ class _Run:
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""
         q, v = self.tracks.wide()
-        states = decided(self.base.measures.table, self.unilateral, self.touching, q, v)
-        if isinstance(states, Problem):
-            return states
-        for one, old, new in zip(self.unilateral, self.states, states, strict=True):
+        table = self.base.measures.table
+        found = decided(table, self.unilateral, self.touching, q, v)
+        if isinstance(found, Problem):
+            return found
+        now = phase_table(table, found.unilateral, found.states, q, v)
+        self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
+        for one in found.unilateral:
+            if one.name in self.turning and is_zero(slip_rate(one, q, v)):
+                return Problem(
+                    "turning-onset",
+                    "what begins to slide in space would turn the direction of its friction from the first moment on",
+                    (one.name,),
+                    decided_by="a velocity with which it slides already",
+                )
+        for one, old, new in zip(self.unilateral, self.states, found.states, strict=True):
             kind = change_of(one, old, new)
             if kind and self.motion.phases:
                 self._event(kind, one.name)
             if old is not new:
                 self.bounced = {}
-        self.states = states
+        self.decided, self.states = found, found.states
         return None
 
     def _advance(self, phase: Phase) -> bool:
@@ -231,7 +249,7 @@ class _Run:
         if wide and not self.last:
             raise _TooWide
         if wide or not tracks.exact:
-            tracks.part(phase.still)
+            tracks.part(phase.still, phase.share, FLOOR)
         phase.end = tracks.time
         self._meet(phase, first.watch.number)
         return True

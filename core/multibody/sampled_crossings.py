@@ -105,6 +105,9 @@ class Sampled:
                     multipliers = self.whole.multipliers(q, v)
                 assert watch.force is not None
                 found[k], size = self.whole.force(watch.force, q, v, multipliers)
+                if watch.rubs:
+                    rubs = [self.whole.force(rub, q, v, multipliers)[0] for rub in watch.rubs]
+                    found[k] -= np.hypot(*rubs)
                 size = np.maximum(size, float(np.max(np.abs(multipliers), initial=0.0)))
             noise[k] = _NOISE * size
             if glanced:

@@ -301,11 +301,16 @@ def test_what_is_not_answered_is_refused() -> None:
         solve_scene(read(LADDER), [0.1], ("equilibria",))
     with pytest.raises(NotApplicable):
         solve_scene(read(LADDER), [0.1], method=RungeKutta4(step=0.01))
-    space = {
-        "gravity": [0, 0, -9.81],
-        "bodies": {"p": {"mass": 1, "at": [0, 0, 1]}},
-        "connections": [{"kind": "contact", "place": "p", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}],
-    }
-    with pytest.raises(InvalidParameter) as spatial:
-        solve_scene(read(space))
-    assert spatial.value.path == ("connections", 0, "kind")
+    for missing, where, on in (
+        ({"friction": 0.3}, "friction", {"at": "plate", "normal": [0, 0, 1]}),
+        ({}, "on", {"at": [0, 0, 0], "slope": 0}),
+    ):
+        space = {
+            "gravity": [0, 0, -9.81],
+            "bodies": {"p": {"mass": 1, "at": [0, 0, 1]}, "plate": {"mass": 1, "moments": [1, 1, 1], "at": [0, 0, 0]}},
+            "connections": [{"kind": "contact", "place": "p", "on": on, **missing}],
+        }
+        with pytest.raises(InvalidParameter) as spatial:
+            solve_scene(read(space))
+        assert spatial.value.path == ("connections", 0, where)
+        assert spatial.value.remedy is not None
