@@ -7,6 +7,7 @@ summed up.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -27,7 +28,7 @@ from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phase_ends import crossings_of
 from core.multibody.polynomials import ZERO, evaluated, is_zero
-from core.multibody.recurring_bounces import LISTED, recurring
+from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, recurring
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
 from core.multibody.turning_slip import turns
@@ -36,6 +37,8 @@ MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
 SLOW = 2.0**-42
 """Share of the largest rate below which several contacts that bounce in turn come to rest."""
+OFTEN = 3
+"""Impacts among the last ones by which a contact shows that it bounces in turn with others."""
 PRECISIONS = (480, 1280)
 """Precisions of a motion: the second where, in closed form, balls have become wide. An impact takes three bits."""
 EXACT = 2.0**-130
@@ -149,6 +152,7 @@ class _Run:
                 unilateral = [replace(one, restitution=ZERO) for one in self.unilateral]
                 tracks.floor = max(tracks.floor, share)
                 tracks.part(self.motion.phases[-1].still, share)
+                tracks.delay(share * tracks.own_time())
                 q, v = tracks.wide()
                 # What is within that of another contact touches it.
                 near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
@@ -173,7 +177,8 @@ class _Run:
 
     def _slowness(self, hit: Sequence[int]) -> float:
         """Return how slowly what hits does so, as a share of the largest rate, if it has done so often; else 0."""
-        if len(self.motion.events) < LISTED or all(is_zero(self.unilateral[i].restitution) for i in hit):
+        names = Counter(event.name for event in self.motion.events[-2 * LISTED :])
+        if len(self.motion.events) < LISTED or any(names[self.unilateral[i].name] < OFTEN for i in hit):
             return 0.0
         first = self.tracks.first
         share = 0.0
@@ -273,7 +278,8 @@ class _Run:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
         for i, count in self.bounced.items():
             own_time = self.tracks.own_time()
-            found = recurring(self.unilateral, i, count, phase, own_time, arb(self.end))
+            listed = count >= (LISTED if len(self.motion.events) < MANY else LATER_LISTED)
+            found = recurring(self.unilateral, i, phase, own_time, arb(self.end), listed=listed)
             if found is None:
                 continue
             length = found.tails[0].length

@@ -30,8 +30,9 @@ from core.multibody.table import Row, Table
 
 SHORT = 2.0**-30
 """Share of a scene's own time in which the bounces that are left are alike, where they are not exactly so."""
-LISTED = 12
-"""Bounces of one contact that are listed before the rest is summed up."""
+LISTED, LATER_LISTED = 12, 3
+"""Bounces of one contact that are listed before the rest is summed up: at first, and after `MANY` events."""
+MANY = 60
 
 
 @dataclass(frozen=True)
@@ -51,24 +52,24 @@ class Recurring:
 
 
 def recurring(
-    unilateral: Sequence[Unilateral], i: int, count: int, phase: Phase, own_time: float, end: Ball
+    unilateral: Sequence[Unilateral], i: int, phase: Phase, own_time: float, end: Ball, *, listed: bool
 ) -> Recurring | None:
     """Return the bounces of a measure that follow the start of a phase, None where they do not end as they are.
 
     Parameters
     ----------
-    count : int
-        Bounces of the measure so far, in a row.
     own_time : float
         Time in which the scene moves by its own size (s).
     end : ball
         Time up to which the motion is wanted (s).
+    listed : bool
+        Whether enough bounces are listed, so that those that are alike exactly may be summed up.
     """
     one = unilateral[i]
     if phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
         return None
     exact = is_uniform(phase.models[0]) and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
-    if count < LISTED and exact:
+    if exact and not listed:
         return None
     tails = [_tail(unilateral, i, phase, k) for k in range(len(phase.tracks))]
     found = [tail for tail in tails if tail is not None]

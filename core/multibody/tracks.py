@@ -139,9 +139,12 @@ class Tracks:
 
     def settle(self, q: Vector, v: Vector) -> None:
         """Make exact zeros of what a projection leaves of numbers that the rows hold at zero."""
-        for largest, vector in zip(self._largest, (q, v), strict=True):
+        # What hardly turns has no scale of its own.
+        turning = 1.0 / self.own_time()
+        for largest, vector, least in zip(self._largest, (q, v), (0.0, turning), strict=True):
             for i, (unit, x) in enumerate(zip(self.units, vector, strict=True)):
-                if abs(float(x)) <= NOUGHT * largest.get(unit, 0.0):
+                own = largest.get(unit, 0.0)
+                if abs(float(x)) <= NOUGHT * (own if unit == "m" else max(own, least)):
                     vector[i] = ZERO
 
     def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float | None = None) -> None:
