@@ -7,6 +7,7 @@ summed up.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,7 +29,7 @@ from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phase_ends import crossings_of
 from core.multibody.polynomials import ZERO, evaluated, is_zero
-from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, recurring
+from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
 from core.multibody.turning_slip import turns
@@ -180,14 +181,14 @@ class _Run:
         names = Counter(event.name for event in self.motion.events[-2 * LISTED :])
         if len(self.motion.events) < LISTED or any(names[self.unilateral[i].name] < OFTEN for i in hit):
             return 0.0
-        first = self.tracks.first
-        share = 0.0
-        for i in hit:
-            fastest = self.tracks.fastest("rad" if self.unilateral[i].unit == "N m" else "m")
-            if not fastest > 0.0:
-                return 0.0
-            share = max(share, abs(float(gap_rate(self.unilateral[i], first.q, first.v))) / fastest)
+        share = max(self._share(i) for i in hit)
         return share if share < SLOW else 0.0
+
+    def _share(self, i: int) -> float:
+        """Return the rate of a gap as a share of the largest rate so far of its unit."""
+        one, first = self.unilateral[i], self.tracks.first
+        fastest = self.tracks.fastest("rad" if one.unit == "N m" else "m")
+        return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf
 
     def _record(self, hit: Sequence[int], outcome: Impact) -> None:
         """Add the events of an impact, the loss of energy with the first."""
@@ -278,7 +279,8 @@ class _Run:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
         for i, count in self.bounced.items():
             own_time = self.tracks.own_time()
-            listed = count >= (LISTED if len(self.motion.events) < MANY else LATER_LISTED)
+            few = len(self.motion.events) >= MANY or self._share(i) < SMALL
+            listed = count >= (LATER_LISTED if few else LISTED)
             found = recurring(self.unilateral, i, phase, own_time, arb(self.end), listed=listed)
             if found is None:
                 continue

@@ -31,8 +31,10 @@ from core.multibody.table import Row, Table
 SHORT = 2.0**-30
 """Share of a scene's own time in which the bounces that are left are alike, where they are not exactly so."""
 LISTED, LATER_LISTED = 12, 3
-"""Bounces of one contact that are listed before the rest is summed up: at first, and after `MANY` events."""
+"""Bounces of one contact that are listed before the rest is summed up: at first; after `MANY` events, or if small."""
 MANY = 60
+SMALL = 2.0**-20
+"""Share of the largest rate below which bounces are small."""
 
 
 @dataclass(frozen=True)
