@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from flint import arb
 
-from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, NotApplicable
+from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError, NotApplicable
 from core.multibody.answer import (
     BodyAcceleration,
     Column,
@@ -21,8 +21,9 @@ from core.multibody.answer import (
     SceneProblem,
     SceneTrajectory,
 )
-from core.multibody.columns import Columns, worst
+from core.multibody.columns import Columns, relative, worst
 from core.multibody.dynamics import ForceAtStart, forces_at_start, multipliers_at_start
+from core.multibody.inherited_in_phases import inherited_in_phases
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.packed import Floats, nearest, pair
@@ -40,7 +41,6 @@ ANSWERED = ("accelerations", "forces", "energy", "trajectory", "forces-in-time",
 """Outputs that are answered about scenes with contacts."""
 THRESHOLDS = "thresholds"
 """Place of a question about rest among the outputs: it is answered apart from the motion."""
-_NOT_KNOWN = "what the uncertainty of the inputs does is not followed through events"
 
 
 def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
@@ -90,6 +90,10 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
     with np.errstate(over="ignore", invalid="ignore"):
         if len(asked.times):
             trajectory = _trajectory(motion, asked)
+            if asked.input_uncertainty is not None:
+                trajectory = _with_inherited(scene, motion, trajectory, asked)
+            if asked.digits is not None:
+                trajectory = shortened(trajectory, asked.digits)
     started = motion.phases[0] if motion.phases else None
     accelerations: Mapping[str, BodyAcceleration] = {}
     forces: Mapping[str, ForceAnswer] = {}
@@ -192,15 +196,7 @@ def _trajectory(motion: PhaseMotion, asked: AskedMotion) -> SceneTrajectory:
         reached = []
     rows = np.array(reached, dtype=np.int64)
     times = asked.times[rows]
-    which = np.array([_phase_at(motion.phases, float(t)) for t in times], dtype=np.int64)
-    exact = all(_closed(motion.phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if motion.phases else True
-    how: How = "closed form" if exact else "measured against pairs"
-    pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
-    for k in sorted(set(which.tolist())) or ([0] if motion.phases else []):
-        mine = np.flatnonzero(which == k)
-        phase = motion.phases[k]
-        states = _states(phase, times[mine], motion)
-        pieces.append((mine, _columns(phase.models[0], times[mine], states, how, asked.outputs)))
+    pieces, how = _pieces(motion, times, asked.outputs)
     columns = _merged(pieces, len(times))
     bad = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
     if bad:
@@ -216,10 +212,47 @@ def _trajectory(motion: PhaseMotion, asked: AskedMotion) -> SceneTrajectory:
             "the motion amplifies rounding, even that of pairs of doubles",
             remedy=f"ask for times before {lost:.6g} s, or for a larger accuracy",
         )
-    if asked.input_uncertainty is not None:
-        stated = replace(stated, why=_NOT_KNOWN)
-    trajectory = SceneTrajectory(times, rows, columns, stated)
-    return trajectory if asked.digits is None else shortened(trajectory, asked.digits)
+    return SceneTrajectory(times, rows, columns, stated)
+
+
+def _pieces(
+    motion: PhaseMotion, times: Floats, outputs: Sequence[object]
+) -> tuple[list[tuple[np.ndarray, dict[str, Column]]], How]:
+    """Return the columns of every phase, with the numbers of the times in it, and how their errors are known."""
+    which = np.array([_phase_at(motion.phases, float(t)) for t in times], dtype=np.int64)
+    exact = all(_closed(motion.phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if motion.phases else True
+    how: How = "closed form" if exact else "measured against pairs"
+    pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
+    for k in sorted(set(which.tolist())) or ([0] if motion.phases else []):
+        mine = np.flatnonzero(which == k)
+        phase = motion.phases[k]
+        states = _states(phase, times[mine], motion)
+        pieces.append((mine, _columns(phase.models[0], times[mine], states, how, outputs)))
+    return pieces, how
+
+
+def _with_inherited(
+    scene: Scene, motion: PhaseMotion, trajectory: SceneTrajectory, asked: AskedMotion
+) -> SceneTrajectory:
+    """Return a trajectory with what the uncertainty of the inputs does, or why that is not known."""
+    uncertainty, times, columns = asked.input_uncertainty or 0.0, trajectory.time, dict(trajectory.columns)
+    if not len(times):
+        return trajectory
+
+    def columns_of(other: PhaseMotion) -> dict[str, Column]:
+        return _merged(_pieces(other, times, asked.outputs)[0], len(times))
+
+    try:
+        moved = inherited_in_phases(scene, motion, float(np.max(asked.times)), columns, columns_of)
+    except MechanicsError as fault:
+        return replace(trajectory, accuracy=replace(trajectory.accuracy, why=fault.detail))
+    share = uncertainty * relative(moved, columns)
+    if not share < 1.0:
+        why = "nothing is known of the motion at the latest times"
+        return replace(trajectory, accuracy=replace(trajectory.accuracy, why=why))
+    with_own = {name: replace(one, inherited=uncertainty * moved[name]) for name, one in columns.items()}
+    why = "how long a motion through events stays within the accuracy is not looked for"
+    return replace(trajectory, columns=with_own, accuracy=replace(trajectory.accuracy, inherited=share, why=why))
 
 
 def _closed(phase: Phase) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from flint import arb
@@ -25,6 +25,7 @@ from core.multibody.description import Described, described
 from core.multibody.impacts import Impact, approaching, impact
 from core.multibody.language import Scene
 from core.multibody.measures import COMPONENTS
+from core.multibody.numerals import Numerals
 from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phase_ends import crossings_of
@@ -56,8 +57,8 @@ def one_sided(scene: Scene) -> bool:
     )
 
 
-def motion_in_phases(scene: Scene, end: float) -> PhaseMotion:
-    """Return the phases of a scene up to a time; the precision of balls is the caller's.
+def motion_in_phases(scene: Scene, end: float, numerals: Callable[[], Numerals] | None = None) -> PhaseMotion:
+    """Return the phases of a scene up to a time, whose numbers may be read in another way.
 
     Raises
     ------
@@ -68,7 +69,8 @@ def motion_in_phases(scene: Scene, end: float) -> PhaseMotion:
     """
     for bits in PRECISIONS:
         with precision(bits):
-            run = _Run(described(scene, one_sided=True), end, last=bits == PRECISIONS[-1])
+            read = None if numerals is None else numerals()
+            run = _Run(described(scene, read, one_sided=True), end, last=bits == PRECISIONS[-1])
             try:
                 run.go()
             except _TooWide:
