@@ -341,7 +341,8 @@ class SceneProblem:
     ----------
     code : str
         "no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "several-impacts", "no-impact",
-        "energy-gain", "no-progress", "event-limit" or "lost-event".
+        "energy-gain", "grazing-contact", "several-onsets", "turning-onset", "no-progress", "event-limit" or
+        "lost-event".
     explanation : str
     time : float
     connections : tuple of str

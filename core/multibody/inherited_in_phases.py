@@ -1,8 +1,9 @@
 """What the uncertainty of a description's numbers does to a motion through events.
 
-Every number is moved in turn, to either side, and the motion is followed anew through all of its phases: an event comes earlier or
-later, and what follows it changes by that as well as by the state that it starts from. The differences are, to first
-order, what is otherwise propagated by saltation matrices; here the events are located anew, each to its own error.
+Every number is moved in turn, to either side, and the motion is followed anew through all of its phases: an event comes
+earlier or later, and what follows it changes by that as well as by the state that it starts from. The differences are,
+to first order, what is otherwise propagated by saltation matrices; here the events are located anew, each to its own
+error.
 Where another number leads to other events, the derivative does not exist, and that is said.
 
 References

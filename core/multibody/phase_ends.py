@@ -8,6 +8,7 @@ from core.errors import AccuracyUnreachable
 from core.multibody.contact_states import State, phase_table
 from core.multibody.crossings import Crossing, first_in_closed_form, uniform_motion
 from core.multibody.description import Described
+from core.multibody.grazing import Graze, grazed
 from core.multibody.phase import Phase
 from core.multibody.polynomials import Ball
 from core.multibody.projection import project
@@ -16,6 +17,17 @@ from core.multibody.table import Row
 from core.multibody.taylor_crossings import located
 from core.multibody.turning_slip import TurningSlip
 from core.multibody.watches import Watch, watches
+
+_BEYOND = 1.001
+"""How far beyond the end of a phase, as a share of it, a gap is looked at that may only just have closed."""
+
+
+class Undecided(Exception):
+    """A gap turns back where it is zero, as far as it is known."""
+
+    def __init__(self, graze: Graze) -> None:
+        super().__init__(graze)
+        self.graze = graze
 
 
 def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) -> list[Crossing]:
@@ -30,8 +42,23 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
         Where the connections lose their hold before.
     AccuracyUnreachable
         If the end cannot be located.
+    Undecided
+        If it is not known whether a gap closes before that.
     """
     watched = watches(phase.unilateral, phase.states, phase.tables[0])
+    found = _crossings(base, phase, watched, left, noticed)
+    ends = float(left) if not found else min(float(left), _BEYOND * float(found[0].time))
+    graze = grazed(phase, watched, ends)
+    if graze is None or (found and graze.watch != found[0].watch and not graze.time < found[0].time):
+        return found
+    if not graze.closes:
+        raise Undecided(graze)
+    return found if found and found[0].time < graze.time else _located(phase, graze.watch, float(graze.time))
+
+
+def _crossings(
+    base: Described, phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]
+) -> list[Crossing]:
     lengths = any(limit.length is not None for limit in base.measures.limits)
     if phase.uniform and not lengths:
         return _in_closed_form(phase, watched, left, noticed)
@@ -103,3 +130,10 @@ def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossi
     if first.time > left:
         return []
     return [first, located(tables[-1], wholes[-1], watch, float(first.time), "check")]
+
+
+def _located(phase: Phase, watch: Watch, time: float) -> list[Crossing]:
+    """Return the crossing next to a time, by both runs."""
+    first = located(phase.tables[0].table, phase.models[0].whole, watch, time, "fine")
+    table, whole = phase.tables[-1].table, phase.models[-1].whole
+    return [first, located(table, whole, watch, float(first.time), "check")]

@@ -28,7 +28,7 @@ from core.multibody.measures import COMPONENTS
 from core.multibody.numerals import Numerals
 from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
-from core.multibody.phase_ends import crossings_of
+from core.multibody.phase_ends import Undecided, crossings_of
 from core.multibody.polynomials import ZERO, evaluated, is_zero
 from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.sampled_crossings import SingularPlace
@@ -241,6 +241,20 @@ class _Run:
             return False
         try:
             crossings = crossings_of(self.base, phase, left, self.motion.noticed)
+        except Undecided as undecided:
+            phase.end = phase.start + undecided.graze.time
+            self.tracks.each = [replace(track, time=phase.end) for track in self.tracks.each]
+            name = undecided.graze.watch.one.name
+            self._stop(
+                Problem(
+                    "grazing-contact",
+                    f"whether {name} is reached is not known: the gap turns back at zero, to the width of its error",
+                    (name,),
+                    ({name: "touches, and bounces at less than is known"}, {name: "is passed by"}),
+                    "a start from which it is clearly reached or missed",
+                )
+            )
+            return False
         except SingularPlace as place:
             phase.end = phase.start + place.time
             event = SceneEvent("singular", "", float(phase.end), 1e-9 * float(phase.end))

@@ -131,8 +131,8 @@ class SceneProblem(View):
 
     code: str = Field(
         description="no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, "
-        "several-impacts, no-impact, energy-gain, no-progress, event-limit or lost-event; each has a section in "
-        "docs/physics/undecided.md."
+        "several-impacts, no-impact, energy-gain, grazing-contact, several-onsets, turning-onset, no-progress, "
+        "event-limit or lost-event; each has a section in docs/physics/undecided.md."
     )
     explanation: str
     time: Seconds[float]
