@@ -16,6 +16,8 @@ from core.multibody.whole import Whole, WholeStates
 
 _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
+_SOLVED = 2.0**-100
+"""Share of the largest multiplier to which all of them are known, with the state."""
 _TELL = 1.02
 """Margin for the judge's own error, which is some 2^-14 of what it judges."""
 
@@ -54,13 +56,15 @@ class Columns:
         """Return forces of connections in time."""
         q, v = self.states.q, self.states.v
         multipliers = self.whole.multipliers(q, v)
+        # What should be zero is known no better than the largest of what is solved for with it.
+        floor = _SOLVED * float(np.max(np.abs(multipliers), initial=0.0))
         judged = None
         if self.states.reference is not None:
             judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
         found: dict[str, Column] = {}
         for force in chosen:
             values, size = self.whole.force(force, q, v, multipliers)
-            error = _SMALL * float(np.max(size, initial=0.0))
+            error = _SMALL * float(np.max(size, initial=0.0)) + floor
             if judged is not None:
                 other = self.whole.force(force, *judged)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))

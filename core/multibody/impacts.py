@@ -25,7 +25,7 @@ from core.multibody.contact_responses import (
 )
 from core.multibody.contact_states import Problem, phase_table
 from core.multibody.dynamics import kinetic
-from core.multibody.impulses import LIMIT, Rates, alike, impulses_at_once, rates_after
+from core.multibody.impulses import LIMIT, Rates, alike, impulses_at_once, likest, rates_after
 from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ZERO, Ball, is_zero
 from core.multibody.slip_directions import along_slip
@@ -75,11 +75,11 @@ def impact(
     q: list[Ball],
     v: list[Ball],
     *,
-    settled: bool = False,
+    settled: Impact | None = None,
 ) -> Impact | Problem:
     """Return the outcome of an impact of the touching measures, or why it is undecided.
 
-    If it is `settled` that only one outcome is possible, as far as the state is known, none other is looked for.
+    If it is `settled` which outcome is the only possible one, as far as the state is known, its like is returned.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def impact(
         rubs = [[outcome.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
         impulses.update({i: (outcome[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
     loss = before - kinetic(replace(table, v=after))
-    if not is_zero(loss) and loss < 0 and not settled:
+    if not is_zero(loss) and loss < 0 and settled is None:
         return Problem(
             "energy-gain",
             f"Newton's law of restitution with friction would add {float(-loss):.6g} J to the motion",
@@ -124,22 +124,21 @@ def _group(
     v: list[Ball],
     found: Responses,
     *,
-    settled: bool,
+    settled: Impact | None,
 ) -> Forces | Problem:
     """Return the impulses of contacts that push one another, or why they are undecided."""
-    normal, slips = found.normal, found.slips
-    rates = {normal[i]: gap_rate(unilateral[i], q, v) for i in group}
-    rates |= {slips[i]: slip_rate(unilateral[i], q, v) for i in group if i in slips}
-    rates |= {line: across_rate(unilateral[i], q, v) for i in group if (line := found.across.get(i)) is not None}
-    rates = {a: ZERO if is_zero(x) else x for a, x in rates.items()}
+    normal = found.normal
+    rates = {a: ZERO if is_zero(x) else x for a, x in _rates(unilateral, group, q, v, found).items()}
     names = tuple(unilateral[i].name for i in group)
     given = [i for i in group if unilateral[i].order is not None]
     if len(given) == len(group) > 1:
         ordered = sorted(given, key=lambda i: (float(unilateral[i].order or ZERO), i))
         in_turn = _in_turn(unilateral, ordered, rates, found)
         return in_turn if in_turn is not None else _endless(names)
+    if settled is not None:
+        return likest(unilateral, group, rates, _rates(unilateral, group, q, settled.v, found), found)
     at_once = impulses_at_once(unilateral, group, rates, found)
-    if isinstance(at_once, Problem) or settled:
+    if isinstance(at_once, Problem):
         return at_once
     taking = [i for i in group if at_once.get(normal[i], ZERO) != 0]
     # A taut string passes on what pulls it at once.
@@ -170,6 +169,18 @@ def _group(
         ),
         'the order in which they happen, as "order" of the contacts',
     )
+
+
+def _rates(
+    unilateral: Sequence[Unilateral], group: Sequence[int], q: list[Ball], v: list[Ball], found: Responses
+) -> Rates:
+    """Return the rates along all lines of a group."""
+    rates: Rates = {}
+    for i in group:
+        one = unilateral[i]
+        lines = [found.normal[i], *found.grip(i)]
+        rates.update(zip(lines, (gap_rate(one, q, v), slip_rate(one, q, v), across_rate(one, q, v)), strict=False))
+    return rates
 
 
 def _told(one: Unilateral, line: int, after: Rates) -> str:

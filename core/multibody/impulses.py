@@ -91,6 +91,30 @@ def impulses_at_once(
     return min(least, key=lambda one: sum(state is not State.OPEN for state in one[0]))[1]
 
 
+def likest(
+    unilateral: Sequence[Unilateral], group: Sequence[int], rates: Rates, wanted: Rates, found: Responses
+) -> Forces:
+    """Return the impulses of the states after which rates are nearest to those wanted.
+
+    Which states go with the impact is known from a state with its error; beside it signs may be otherwise by rounding.
+    """
+    best: Forces = {}
+    least = float("inf")
+    for states in product(*(_choices(i, found) for i in group)):
+        slides = [i for i, state in zip(group, states, strict=True) if state.sense and i in found.across]
+        if len(slides) > 1:
+            continue
+        for ways in _ways(unilateral, group, states, slides, rates, found):
+            impulses = _solved(unilateral, group, states, rates, found, ways)
+            if impulses is None:
+                continue
+            after = rates_after(impulses, rates, found)
+            apart = max(abs(float((x - wanted[a]).mid())) for a, x in after.items())
+            if apart < least:
+                best, least = impulses, apart
+    return best
+
+
 def _choices(i: int, found: Responses) -> tuple[State, ...]:
     if i in found.across:
         return (State.OPEN, State.STICK, State.FORWARD)

@@ -169,7 +169,7 @@ class _Run:
             if not tracks.exact:
                 rates = []
                 for track in tracks.each:
-                    alike = impact(table, unilateral, self.touching, track.q, track.v, settled=True)
+                    alike = impact(table, unilateral, self.touching, track.q, track.v, settled=outcome)
                     if isinstance(alike, Problem):
                         self._stop(alike)
                         return False
