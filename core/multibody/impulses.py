@@ -98,8 +98,8 @@ def likest(
 
     Which states go with the impact is known from a state with its error; beside it signs may be otherwise by rounding.
     """
-    best: Forces = {}
-    least = float("inf")
+    known: list[tuple[float, float, Forces]] = []
+    scale = max((abs(float(x)) for x in rates.values()), default=0.0)
     for states in product(*(_choices(i, found) for i in group)):
         slides = [i for i, state in zip(group, states, strict=True) if state.sense and i in found.across]
         if len(slides) > 1:
@@ -110,9 +110,11 @@ def likest(
                 continue
             after = rates_after(impulses, rates, found)
             apart = max(abs(float((x - wanted[a]).mid())) for a, x in after.items())
-            if apart < least:
-                best, least = impulses, apart
-    return best
+            known.append((apart, sum(abs(float(x)) for x in impulses.values()), impulses))
+    least = min((one[0] for one in known), default=0.0)
+    # Where lines depend on one another but for rounding, huge impulses have the same effect along them.
+    alike = [one for one in known if one[0] <= 4.0 * least + LIMIT * scale]
+    return min(alike, key=lambda one: one[1], default=(0.0, 0.0, {}))[2]
 
 
 def _choices(i: int, found: Responses) -> tuple[State, ...]:
