@@ -5,13 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
 
-from core.multibody.packed import Floats, Integers
-from core.notices import Notice
-from core.systems.trajectory import Work
-
-How = Literal["closed form", "measured against pairs", "measured against closed form"]
+from core.systems.trajectory import How, Trajectory
 
 
 @dataclass(frozen=True)
@@ -123,83 +118,6 @@ class Energy:
     potential: float
     total: float
     conserved: bool
-
-
-@dataclass(frozen=True)
-class Column:
-    """One quantity at every time.
-
-    Attributes
-    ----------
-    values : ndarray, shape (t,) or (t, k)
-    unit : str
-    error : float
-        Largest error of any sample, as a length of the vector, in the unit of the column.
-    how : str
-        How the error is known.
-    inherited : float or None
-        Largest change of any sample by the uncertainty of the inputs, to first order; None where it is not known.
-    """
-
-    values: Floats
-    unit: str
-    error: float
-    how: How
-    inherited: float | None = None
-
-
-@dataclass(frozen=True)
-class SceneAccuracy:
-    """How right the samples of a scene are.
-
-    Attributes
-    ----------
-    requested : float
-    error : float
-        Largest error of any column, relative to the largest value among the columns of its unit.
-    how : str
-        How that is known.
-    inherited : float or None
-        Largest change of any column by the uncertainty of the inputs, relative likewise; None where it is not known.
-    horizon : float or None
-        Time until which that change stays below the accuracy (s); None where it is not known.
-    why : str or None
-        Why one of them is not.
-    """
-
-    requested: float
-    error: float
-    how: How
-    inherited: float | None = None
-    horizon: float | None = None
-    why: str | None = None
-
-
-@dataclass(frozen=True)
-class SceneTrajectory:
-    """Columns by name, at times as asked for, without those that lie beyond the end of the scene.
-
-    Attributes
-    ----------
-    time : ndarray, shape (t,)
-    rows : ndarray of int, shape (t,)
-        Which of the times asked for these are.
-    columns : mapping of str to Column
-    accuracy : SceneAccuracy
-    method : str or None
-        Kind of the method that was named; None where the model's own motion is answered.
-    work : Work or None
-        What the method cost.
-    warnings : tuple of Notice
-    """
-
-    time: Floats
-    rows: Integers
-    columns: Mapping[str, Column]
-    accuracy: SceneAccuracy
-    method: str | None = None
-    work: Work | None = None
-    warnings: tuple[Notice, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -409,7 +327,7 @@ class SceneAnswer:
     accelerations: Mapping[str, BodyAcceleration] | None
     forces: Mapping[str, ForceAnswer] | None
     energy: Energy | None
-    trajectory: SceneTrajectory | None
+    trajectory: Trajectory | None
     period: float | None
     equilibria: tuple[Equilibrium, ...] | None
     events: tuple[SceneEvent, ...]

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.multibody.answer import Column, How
+from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.measures import Force
 from core.multibody.momenta import momenta
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, WholeStates
+from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
@@ -20,6 +21,10 @@ _SOLVED = 2.0**-100
 """Share of the largest multiplier to which all of them are known, with the state."""
 _TELL = 1.02
 """Margin for the judge's own error, which is some 2^-14 of what it judges."""
+
+
+COLUMNS_OF_STATES = ("trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
+"""Outputs that are columns of the state, in the order in which they are answered."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +56,30 @@ class Columns:
             elif frame.turns is not None:
                 found[f"{name}.angular_velocity_in_space"] = self._vector(frame.turns, "rad/s", rates=True)
         return found
+
+    def chosen(self, outputs: Sequence[object], determined: Sequence[bool]) -> dict[str, Column]:
+        """Return the columns of the state that are among some outputs.
+
+        Parameters
+        ----------
+        determined : sequence of bool
+            Which of the forces the scene determines; the others are left out.
+        """
+        found: dict[str, Column] = {}
+        for group in COLUMNS_OF_STATES:
+            if group in outputs and (len(self.times) or group != "forces-in-time"):
+                found.update(self.group(group, determined))
+        return found
+
+    def group(self, name: str, determined: Sequence[bool]) -> dict[str, Column]:
+        """Return the columns of one of `COLUMNS_OF_STATES`."""
+        if name == "trajectory":
+            return self.trajectory()
+        if name == "energy-in-time":
+            return self.energy()
+        if name == "momenta-in-time":
+            return self.momenta()
+        return self.forces([f for f, known in zip(self.whole.measures.forces, determined, strict=True) if known])
 
     def forces(self, chosen: Sequence[Force]) -> dict[str, Column]:
         """Return forces of connections in time."""
@@ -247,7 +276,13 @@ def worst(columns: Mapping[str, Column]) -> float:
 
 
 def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> float:
-    """Return the largest of figures by column, relative to the largest value among the columns of its unit.
+    """Return the largest of figures by column, relative to the largest value among the columns of its unit."""
+    scales = scales_of(columns)
+    return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
+
+
+def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
+    """Return what the error of each column is relative to: the largest value among the columns of its unit.
 
     What is zero by symmetry has no scale of its own. Angles that are zero within their error are measured against one
     radian, and their rates against the largest speed over the largest distance.
@@ -255,7 +290,7 @@ def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> flo
     largest: dict[str, float] = {}
     unknown: dict[str, float] = {}
     for column in columns.values():
-        largest[column.unit] = max(largest.get(column.unit, 0.0), largest_of(column))
+        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest)
         unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
     away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
     for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
@@ -265,11 +300,37 @@ def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> flo
     for unit in ("kg m/s", "kg m^2/s", "J"):
         if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
             largest[unit] = 0.0
-    scales = {name: largest[columns[name].unit] for name in figures}
-    return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
+    return {name: largest[column.unit] for name, column in columns.items()}
 
 
-def largest_of(column: Column) -> float:
-    """Return the largest magnitude of a sample."""
-    size = np.abs(column.values) if column.values.ndim == 1 else np.linalg.norm(column.values, axis=1)
-    return float(np.max(size, initial=0.0))
+def require_known(columns: Mapping[str, Column]) -> None:
+    """Raise `NotApplicable` for columns that leave the range of doubles."""
+    lost = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
+    if lost:
+        raise NotApplicable(
+            f"{lost[0]} or its error leaves the range of doubles",
+            path=("times",),
+            remedy="ask for a shorter time, or choose units in which the numbers are moderate",
+        )
+
+
+def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: float | None = None) -> None:
+    """Raise for columns that leave the range of doubles, or whose errors are larger than the accuracy.
+
+    The remedy names the time `before` which they are not, where that is known.
+
+    Raises
+    ------
+    NotApplicable, AccuracyUnreachable
+    """
+    require_known(columns)
+    reached = worst(columns)
+    if reached > accuracy:
+        raise AccuracyUnreachable(
+            accuracy,
+            reached,
+            "the motion amplifies rounding, even that of pairs of doubles",
+            remedy="ask for a shorter time or a larger accuracy"
+            if before is None
+            else f"ask for times before {before:.6g} s, or for a larger accuracy",
+        )

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import MechanicsError, NotApplicable, Path
-from core.multibody.answer import Column
 from core.multibody.columns import Columns, relative
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled, modelled
@@ -26,6 +25,7 @@ from core.multibody.packed import Floats
 from core.multibody.polynomials import Ball
 from core.multibody.rank import independent
 from core.multibody.whole import Whole, WholeStates
+from core.systems.trajectory import Column
 
 MOST_INPUTS = 400
 """Numbers that are moved; each costs a motion of its own."""

@@ -19,8 +19,6 @@ import numpy as np
 
 from core.balls import precision
 from core.errors import MechanicsError, NotApplicable, Path
-from core.multibody.answer import Column
-from core.multibody.columns import largest_of
 from core.multibody.contact_states import State
 from core.multibody.inherited import MOST_INPUTS, inputs_of
 from core.multibody.language import Scene
@@ -28,6 +26,7 @@ from core.multibody.numerals import Numerals
 from core.multibody.phase import PhaseMotion
 from core.multibody.phases import motion_in_phases
 from core.multibody.polynomials import BITS
+from core.systems.trajectory import Column
 
 MOVED = 2.0**-34
 """Share by which a number is moved: its effect is seen in doubles to some 2^-18 of itself."""
@@ -51,7 +50,7 @@ def inherited_in_phases(
     for name, body in scene.bodies.items():
         if body.body is not None:
             raise NotApplicable(f'"{name}" is a body of the catalogue, whose numbers are not propagated')
-    poor = next((name for name, one in columns.items() if one.error > KNOWN * largest_of(one) > 0.0), None)
+    poor = next((name for name, one in columns.items() if one.error > KNOWN * one.largest > 0.0), None)
     if poor is not None:
         raise NotApplicable(f"{poor} is not known well enough for the effect of small changes to be seen in it")
     with precision(BITS):

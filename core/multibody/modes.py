@@ -156,6 +156,12 @@ class Modes:
                 errors[s] = [float(x.rad()) + 2.0**-104 * abs(float(x)) for x in values[: 2 * n]]
         return States(q, v, errors[:, :n], errors[:, n:])
 
+    def proven(self, times: Sequence[Ball]) -> list[list[Ball]]:
+        """Return places and rates at each time, as balls of the present precision."""
+        start = [*self.table.q, *self.table.v, ONE]
+        terms = self._terms(start)
+        return [self._at(t, start, terms) for t in times]
+
     def _terms(self, start: list[Ball]) -> Any:
         """Return roots and their vector coefficients, or None where roots coincide.
 

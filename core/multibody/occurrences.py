@@ -14,9 +14,10 @@ import numpy as np
 
 from core.errors import InvalidParameter, Path
 from core.multibody.along import watched_times
-from core.multibody.answer import Column, Extremes, Occurrence
+from core.multibody.answer import Extremes, Occurrence
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole
+from core.systems.trajectory import Column
 
 _SECTIONS = 33
 _ROUNDS = 14

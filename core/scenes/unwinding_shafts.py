@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Generic, Literal
 
@@ -22,15 +23,18 @@ from core.quantities import (
     Velocity,
     check,
 )
-from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, Pair, outputs_of
 from core.scenes.bounces import as_answered
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
+from core.scenes.figures import MechanicalEnergy, N, Pair, SceneExample, outputs_of
 from core.scenes.friction import Friction, with_friction
+from core.scenes.motion import Motion
+from core.scenes.named_scene import NamedScene
 from core.scenes.string_phases import Law, Limit, follow, settled
 from core.scenes.string_samples import ShaftMotion
 from core.scenes.string_state import Constants, Drive, State, frictionless
 from core.systems.system import Model
 
+_GIVEN: Mapping[str, Any] = {"masses": [2.0, 1.0], "radii": [0.1, 0.2], "slopes": [0.5, 0.9], "gravity": 9.81}
 Restitution = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
 
@@ -129,7 +133,7 @@ class ShaftSamples(Generic[N]):
 
 
 @dataclass(frozen=True)
-class UnwindingShafts(ConstrainedSystem):
+class UnwindingShafts(NamedScene):
     """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound.
 
     Attributes
@@ -178,6 +182,16 @@ class UnwindingShafts(ConstrainedSystem):
     samples_type: ClassVar[type] = ShaftSamples
     outputs: ClassVar[tuple[str, ...]] = outputs_of(ShaftFigures)
     of_motion: ClassVar[tuple[str, ...]] = ("phases",)
+    examples: ClassVar[Mapping[str, SceneExample]] = {
+        "tension": SceneExample(
+            "the tension and accelerations of two solid shafts",
+            {**_GIVEN, "outputs": ["tension", "accelerations", "angular_accelerations"]},
+        ),
+        "motion": SceneExample(
+            "the motion until the string of one shaft has unwound",
+            {**_GIVEN, "positions": [1.0, 1.5], "wound": [0.5, 0.8], "times": {"start": 0.0, "stop": 2.0, "count": 21}},
+        ),
+    }
 
     def __post_init__(self) -> None:
         check(self)
@@ -253,6 +267,24 @@ class UnwindingShafts(ConstrainedSystem):
                 for phase in motion.phases.phases
             ]
         }
+
+    def inexact(self, motion: Any) -> NotApplicable | None:
+        """Return the fault of velocities that fit a taut string only to rounding, and of jerks too weak to be seen."""
+        slips = [
+            Fraction(v) - Fraction(r) * Fraction(w)
+            for v, r, w in zip(self.velocities, self.radii, self.spins, strict=True)
+        ]
+        pairs = [(sum(slips), self._given.opening)]
+        if self.friction is not None:
+            pairs += list(zip(slips, self._given.slips, strict=True))
+        if sign(motion.phases.cut) > 0 or any(exactly != 0 and sign(ball) == 0 for exactly, ball in pairs):
+            return NotApplicable(
+                "velocities and spins agree with a taut string only to rounding, or jerks become too weak to be told "
+                "apart",
+                path=("digits",),
+                remedy='give velocities and spins that agree exactly, if need be as decimal strings ("0.1")',
+            )
+        return None
 
     def static_model(self) -> Model:
         """Return the model of a question about one instant."""

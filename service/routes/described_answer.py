@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from core.multibody.answer import How
 from core.quantities import Unit
 from core.systems.trajectory import Work
 from service.schemas import Envelope, Joules, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
 
 Metres = Annotated[list[float], Unit("m"), Field(min_length=2, max_length=3)]
+How = Literal["closed form", "measured against pairs", "measured against closed form"]
+"""How errors of described scenes are known."""
 OwnUnit = Unit("as in the field unit")
 
 

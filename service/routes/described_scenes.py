@@ -21,12 +21,12 @@ from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
-from service.routes.described_answer import DescribedSceneAnswer
+from service.routes.described_answer import DescribedAccuracy, DescribedSceneAnswer, SceneColumn
 from service.routes.described_figure import drawn
 from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
-from service.schemas import Request, fields_of, sample_count, sample_times
+from service.schemas import Request, View, fields_of, sample_count, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
 
@@ -97,7 +97,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     ):
         if getattr(found, name) is not None:
             answer[name] = _in_range(start, name, answer["warnings"])
-    if motion is not None and motion.method is not None:
+    if motion is not None and question.method is not None:
         answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
     answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
@@ -107,9 +107,9 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if found.problem is not None:
         answer["problem"] = fields_of(found.problem)
     if motion is not None:
-        columns = {name: fields_of(column) for name, column in motion.columns.items()}
+        columns = {name: _picked(column, SceneColumn) for name, column in motion.columns.items()}
         answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}
-        answer["accuracy"] = motion.accuracy
+        answer["accuracy"] = _picked(motion.accuracy, DescribedAccuracy)
     if found.occurrences is not None:
         answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
@@ -117,6 +117,11 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if found.thresholds is not None:
         answer["thresholds"] = [_of_rest(one) for one in found.thresholds]
     return answer
+
+
+def _picked(found: Any, view: type[View]) -> dict[str, Any]:
+    """Return those fields of core's dataclass that a view has."""
+    return {name: getattr(found, name) for name in view.model_fields}
 
 
 def _of_rest(found: RestRange) -> dict[str, Any]:

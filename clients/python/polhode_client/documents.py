@@ -2091,6 +2091,105 @@ class CertifiedChainSamples(TypedDict):
     apex_tension: NotRequired[list[str] | None]
 
 
+class CertifiedSceneRequest(TypedDict):
+    """Bodies, what connects them, and to how many digits they are asked about."""
+
+    gravity: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
+    bodies: Mapping[str, SceneBody]
+    connections: NotRequired[Sequence[SceneConnection]]
+    let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
+    numbers: NotRequired[Literal["decimals", "doubles"]]
+    times: NotRequired[DecimalSpan | Sequence[float | str] | None]
+    outputs: NotRequired[Sequence[Literal["accelerations", "forces", "energy", "trajectory"]] | None]
+    digits: int
+
+
+class CertifiedDescribedAnswer(TypedDict):
+    """The requested answer about a scene, numbers as decimal strings."""
+
+    signature: Signature
+    warnings: list[Notice]
+    accuracy: CertifiedAccuracy
+    model: CertifiedModel
+    accelerations: NotRequired[dict[str, CertifiedAccelerations] | None]
+    forces: NotRequired[dict[str, CertifiedForce] | None]
+    energy: NotRequired[CertifiedEnergy | None]
+    ended: str | None
+    trajectory: NotRequired[CertifiedMotion | None]
+
+
+class CertifiedModel(TypedDict):
+    """The smallest model of a scene, and what was noticed on the way."""
+
+    name: str
+    why: str
+    degrees_of_freedom: int
+    mobility: int
+    coordinates: int
+    rows: int
+    described: Integers
+    apart: list[CertifiedPart]
+    noticed: list[str]
+
+
+class CertifiedPart(TypedDict):
+    """A part of a scene that has no force or connection in common with the others, and its smallest model."""
+
+    name: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: list[str]
+    period: str | None
+    modes: list[CertifiedMode]
+
+
+class CertifiedMode(TypedDict):
+    """One mode: q = exp(growth_rate t) cos(frequency t)."""
+
+    frequency: str
+    growth_rate: str
+
+
+class CertifiedAccelerations(TypedDict):
+    """Accelerations of a body at the start."""
+
+    linear: list[str]
+    angular: str | list[str] | None
+
+
+class CertifiedForce(TypedDict):
+    """A force of a connection at the start."""
+
+    value: str | None
+    unit: str
+    determined: bool
+    shared_with: list[str]
+
+
+class CertifiedEnergy(TypedDict):
+    """Energies at the start; the potential of gravity is zero at the origin."""
+
+    kinetic: str
+    potential: str
+    total: str
+    conserved: bool
+
+
+class CertifiedMotion(TypedDict):
+    """Columns by name, such as rod.angle, at the times that the motion reaches."""
+
+    time: list[str]
+    rows: Integers
+    columns: dict[str, CertifiedColumn]
+
+
+class CertifiedColumn(TypedDict):
+    """One quantity at every time."""
+
+    values: list[str | list[str]]
+    unit: str
+
+
 class PlanRequest(TypedDict):
     """A request that is not sent: where to, and what."""
 

@@ -1,4 +1,4 @@
-"""Samples of scenes with fewer digits."""
+"""Trajectories of described scenes, with fewer digits."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.multibody.answer import SceneTrajectory
 from core.multibody.solve import solve_scene
 from core.systems.methods import RungeKutta4
+from core.systems.trajectory import Trajectory
 from tests.core.multibody.worked_examples import TWO_RODS, read
 
 
-def moved(**others: Any) -> SceneTrajectory:
+def moved(**others: Any) -> Trajectory:
     found = solve_scene(read(TWO_RODS), [0.1, 0.4, 0.9], ("trajectory", "forces-in-time"), **others).trajectory
     assert found is not None
     return found
