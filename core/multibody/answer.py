@@ -253,13 +253,14 @@ class ScenePhase:
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """Something that mechanics does not decide.
+    """Something that mechanics does not decide, or that is not followed any further.
 
     Attributes
     ----------
     code : str
         "no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "several-impacts", "no-impact",
-        "energy-gain" or "no-progress".
+        "energy-gain", "grazing-contact", "several-onsets", "turning-onset", "no-progress", "event-limit" or
+        "lost-event".
     explanation : str
     time : float
     connections : tuple of str

@@ -128,11 +128,12 @@ class MotionPhase(View):
 
 
 class SceneProblem(View):
-    """Something that mechanics does not decide: the motion ends there."""
+    """Something that mechanics does not decide, or that is not followed any further: the motion ends there."""
 
     code: str = Field(
         description="no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, "
-        "several-impacts, no-impact, energy-gain or no-progress."
+        "several-impacts, no-impact, energy-gain, grazing-contact, several-onsets, turning-onset, no-progress, "
+        "event-limit or lost-event; each has a section in docs/physics/undecided.md."
     )
     explanation: str
     time: Seconds[float]
