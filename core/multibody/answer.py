@@ -257,13 +257,14 @@ class MotionPhase:
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """Something that mechanics does not decide: the motion ends there.
+    """Something that mechanics does not decide, or that is not followed any further: the motion ends there.
 
     Attributes
     ----------
     code : str
         no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, several-impacts, no-impact,
-        energy-gain or no-progress.
+        energy-gain, grazing-contact, several-onsets, turning-onset, no-progress, event-limit or lost-event; each has a
+        section in docs/physics/undecided.md.
     connections : tuple of str
         Between which it is undecided.
     candidates : tuple of mapping

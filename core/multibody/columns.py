@@ -21,6 +21,8 @@ NEAREST = 2.0**-53 * (1 + 2.0**-20)
 """The same for coordinates and rates that are the doubles nearest to pairs."""
 FINEST = 2.0**-50
 """An accuracy below this is only met by such doubles."""
+_SOLVED = 2.0**-100
+"""Share of the largest multiplier to which all of them are known, with the state."""
 _TELL = 1.02
 """Margin for the judge's own error, which is some 2^-14 of what it judges."""
 
@@ -88,13 +90,15 @@ class Columns:
         """Return forces of connections in time."""
         q, v = self.states.q, self.states.v
         multipliers = self.whole.multipliers(q, v)
+        # What should be zero is known no better than the largest of what is solved for with it.
+        floor = _SOLVED * float(np.max(np.abs(multipliers), initial=0.0))
         judged = None
         if self.states.reference is not None:
             judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
         found: dict[str, Column] = {}
         for force in chosen:
             values, size = self.whole.force(force, q, v, multipliers)
-            error = _SMALL * float(np.max(size, initial=0.0))
+            error = _SMALL * float(np.max(size, initial=0.0)) + floor
             if judged is not None:
                 other = self.whole.force(force, *judged)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
@@ -315,8 +319,10 @@ def require_known(columns: Mapping[str, Column]) -> None:
         )
 
 
-def require_reached(columns: Mapping[str, Column], accuracy: float) -> None:
+def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: float | None = None) -> None:
     """Raise for columns that leave the range of doubles, or whose errors are larger than the accuracy.
+
+    The remedy names the time `before` which they are not, where that is known.
 
     Raises
     ------
@@ -336,5 +342,7 @@ def require_reached(columns: Mapping[str, Column], accuracy: float) -> None:
             accuracy,
             reached,
             "the motion amplifies rounding, even that of pairs of doubles",
-            remedy="ask for a shorter time or a larger accuracy",
+            remedy="ask for a shorter time or a larger accuracy"
+            if before is None
+            else f"ask for times before {before:.6g} s, or for a larger accuracy",
         )

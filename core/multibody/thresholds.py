@@ -187,7 +187,7 @@ def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
     error = max(float(abs(x - arb(value)).upper()) for x in (inside, outside))
     base = varied.at(outside)
     table, unilateral = base.measures.table, base.measures.unilateral
-    states = decided(table, unilateral, varied.touching, table.q, table.v)
-    if isinstance(states, Problem):
-        return RestEnd(value, error, {}, states.code)
-    return RestEnd(value, error, {unilateral[i].name: states[i].value for i in varied.touching}, None)
+    found = decided(table, unilateral, varied.touching, table.q, table.v)
+    if isinstance(found, Problem):
+        return RestEnd(value, error, {}, found.code)
+    return RestEnd(value, error, {unilateral[i].name: found.states[i].value for i in varied.touching}, None)

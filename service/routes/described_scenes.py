@@ -41,12 +41,12 @@ Forces that the scene does not determine are null. `outputs` may also ask when a
 values of a number a scene stays at rest is requested by its JSON pointer,
 `{"thresholds": {"vary": "/connections/0/friction", "between": [0, 2]}}`.
 
-Contacts push and do not pull, with friction and restitution, in the plane; strings become slack and taut again. The
+Contacts push and do not pull, with friction and restitution; strings become slack and taut again. The
 answer lists the phases between the events, each with its own smallest model. What mechanics leaves undecided is an
 answer too: `problem` says what, and which assumption would decide it.
 
-Not covered yet: contacts in space, friction of held connections, connections with `from` and `until`. They are refused.
-It is not proven that all equilibria are found. A plan
+Not covered yet: friction of balls on one another in space, friction of held connections, connections with `from` and
+`until`. They are refused. It is not proven that all equilibria are found. A plan
 reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
 about three bodies. The paths of a motion in the plane, and its columns over time, are answered as a figure to
 `Accept: image/svg+xml`."""

@@ -1506,7 +1506,7 @@ class MotionPhase(TypedDict):
 
 
 class SceneProblem(TypedDict):
-    """Something that mechanics does not decide: the motion ends there."""
+    """Something that mechanics does not decide, or that is not followed any further: the motion ends there."""
 
     code: str
     explanation: str
