@@ -52,6 +52,8 @@ openapi: environment
 judge: environment
 	$(BIN)/python -m tests.core.certified.judge 100000
 	$(BIN)/python -m tests.core.multibody.judge 10000
+	$(BIN)/python -m tests.core.multibody.named_judge 1000
+	$(BIN)/python -m tests.core.multibody.contact_judge 10000
 
 plans: environment
 	RANDOM_QUESTIONS=300 $(BIN)/python -m pytest -q tests/service/test_plan.py -k random

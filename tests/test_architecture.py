@@ -185,6 +185,7 @@ TESTED_IN |= {
             "contact_start crossings expansion phase phase_ends phases polynomial_roots projection"
             " sampled_crossings start taylor_crossings tracks turning watches"
         ),
+        "contacts_in_space": "shares_in_space slip_directions turning_slip",
         "equilibria": "resting_places",
         "free_body": "turning_body",
         "numerical": "packed periods returns series series_pairs vertical_symmetry",

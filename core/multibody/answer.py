@@ -233,7 +233,7 @@ class ScenePhase:
     ----------
     start : float
     end : float or None
-        None where it lasts beyond the times asked for.
+        None where it lasts beyond the times of the question.
     model, why : str
     degrees_of_freedom : int
     coordinates : int
@@ -253,13 +253,14 @@ class ScenePhase:
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """Something that mechanics does not decide.
+    """Something that mechanics does not decide, or that is not followed any further.
 
     Attributes
     ----------
     code : str
         "no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "several-impacts", "no-impact",
-        "energy-gain" or "no-progress".
+        "energy-gain", "grazing-contact", "several-onsets", "turning-onset", "no-progress", "event-limit" or
+        "lost-event".
     explanation : str
     time : float
     connections : tuple of str
@@ -320,7 +321,7 @@ class RestRange:
 
 @dataclass(frozen=True)
 class SceneAnswer:
-    """The answer to a question about a scene; what was not asked for is None."""
+    """The answer to a question about a scene; what was not requested is None."""
 
     model: SceneModel
     accelerations: Mapping[str, BodyAcceleration] | None

@@ -17,6 +17,12 @@ from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
+NEAREST = 2.0**-53 * (1 + 2.0**-20)
+"""The same for coordinates and rates that are the doubles nearest to pairs."""
+FINEST = 2.0**-50
+"""An accuracy below this is only met by such doubles."""
+_SOLVED = 2.0**-100
+"""Share of the largest multiplier to which all of them are known, with the state."""
 _TELL = 1.02
 """Margin for the judge's own error, which is some 2^-14 of what it judges."""
 
@@ -33,6 +39,7 @@ class Columns:
     times: Floats
     states: WholeStates
     how: How
+    rounding: float = _SMALL
     _along: dict[tuple[int, bool], Floats] = field(default_factory=dict, repr=False)
 
     def trajectory(self) -> dict[str, Column]:
@@ -83,13 +90,15 @@ class Columns:
         """Return forces of connections in time."""
         q, v = self.states.q, self.states.v
         multipliers = self.whole.multipliers(q, v)
+        # What should be zero is known no better than the largest of what is solved for with it.
+        floor = _SOLVED * float(np.max(np.abs(multipliers), initial=0.0))
         judged = None
         if self.states.reference is not None:
             judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
         found: dict[str, Column] = {}
         for force in chosen:
             values, size = self.whole.force(force, q, v, multipliers)
-            error = _SMALL * float(np.max(size, initial=0.0))
+            error = _SMALL * float(np.max(size, initial=0.0)) + floor
             if judged is not None:
                 other = self.whole.force(force, *judged)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
@@ -147,12 +156,12 @@ class Columns:
         where = list(indices)
         values = (self.states.v if rates else self.states.q)[:, where, 0]
         errors = (self.states.v_error if rates else self.states.q_error)[:, where]
-        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1)), self.how)
+        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1), self.rounding), self.how)
 
     def _scalar(self, index: int, unit: str, *, rates: bool) -> Column:
         values = (self.states.v if rates else self.states.q)[:, index, 0]
         errors = (self.states.v_error if rates else self.states.q_error)[:, index]
-        return Column(values, unit, _stated(values, errors), self.how)
+        return Column(values, unit, _stated(values, errors, self.rounding), self.how)
 
     def _angle(self, direction: tuple[int, int], name: str) -> Column:
         """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
@@ -247,9 +256,9 @@ def quaternions(axes: Floats) -> Floats:
     return out
 
 
-def _stated(values: Floats, errors: Floats) -> float:
+def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
     size = np.abs(values) if values.ndim == 1 else np.linalg.norm(values, axis=1)
-    return _TELL * float(np.max(errors, initial=0.0)) + _SMALL * float(np.max(size, initial=0.0))
+    return _TELL * float(np.max(errors, initial=0.0)) + rounding * float(np.max(size, initial=0.0))
 
 
 def apart(column: Column, other: Column) -> float:
@@ -310,8 +319,10 @@ def require_known(columns: Mapping[str, Column]) -> None:
         )
 
 
-def require_reached(columns: Mapping[str, Column], accuracy: float) -> None:
+def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: float | None = None) -> None:
     """Raise for columns that leave the range of doubles, or whose errors are larger than the accuracy.
+
+    The remedy names the time `before` which they are not, where that is known.
 
     Raises
     ------
@@ -319,10 +330,19 @@ def require_reached(columns: Mapping[str, Column], accuracy: float) -> None:
     """
     require_known(columns)
     reached = worst(columns)
+    if reached > accuracy and reached <= 2 * FINEST:
+        raise AccuracyUnreachable(
+            accuracy,
+            reached,
+            "the samples are doubles, and angles, forces and energies are computed in them",
+            remedy="ask for places and velocities of particles alone, or for digits: POST /v1/certified/scenes",
+        )
     if reached > accuracy:
         raise AccuracyUnreachable(
             accuracy,
             reached,
             "the motion amplifies rounding, even that of pairs of doubles",
-            remedy="ask for a shorter time or a larger accuracy",
+            remedy="ask for a shorter time or a larger accuracy"
+            if before is None
+            else f"ask for times before {before:.6g} s, or for a larger accuracy",
         )

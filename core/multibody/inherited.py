@@ -81,7 +81,7 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
     for name, body in scene.bodies.items():
         if body.body is not None:
             raise NotApplicable(f'"{name}" is a body of the catalogue, whose numbers are not propagated')
-    inputs = list(_inputs(found.described.measures.numerals.read))
+    inputs = list(inputs_of(found.described.measures.numerals.read))
     if len(inputs) > MOST_INPUTS:
         raise NotApplicable(f"the description has {len(inputs)} numbers, and at most {MOST_INPUTS} are propagated")
     places, rates = found.whole.in_pairs(times)
@@ -122,7 +122,7 @@ def _shifted(pairs: Floats, change: Floats) -> Floats:
     return np.stack([high, (pairs[..., 0] - (high - back)) + (change - back) + pairs[..., 1]], axis=-1)
 
 
-def _inputs(read: dict[Path, Ball]) -> Iterator[tuple[Path, ...]]:
+def inputs_of(read: dict[Path, Ball]) -> Iterator[tuple[Path, ...]]:
     """Yield the numbers that are uncertain by themselves, each with all of its places."""
     shared: dict[tuple[Path, str], list[Path]] = {}
     for path, value in read.items():

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from flint import arb
 
-from core.errors import InvalidParameter, NotApplicable
+from core.errors import InvalidParameter, MechanicsError, NotApplicable
 from core.multibody.answer import (
     BodyAcceleration,
     ForceAnswer,
@@ -17,8 +17,9 @@ from core.multibody.answer import (
     ScenePhase,
     SceneProblem,
 )
-from core.multibody.columns import Columns, require_reached, scales_of, worst
+from core.multibody.columns import Columns, relative, require_reached, scales_of, worst
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
+from core.multibody.inherited_in_phases import inherited_in_phases
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.packed import Floats, nearest, pair
@@ -37,7 +38,7 @@ ANSWERED = ("accelerations", "forces", "energy", "trajectory", "forces-in-time",
 """Outputs that are answered about scenes with contacts."""
 THRESHOLDS = "thresholds"
 """Place of a question about rest among the outputs: it is answered apart from the motion."""
-_NOT_KNOWN = "what the uncertainty of the inputs does is not followed through events"
+_NO_HORIZON = "how long a motion through events stays within the accuracy is not looked for"
 
 
 def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
@@ -63,7 +64,7 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         raise NotApplicable(
             f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",
             path=("outputs", unknown[0]),
-            remedy="leave it out; events are found without being asked for",
+            remedy="leave it out; events are found without being requested",
         )
     if "equilibria" in request.outputs:
         raise NotApplicable(
@@ -80,7 +81,7 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
     motion = motion_in_phases(scene, end)
     count = len(motion.base.measures.table.names)
     noticed = _noticed(motion)
-    trajectory = request.solved(PhasedSystem(motion, request.outputs))
+    trajectory = request.solved(PhasedSystem(scene, motion, request.outputs))
     started = motion.phases[0] if motion.phases else None
     accelerations: Mapping[str, BodyAcceleration] = {}
     forces: Mapping[str, ForceAnswer] = {}
@@ -174,10 +175,10 @@ def _problem(motion: PhaseMotion) -> SceneProblem | None:
 
 
 class PhasedSystem:
-    """A motion through phases, as a system; `outputs` are its columns."""
+    """The motion of a scene through phases, as a system; `outputs` are its columns."""
 
-    def __init__(self, motion: PhaseMotion, outputs: Sequence[object]) -> None:
-        self.motion, self.outputs = motion, outputs
+    def __init__(self, scene: Scene, motion: PhaseMotion, outputs: Sequence[object]) -> None:
+        self.scene, self.motion, self.outputs = scene, motion, outputs
 
     def trajectory(self, question: MotionQuestion) -> Trajectory:
         """Return the samples up to the end of the motion; see `core.systems.question.System`."""
@@ -190,23 +191,20 @@ class PhasedSystem:
             reached = [k for k, t in enumerate(question.times) if not arb(float(t)) > ends]
         rows = np.array(reached, dtype=np.int64)
         times = question.times[rows]
-        which = np.array([_phase_at(phases, float(t)) for t in times], dtype=np.int64)
-        exact = all(_closed(phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if phases else True
-        how: How = "closed form" if exact else "measured against pairs"
-        pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
         with np.errstate(over="ignore", invalid="ignore"):
-            for k in sorted(set(which.tolist())) or ([0] if phases else []):
-                mine = np.flatnonzero(which == k)
-                states = _states(phases[k], times[mine], motion)
-                pieces.append((mine, _columns(phases[k].models[0], times[mine], states, how, self.outputs)))
+            pieces, how = self._pieces(motion, times)
             columns = _merged(pieces, len(times))
-            require_reached(columns, question.accuracy)
-        why = None if question.input_uncertainty is None else _NOT_KNOWN
+            lost = next((float(times[mine[0]]) for mine, own in pieces if worst(own) > question.accuracy), None)
+            require_reached(columns, question.accuracy, before=lost)
+            stated = Accuracy(question.accuracy, worst(columns), how)
+            if question.input_uncertainty is not None and len(times):
+                end = float(np.max(question.times))
+                columns, stated = self._with_inherited(times, columns, stated, question.input_uncertainty, end)
         scales = scales_of(columns)
         return Trajectory(
             times,
             {name: replace(column, scale=scales[name]) for name, column in columns.items()},
-            Accuracy(question.accuracy, worst(columns), how, why=why),
+            stated,
             None,
             ClosedFormEvaluation().kind,
             Work(len(times)),
@@ -214,6 +212,37 @@ class PhasedSystem:
             rows=rows,
             events=motion.events,
         )
+
+    def _pieces(self, motion: PhaseMotion, times: Floats) -> tuple[list[tuple[np.ndarray, dict[str, Column]]], How]:
+        """Return the columns of every phase, with the numbers of the times in it, and how their errors are known."""
+        phases = motion.phases
+        which = np.array([_phase_at(phases, float(t)) for t in times], dtype=np.int64)
+        exact = all(_closed(phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if phases else True
+        how: How = "closed form" if exact else "measured against pairs"
+        pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
+        for k in sorted(set(which.tolist())) or ([0] if phases else []):
+            mine = np.flatnonzero(which == k)
+            states = _states(phases[k], times[mine], motion)
+            pieces.append((mine, _columns(phases[k].models[0], times[mine], states, how, self.outputs)))
+        return pieces, how
+
+    def _with_inherited(
+        self, times: Floats, columns: dict[str, Column], stated: Accuracy, uncertainty: float, end: float
+    ) -> tuple[dict[str, Column], Accuracy]:
+        """Add what the uncertainty of the inputs does, or why that is not known."""
+
+        def columns_of(other: PhaseMotion) -> dict[str, Column]:
+            return _merged(self._pieces(other, times)[0], len(times))
+
+        try:
+            moved = inherited_in_phases(self.scene, self.motion, end, columns, columns_of)
+        except MechanicsError as fault:
+            return columns, replace(stated, why=fault.detail)
+        share = uncertainty * relative(moved, columns)
+        if not share < 1.0:
+            return columns, replace(stated, why="nothing is known of the motion at the latest times")
+        with_own = {name: replace(one, inherited=uncertainty * moved[name]) for name, one in columns.items()}
+        return with_own, replace(stated, inherited=share, why=_NO_HORIZON)
 
 
 def _closed(phase: Phase) -> bool:

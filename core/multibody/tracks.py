@@ -8,7 +8,7 @@ is, and every sign at an event is decided in balls of that width.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from flint import arb
 
@@ -139,25 +139,35 @@ class Tracks:
 
     def settle(self, q: Vector, v: Vector) -> None:
         """Make exact zeros of what a projection leaves of numbers that the rows hold at zero."""
-        for largest, vector in zip(self._largest, (q, v), strict=True):
+        # What hardly turns has no scale of its own.
+        turning = 1.0 / self.own_time()
+        for largest, vector, least in zip(self._largest, (q, v), (0.0, turning), strict=True):
             for i, (unit, x) in enumerate(zip(self.units, vector, strict=True)):
-                if abs(float(x)) <= NOUGHT * largest.get(unit, 0.0):
+                own = largest.get(unit, 0.0)
+                if abs(float(x)) <= NOUGHT * (own if unit == "m" else max(own, least)):
                     vector[i] = ZERO
 
-    def part(self, still: Sequence[bool], share: float = FLOOR) -> None:
+    def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float | None = None) -> None:
         """Go on with two tracks, the second moved by a share of the largest, so that the growth of errors is seen.
 
         Parameters
         ----------
         still : sequence of bool
             Which coordinates are constants of the last phase on both: these remain the same.
+        share, of_places : float
+            Of rates and, where that is another, of places.
         """
         last = self.each[-1].bare()
         self.each = [self.first.bare(), last]
         q_scales, v_scales = self.scales()
-        q = _moved(self.first.q, last.q, q_scales, still, share)
+        q = _moved(self.first.q, last.q, q_scales, still, share if of_places is None else of_places)
         v = _moved(self.first.v, last.v, v_scales, still, share)
         self.each = [self.first, Track(last.time, q, v)]
+
+    def delay(self, time: float) -> None:
+        """Set the time of the second track apart from the first's, where both are wrong by as much."""
+        last = self.each[-1]
+        self.each = [self.first, replace(last, time=last.time + time)]
 
 
 def _moved(first: Vector, second: Vector, scales: Sequence[float], still: Sequence[bool], share: float) -> Vector:
