@@ -29,6 +29,7 @@ def write(folder: Path) -> None:
             copy = target / place_of(file)
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, copy)
+    shutil.copyfile(DOCS / "site/wide.css", target / "wide.css")
     configuration = (DOCS / "site/mkdocs.yml").read_text(encoding="utf-8")
     # JSON is YAML, too.
     _put(folder / "mkdocs.yml", f"{configuration}nav: {json.dumps(navigation())}\n")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 FENCE = re.compile(r"^```([a-z-]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 ENDPOINT = re.compile(r"`POST (/v1/[a-z/-]+)`")
-NOT_RUN = re.compile(r"^# not run: (.+)$", re.MULTILINE)
+UNTESTED = re.compile(r"^# not tested: (.+)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,9 @@ class Block:
         return named[-1] if named else None
 
     @property
-    def not_run(self) -> str | None:
-        """Why the block is not run, if its first line says so."""
-        reason = NOT_RUN.match(self.code)
+    def untested(self) -> str | None:
+        """Why no test runs the block, if its first line says so."""
+        reason = UNTESTED.match(self.code)
         return reason[1] if reason else None
 
 

@@ -64,7 +64,7 @@ def _answer(operation: Mapping[str, Any], document: Mapping[str, Any]) -> Iterat
         yield from ("", f"**Answer** as {media}", "")
     schema = _resolved(content.get("application/json", {}).get("schema", {}), document)
     if "properties" in schema:
-        yield from _table(schema, hidden=HIDDEN)
+        yield from _table(schema, of_answer=True)
 
 
 def _objects(document: Mapping[str, Any]) -> Iterator[str]:
@@ -76,17 +76,20 @@ def _objects(document: Mapping[str, Any]) -> Iterator[str]:
         yield from _table(schema)
 
 
-def _table(schema: Mapping[str, Any], hidden: tuple[str, ...] = ()) -> Iterator[str]:
+def _table(schema: Mapping[str, Any], *, of_answer: bool = False) -> Iterator[str]:
+    """Yield the fields of an object; those of an answer have no defaults."""
     required = schema.get("required", ())
-    yield "| field | type | unit | default | |"
-    yield "|---|---|---|---|---|"
+    heads = ["field", "type", "unit", *([] if of_answer else ["default"]), ""]
+    yield f"| {' | '.join(heads)} |"
+    yield "|---" * len(heads) + "|"
     for name, field in schema.get("properties", {}).items():
-        if name in hidden:
+        if of_answer and name in HIDDEN:
             continue
         default = "" if name in required else f"`{json.dumps(field['default'])}`" if "default" in field else "optional"
         meaning = _one_line(field.get("description", ""))
         unit = next(_units(field), "")
-        yield f"| `{name}` | {_type(field)} | {unit} | {default} | {meaning} |"
+        cells = [f"`{name}`", _type(field), unit, *([] if of_answer else [default]), meaning]
+        yield f"| {' | '.join(cells)} |"
 
 
 def _type(field: Mapping[str, Any]) -> str:

@@ -2,7 +2,7 @@
 
 `sh` and `python` run as they stand, in a folder of their own; what a block prints is the `text` or
 `json` that follows. `json` behind the name of an endpoint is a request to it, and the `json` after that its answer. A
-block that cannot run says so in its first line: `# not run: needs Docker`.
+block that cannot run says so in its first line: `# not tested: needs Docker`.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_blocks_run_and_print_what_is_shown(page: Path, service: str, folder: Path) -> None:
     runner = Page(service, folder)
     for block in blocks(page.read_text()):
-        if block.not_run is None:
+        if block.untested is None:
             runner.run(block)
 
 
@@ -117,8 +117,8 @@ def test_blocks_run_and_print_what_is_shown(page: Path, service: str, folder: Pa
 def test_every_block_is_run_or_says_why_not(page: Path) -> None:
     for block in blocks(page.read_text()):
         assert block.language in RUN + SHOWN, block.code
-        assert block.not_run is None or block.not_run in REASONS
-        assert "not run" not in block.code or block.not_run
+        assert block.untested is None or block.untested in REASONS
+        assert "not tested" not in block.code or block.untested
 
 
 def test_the_request_of_the_readme_is_that_of_the_example() -> None:
