@@ -196,10 +196,13 @@ def _holds(
     if state is State.OPEN:
         return _at_least_zero(after[a] + _rebound(one, rates[a]))
     push = impulses[a]
-    if not _at_least_zero(push):
+    if not _at_least_zero(push) or not is_zero(after[a] + _rebound(one, rates[a])):
         return False
     if state is State.STICK:
-        return all(_at_least_zero(x) for x in grips(one.static * push, [impulses[line] for line in found.grip(i)]))
+        # Impulses that cannot be told from zero are zero: then what they would have to stop may be known to go on.
+        return all(is_zero(after[line]) for line in found.grip(i)) and all(
+            _at_least_zero(x) for x in grips(one.static * push, [impulses[line] for line in found.grip(i)])
+        )
     if state.sense and i in ways:
         c, s = ways[i]
         return _at_least_zero(c * after[found.slips[i]] + s * after[found.across[i]])
