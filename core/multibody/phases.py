@@ -156,6 +156,7 @@ class _Run:
                 tracks.floor = max(tracks.floor, share)
                 tracks.part(self.motion.phases[-1].still, share)
                 tracks.delay(share * tracks.own_time())
+                tracks.lose(*([share * x for x in scales] for scales in tracks.scales()))
                 q, v = tracks.wide()
                 # What is within that of another contact touches it.
                 near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
