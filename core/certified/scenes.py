@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
 from types import NoneType, UnionType
-from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from flint import arb
 
@@ -36,20 +36,10 @@ LARGEST = Fraction(10**300)
 SceneType = TypeVar("SceneType", bound=NamedScene)
 
 
-@dataclass(frozen=True)
-class CertifiedScene:
-    """Answer to a question about a scene, with decimal numerals instead of doubles.
+class CertifiedScene(NamedTuple):
+    """Answer to a question about a scene, as `core.scenes.named_scene.SceneAnswer` with decimal numerals for numbers.
 
-    Attributes
-    ----------
-    model : Model
-    figures : mapping
-        By name; nested as in the scene's answer.
-    trajectory : mapping of str to list, or None
-        Columns; ``time`` has the requested times at which the motion exists.
-    ended : str or None
-        ``"horizon"``, or the event that ended the motion earlier.
-    warnings : tuple of Notice
+    Columns of the trajectory are lists; ``time`` has the requested times at which the motion exists, as given.
     """
 
     model: Model

@@ -233,7 +233,7 @@ class ScenePhase:
     ----------
     start : float
     end : float or None
-        None where it lasts beyond the times asked for.
+        None where it lasts beyond the times of the question.
     model, why : str
     degrees_of_freedom : int
     coordinates : int
@@ -321,7 +321,7 @@ class RestRange:
 
 @dataclass(frozen=True)
 class SceneAnswer:
-    """The answer to a question about a scene; what was not asked for is None."""
+    """The answer to a question about a scene; what was not requested is None."""
 
     model: SceneModel
     accelerations: Mapping[str, BodyAcceleration] | None

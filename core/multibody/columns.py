@@ -17,6 +17,10 @@ from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
+NEAREST = 2.0**-53 * (1 + 2.0**-20)
+"""The same for coordinates and rates that are the doubles nearest to pairs."""
+FINEST = 2.0**-50
+"""An accuracy below this is only met by such doubles."""
 _SOLVED = 2.0**-100
 """Share of the largest multiplier to which all of them are known, with the state."""
 _TELL = 1.02
@@ -35,6 +39,7 @@ class Columns:
     times: Floats
     states: WholeStates
     how: How
+    rounding: float = _SMALL
     _along: dict[tuple[int, bool], Floats] = field(default_factory=dict, repr=False)
 
     def trajectory(self) -> dict[str, Column]:
@@ -151,12 +156,12 @@ class Columns:
         where = list(indices)
         values = (self.states.v if rates else self.states.q)[:, where, 0]
         errors = (self.states.v_error if rates else self.states.q_error)[:, where]
-        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1)), self.how)
+        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1), self.rounding), self.how)
 
     def _scalar(self, index: int, unit: str, *, rates: bool) -> Column:
         values = (self.states.v if rates else self.states.q)[:, index, 0]
         errors = (self.states.v_error if rates else self.states.q_error)[:, index]
-        return Column(values, unit, _stated(values, errors), self.how)
+        return Column(values, unit, _stated(values, errors, self.rounding), self.how)
 
     def _angle(self, direction: tuple[int, int], name: str) -> Column:
         """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
@@ -251,9 +256,9 @@ def quaternions(axes: Floats) -> Floats:
     return out
 
 
-def _stated(values: Floats, errors: Floats) -> float:
+def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
     size = np.abs(values) if values.ndim == 1 else np.linalg.norm(values, axis=1)
-    return _TELL * float(np.max(errors, initial=0.0)) + _SMALL * float(np.max(size, initial=0.0))
+    return _TELL * float(np.max(errors, initial=0.0)) + rounding * float(np.max(size, initial=0.0))
 
 
 def apart(column: Column, other: Column) -> float:
@@ -325,6 +330,13 @@ def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: f
     """
     require_known(columns)
     reached = worst(columns)
+    if reached > accuracy and reached <= 2 * FINEST:
+        raise AccuracyUnreachable(
+            accuracy,
+            reached,
+            "the samples are doubles, and angles, forces and energies are computed in them",
+            remedy="ask for places and velocities of particles alone, or for digits: POST /v1/certified/scenes",
+        )
     if reached > accuracy:
         raise AccuracyUnreachable(
             accuracy,

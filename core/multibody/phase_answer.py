@@ -64,7 +64,7 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         raise NotApplicable(
             f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",
             path=("outputs", unknown[0]),
-            remedy="leave it out; events are found without being asked for",
+            remedy="leave it out; events are found without being requested",
         )
     if "equilibria" in request.outputs:
         raise NotApplicable(

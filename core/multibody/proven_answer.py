@@ -92,7 +92,7 @@ def proven_answer(
     BudgetExceeded
         For a motion that is longer than can be proven.
     """
-    check_digits(digits, 12 * len(scene.bodies) * max(1, len(times)))
+    check_digits(digits, 8 * len(scene.bodies) * max(1, len(times)))
     if one_sided(scene):
         raise NotApplicable(
             "contacts are decided with the digits of their own set-up, and no more are proven",

@@ -29,7 +29,7 @@ from core.work import spend
 
 MOST_STEPS, MOST_WORK = 400, 12_000
 """Steps that a motion may take on either side of the start, and the same times the square of its unknowns."""
-_WORK_OF_A_STEP = 10_000
+_WORK_OF_A_STEP = 3_000
 _ORDERS = 0.35
 """Orders of a step for each bit of the precision: more would be as costly, in fewer steps."""
 _SPARE = 24

@@ -12,6 +12,8 @@ from core.multibody.along import Along
 from core.multibody.answer import Extremes, Occurrence, SceneEvent
 from core.multibody.columns import (
     COLUMNS_OF_STATES,
+    FINEST,
+    NEAREST,
     Columns,
     apart,
     relative,
@@ -172,16 +174,16 @@ class DescribedSystem:
     def _own(self, times: Floats, accuracy: float) -> dict[str, Column]:
         """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""
         columns = self._columns(times, finer=False)
-        if self.numerical and worst(columns) > accuracy:
+        if worst(columns) > accuracy and (self.numerical or accuracy < FINEST):
             self.finer = True
-            columns = self._columns(times, finer=True)
+            columns = self._columns(times, finer=True, rounding=NEAREST if accuracy < FINEST else FINEST)
         sums = Along(self.whole, times, self.how, finer=self.finer)
         columns |= sums.works() if "work-in-time" in self.outputs else {}
         columns |= sums.paths() if "paths-in-time" in self.outputs else {}
         require_reached(columns, accuracy)
         return columns
 
-    def _columns(self, times: Floats, *, finer: bool) -> dict[str, Column]:
+    def _columns(self, times: Floats, *, finer: bool, rounding: float = FINEST) -> dict[str, Column]:
         """Return the columns of the states of the motion itself, with their errors."""
         states = self.whole.states(times, finer=finer)
         if self.whole.dropped and self.whole.misfit(states.q) > _HOLDS:
@@ -190,7 +192,7 @@ class DescribedSystem:
                 path=("connections",),
                 remedy="start elsewhere",
             )
-        return Columns(self.whole, times, states, self.how).chosen(self.outputs, self.determined)
+        return Columns(self.whole, times, states, self.how, rounding).chosen(self.outputs, self.determined)
 
     def _measured(self, times: Floats, states: WholeStates, how: How) -> dict[str, Column]:
         """Return the columns of states that a method computed, their errors measured against the motion itself."""

@@ -228,7 +228,7 @@ class UnwindingShafts(NamedScene):
     def motion(self, horizon: float) -> ShaftMotion:
         """Return the motion from the given state to the event that ends it, or past the horizon (s)."""
         if self.positions is None:
-            raise InvalidParameter("positions", "be given when a motion is asked for")
+            raise InvalidParameter("positions", "be given when a motion is requested")
         if not self._constants.determinate:
             raise NotApplicable(
                 "with two shafts without inertia nothing fixes how fast each of them spins",

@@ -1,4 +1,4 @@
-"""The policy: from the accuracy that is asked for to the smallest model and the cheapest method that reaches it.
+"""The policy: from the accuracy that is requested to the smallest model and the cheapest method that reaches it.
 
 A closed form, where there is one, is both the cheapest and the most accurate. Otherwise the record of the methods is
 read: errors and times measured on problems with known solutions, generated and never typed. The record only says

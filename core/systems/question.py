@@ -1,4 +1,4 @@
-"""What is asked of a motion, and what a system is: anything whose motion can be asked for."""
+"""A question about a motion, and what a system is: anything that has one."""
 
 from __future__ import annotations
 

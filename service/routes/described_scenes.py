@@ -38,7 +38,7 @@ vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are l
 Forces that the scene does not determine are null. `outputs` may also ask when a quantity takes a value,
 `{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
 `{"extremes": "rod.force"}`, between the start and the latest of the times. Between which
-values of a number a scene stays at rest is asked by its JSON pointer,
+values of a number a scene stays at rest is requested by its JSON pointer,
 `{"thresholds": {"vary": "/connections/0/friction", "between": [0, 2]}}`.
 
 Contacts push and do not pull, with friction and restitution; strings become slack and taut again. The
@@ -81,7 +81,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     found = solve_scene(
         question.scene(),
         times,
-        question.asked(),
+        question.requested(),
         question.accuracy,
         method=question.method,
         input_uncertainty=question.input_uncertainty,
@@ -89,7 +89,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         budget=budget,
     )
     motion = found.trajectory
-    answer: Answer = {"model": _model(found.model), "warnings": [] if motion is None else list(motion.warnings)}
+    answer: Answer = {"model": model_fields(found.model), "warnings": [] if motion is None else list(motion.warnings)}
     for name, start in (
         ("accelerations", {body: fields_of(one) for body, one in (found.accelerations or {}).items()}),
         ("forces", {force: fields_of(one) for force, one in (found.forces or {}).items()}),
@@ -129,11 +129,12 @@ def _of_rest(found: RestRange) -> dict[str, Any]:
     return fields_of(found) | {name: None if end is None else fields_of(end) for name, end in ends.items()}
 
 
-def _model(model: SceneModel) -> dict[str, Any]:
+def model_fields(model: SceneModel) -> dict[str, Any]:
+    """Return the fields of a model, its modes as objects."""
     return fields_of(model) | {"apart": [fields_of(part) | {"modes": _modes(part.modes)} for part in model.apart]}
 
 
-def _modes(modes: Sequence[tuple[float, float]]) -> list[dict[str, float]]:
+def _modes(modes: Sequence[tuple[Any, Any]]) -> list[dict[str, Any]]:
     return [{"frequency": frequency, "growth_rate": growth} for frequency, growth in modes]
 
 

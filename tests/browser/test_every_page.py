@@ -65,15 +65,18 @@ def test_weight_and_time(opened, base, path):
     def weigh(response):
         sizes[response.url] = len(gzip.compress(response.body(), 9))
 
-    start = time.perf_counter()
-    page = opened(path, watch=weigh)
-    seconds = time.perf_counter() - start
-    page.wait_for_load_state("networkidle")
+    # Each time in a new context, whose cache is empty; the least time is the one that others disturbed least.
+    seconds = []
+    for _ in range(3):
+        start = time.perf_counter()
+        page = opened(path, watch=weigh)
+        seconds.append(time.perf_counter() - start)
+        page.wait_for_load_state("networkidle")
     files = {url: size for url, size in sizes.items() if "/v1/" not in url}
     assert all(urlsplit(url).netloc == urlsplit(base).netloc for url in sizes)
     assert 50_000 < sum(files.values()) <= 700_000
     FIGURES.append(
-        f"{path}: {len(files)} files, {sum(files.values()) / 1e3:.0f} kB gzipped, ready after {seconds:.2f} s"
+        f"{path}: {len(files)} files, {sum(files.values()) / 1e3:.0f} kB gzipped, ready after {min(seconds):.2f} s"
     )
 
 

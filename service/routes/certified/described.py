@@ -8,22 +8,25 @@ from pydantic import Field
 
 from core.certified.adaptive_precision import check_digits
 from core.multibody.proven_answer import PROVEN_OUTPUTS, proven_answer
-from core.quantities import Unit
 from core.systems.budget import Budget
 from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants
 from service.requests.described_scene import SceneDescription
 from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP
+from service.routes.described_answer import AtStart, OwnUnit
 from service.routes.described_figure import drawn
-from service.routes.described_scenes import DESCRIBED_SCENES, NEAR
+from service.routes.described_scenes import DESCRIBED_SCENES, model_fields
 from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routing import Answer, PlanningProbe
-from service.schemas import DecimalString, Joules, PerSecond, RadiansPerSecond, Seconds, View, fields_of, sample_count
+from service.schemas import DecimalString, Seconds, View, fields_of, sample_count
 
-OwnUnit = Unit("as in the field unit")
+NUMBERS_OF_A_BODY = 8
+"""Numbers in a sample of a body, about."""
 PER_SECOND = 0.7
 """Time to prove a second of the motion of a pendulum to 28 digits (s)."""
+NEAR = 1e-4
+"""How far (s) a motion is followed when it is planned: one step, most often."""
 LONGEST = 20.0
 """Time after which the steps that core allows are used up, about (s)."""
 
@@ -44,65 +47,6 @@ class CertifiedSceneRequest(SceneDescription):
     digits: DigitCount
 
 
-class CertifiedMode(View):
-    """One mode: q = exp(growth_rate t) cos(frequency t)."""
-
-    frequency: RadiansPerSecond[DecimalString]
-    growth_rate: PerSecond[DecimalString]
-
-
-class CertifiedPart(View):
-    """A part of a scene that has no force or connection in common with the others, and its smallest model."""
-
-    name: str
-    why: str
-    degrees_of_freedom: int
-    coordinates: list[str] = Field(description="Those that remain.")
-    period: Seconds[DecimalString] | None = Field(description="Of a single mode.")
-    modes: list[CertifiedMode] = Field(description="Of a linear part.")
-
-
-class CertifiedModel(View):
-    """The smallest model of a scene, and what was noticed on the way."""
-
-    name: str
-    why: str
-    degrees_of_freedom: int = Field(description="Of the motion from the given state.")
-    mobility: int = Field(description="Degrees of freedom of the scene: what could move, though it may not.")
-    coordinates: int = Field(description="Coordinates that remain.")
-    rows: int = Field(description="Equations of constraint that remain.")
-    described: tuple[int, int] = Field(description="Coordinates and equations of constraint before.")
-    apart: list[CertifiedPart]
-    noticed: list[str] = Field(description="Sentences.")
-
-
-class CertifiedAccelerations(View):
-    """Accelerations of a body at the start."""
-
-    linear: list[Annotated[DecimalString, Unit("m s^-2")]] = Field(description="Of the centre of mass.")
-    angular: Annotated[DecimalString | list[DecimalString] | None, Unit("rad s^-2")] = Field(
-        description="A number in the plane, in body axes in space; null for particles and tops."
-    )
-
-
-class CertifiedForce(View):
-    """A force of a connection at the start."""
-
-    value: Annotated[DecimalString | None, OwnUnit] = Field(description="null if it is not determined.")
-    unit: str
-    determined: bool = Field(description="Whether the scene determines it.")
-    shared_with: list[str] = Field(description="Connections that share what is not determined.")
-
-
-class CertifiedEnergy(View):
-    """Energies at the start; the potential of gravity is zero at the origin."""
-
-    kinetic: Joules[DecimalString]
-    potential: Joules[DecimalString]
-    total: Joules[DecimalString]
-    conserved: bool = Field(description="Whether nothing works on the scene.")
-
-
 class CertifiedColumn(View):
     """One quantity at every time."""
 
@@ -118,13 +62,9 @@ class CertifiedMotion(View):
     columns: dict[str, CertifiedColumn]
 
 
-class CertifiedDescribedAnswer(Certified):
+class CertifiedDescribedAnswer(Certified, AtStart[DecimalString]):
     """The requested answer about a scene, numbers as decimal strings."""
 
-    model: CertifiedModel
-    accelerations: dict[str, CertifiedAccelerations] | None = Field(default=None, description="By body.")
-    forces: dict[str, CertifiedForce] | None = Field(default=None, description="By connection.")
-    energy: CertifiedEnergy | None = None
     ended: str | None = Field(description="horizon, or the kind of the event that ends the motion; null without times.")
     trajectory: CertifiedMotion | None = None
 
@@ -135,13 +75,8 @@ def answer_certified_scene(question: CertifiedSceneRequest, budget: Budget) -> A
     _samples(question, budget)
     times = () if question.times is None else instants(question.times)
     found = proven_answer(question.scene(), digits, times, question.outputs or PROVEN_OUTPUTS)
-    apart = []
-    for part in found.model.apart:
-        modes = [{"frequency": frequency, "growth_rate": growth} for frequency, growth in part.modes]
-        apart.append(fields_of(part) | {"modes": modes})
-        del apart[-1]["precession"]
     answer: Answer = {
-        "model": fields_of(found.model) | {"apart": apart},
+        "model": model_fields(found.model),
         "accuracy": accuracy(digits),
         "ended": found.ended,
         "warnings": found.warnings,
@@ -165,7 +100,7 @@ def _samples(question: CertifiedSceneRequest, budget: Budget) -> int:
     if question.times is None:
         return 0
     samples = sample_count(question.times, budget)
-    check_digits(question.digits, 12 * len(question.bodies) * samples)
+    check_digits(question.digits, NUMBERS_OF_A_BODY * len(question.bodies) * samples)
     return samples
 
 
