@@ -49,6 +49,8 @@ class Impact:
         Of every measure that takes one: along its gap, and along its slip, of which there are two in space.
     unilateral : sequence of Unilateral
         The measures, those that slip in space turned into the direction in which they did.
+    change : list of ball
+        Of all rates.
     loss : ball
         Kinetic energy that is lost.
     together : bool
@@ -59,6 +61,7 @@ class Impact:
     impulses: dict[int, tuple[Ball, Ball, Ball]]
     loss: Ball
     unilateral: Sequence[Unilateral]
+    change: list[Ball]
     together: bool = False
 
 
@@ -114,7 +117,8 @@ def impact(
             tuple(unilateral[i].name for i in impulses),
             decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
         )
-    return Impact(after, impulses, ZERO if is_zero(loss) else loss, unilateral, together)
+    change = [x - y for x, y in zip(after, v, strict=True)]
+    return Impact(after, impulses, ZERO if is_zero(loss) else loss, unilateral, change, together)
 
 
 def _group(
@@ -136,7 +140,7 @@ def _group(
         in_turn = _in_turn(unilateral, ordered, rates, found)
         return in_turn if in_turn is not None else _endless(names)
     if settled is not None:
-        return likest(unilateral, group, rates, _rates(unilateral, group, q, settled.v, found), found)
+        return likest(unilateral, group, rates, settled.change, found)
     at_once = impulses_at_once(unilateral, group, rates, found)
     if isinstance(at_once, Problem):
         return at_once

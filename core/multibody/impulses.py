@@ -92,14 +92,15 @@ def impulses_at_once(
 
 
 def likest(
-    unilateral: Sequence[Unilateral], group: Sequence[int], rates: Rates, wanted: Rates, found: Responses
+    unilateral: Sequence[Unilateral], group: Sequence[int], rates: Rates, change: Sequence[Ball], found: Responses
 ) -> Forces:
-    """Return the impulses of the states after which rates are nearest to those wanted.
+    """Return the impulses of the states that change the rates of all coordinates most nearly as wanted.
 
-    Which states go with the impact is known from a state with its error; beside it signs may be otherwise by rounding.
+    Which states go with the impact is known from a state with its error; beside it signs may be otherwise by rounding,
+    and lines that depend on one another may do so only nearly.
     """
-    known: list[tuple[float, float, Forces]] = []
-    scale = max((abs(float(x)) for x in rates.values()), default=0.0)
+    best: Forces = {}
+    least = float("inf")
     for states in product(*(_choices(i, found) for i in group)):
         slides = [i for i, state in zip(group, states, strict=True) if state.sense and i in found.across]
         if len(slides) > 1:
@@ -108,13 +109,12 @@ def likest(
             impulses = _solved(unilateral, group, states, rates, found, ways)
             if impulses is None:
                 continue
-            after = rates_after(impulses, rates, found)
-            apart = max(abs(float((x - wanted[a]).mid())) for a, x in after.items())
-            known.append((apart, sum(abs(float(x)) for x in impulses.values()), impulses))
-    least = min((one[0] for one in known), default=0.0)
-    # Where lines depend on one another but for rounding, huge impulses have the same effect along them.
-    alike = [one for one in known if one[0] <= 4.0 * least + LIMIT * scale]
-    return min(alike, key=lambda one: one[1], default=(0.0, 0.0, {}))[2]
+            forces = [impulses.get(b, ZERO) for b in range(len(found.columns))]
+            changed = found.accelerations(forces, from_rest=True)
+            apart = max((abs(float((x - y).mid())) for x, y in zip(changed, change, strict=True)), default=0.0)
+            if apart < least:
+                best, least = impulses, apart
+    return best
 
 
 def _choices(i: int, found: Responses) -> tuple[State, ...]:
@@ -196,10 +196,13 @@ def _holds(
     if state is State.OPEN:
         return _at_least_zero(after[a] + _rebound(one, rates[a]))
     push = impulses[a]
-    if not _at_least_zero(push):
+    if not _at_least_zero(push) or not is_zero(after[a] + _rebound(one, rates[a])):
         return False
     if state is State.STICK:
-        return all(_at_least_zero(x) for x in grips(one.static * push, [impulses[line] for line in found.grip(i)]))
+        # Impulses that cannot be told from zero are zero: then what they would have to stop may be known to go on.
+        return all(is_zero(after[line]) for line in found.grip(i)) and all(
+            _at_least_zero(x) for x in grips(one.static * push, [impulses[line] for line in found.grip(i)])
+        )
     if state.sense and i in ways:
         c, s = ways[i]
         return _at_least_zero(c * after[found.slips[i]] + s * after[found.across[i]])

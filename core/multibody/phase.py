@@ -37,6 +37,8 @@ class Phase:
     states : list of State
     unilateral : list of Unilateral
         The measures; those that slide in space are turned into the direction in which they do at the start.
+    unknown : two lists of float, or None
+        By how much every coordinate and rate is wrong at the start on all tracks alike.
     end : ball or None
         None for the last.
     bounces : Accumulation or None
@@ -48,6 +50,7 @@ class Phase:
     tables: list[PhaseTable]
     states: list[State]
     unilateral: list[Unilateral]
+    unknown: tuple[list[float], list[float]] | None = None
     end: Ball | None = None
     bounces: Accumulation | None = None
 
@@ -122,10 +125,20 @@ def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tr
         if not tracks.exact:
             project(phase.table, tracks.wide()[0])
             tracks.settle(phase.table.q, phase.table.v)
+            if track is tracks.first:
+                table = phase.table
+                # What is zero as far as it is known becomes zero on all tracks, which may then agree too well.
+                known = tracks.wide()
+                lost = [
+                    [_apart(x, y) for x, y in zip(*both, strict=True)]
+                    for both in zip((table.q, table.v), known, strict=True)
+                ]
+                tracks.lose(*lost)
         models.append(_model(base, found, phase, start))
         each.append(Track(track.time, phase.table.q, phase.table.v))
         tables.append(phase)
-    return Phase(each, models, tables, found.states, found.unilateral)
+    unknown = tracks.lost if any(map(any, tracks.lost)) else None
+    return Phase(each, models, tables, found.states, found.unilateral, unknown)
 
 
 def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:
@@ -144,6 +157,11 @@ def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactS
             own.lost_to_doubles = True
         parts.append((indices, own))
     return replace(found, whole=replace(found.whole, parts=parts))
+
+
+def _apart(now: Ball, known: Ball) -> float:
+    """Return how far a number is at most from what is known of it."""
+    return abs(float((now - known).mid())) + float(known.rad())
 
 
 def _pulls(piece: Piece) -> list[Ball]:

@@ -271,6 +271,11 @@ def _states(phase: Phase, times: Floats, motion: PhaseMotion) -> WholeStates:
         FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
     )
     q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
+    if phase.unknown is not None:
+        moves = np.array([not still for still in phase.still])
+        places, rates = np.array(phase.unknown[0]), np.array(phase.unknown[1]) * moves
+        late = np.array([max(float(arb(float(t)) - phase.start), 0.0) for t in times])
+        q_error, v_error = q_error + places + np.outer(late, rates), v_error + rates
     reference = first.reference
     if len(found) > 1:
         other = found[1]

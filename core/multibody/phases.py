@@ -156,6 +156,7 @@ class _Run:
                 tracks.floor = max(tracks.floor, share)
                 tracks.part(self.motion.phases[-1].still, share)
                 tracks.delay(share * tracks.own_time())
+                tracks.lose(*([share * x for x in scales] for scales in tracks.scales()))
                 q, v = tracks.wide()
                 # What is within that of another contact touches it.
                 near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
@@ -179,12 +180,16 @@ class _Run:
         return False
 
     def _slowness(self, hit: Sequence[int]) -> float:
-        """Return how slowly what hits does so, as a share of the largest rate, if it has done so often; else 0."""
+        """Return what is left of bounces that are slow, as a share of the largest rate, if there were many; else 0."""
         names = Counter(event.name for event in self.motion.events[-2 * LISTED :])
         if len(self.motion.events) < LISTED or any(names[self.unilateral[i].name] < OFTEN for i in hit):
             return 0.0
         share = max(self._share(i) for i in hit)
-        return share if share < SLOW else 0.0
+        if not share < SLOW:
+            return 0.0
+        # All bounces that would follow, each less than the one before by the restitution, and as much again.
+        bounciest = max(float(self.unilateral[i].restitution) for i in hit)
+        return 2.0 * share / (1.0 - bounciest) if bounciest < 1.0 else 0.0
 
     def _share(self, i: int) -> float:
         """Return the rate of a gap as a share of the largest rate so far of its unit."""

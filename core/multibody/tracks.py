@@ -52,12 +52,15 @@ class Tracks:
     each : list of Track
     floor : float
         Share of the largest coordinate of its unit that the state is wrong by at least.
+    lost : two lists of float
+        By how much coordinates and rates are wrong on all tracks alike: what was taken to be zero, or left out.
     """
 
     def __init__(self, units: Sequence[str], q: Sequence[Ball], v: Sequence[Ball]) -> None:
         self.units = units
         self.each = [Track(ZERO, list(q), list(v))]
         self.floor = FLOOR
+        self.lost = [0.0] * len(q), [0.0] * len(q)
         self._largest: tuple[dict[str, float], dict[str, float]] = ({}, {})
         self.scales()
 
@@ -111,6 +114,7 @@ class Tracks:
 
     def lived(self, time: float, before: Sequence[Ball], after: Sequence[Ball], acceleration: Sequence[Ball]) -> None:
         """Take account of how large coordinates and rates were during a phase, as far as its ends tell."""
+        self.lost = [x + time * y for x, y in zip(*self.lost, strict=True)], self.lost[1]
         for i, unit in enumerate(self.units):
             pull = abs(float(acceleration[i].mid()))
             moved = abs(float((after[i] - before[i]).mid()))
@@ -136,6 +140,11 @@ class Tracks:
             ),
             default=0.0,
         )
+
+    def lose(self, places: Sequence[float], rates: Sequence[float]) -> None:
+        """Take account of changes of which the difference of the tracks says nothing."""
+        q, v = ([x + y for x, y in zip(*both, strict=True)] for both in zip(self.lost, (places, rates), strict=True))
+        self.lost = q, v
 
     def settle(self, q: Vector, v: Vector) -> None:
         """Make exact zeros of what a projection leaves of numbers that the rows hold at zero."""
