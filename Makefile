@@ -2,13 +2,15 @@
 # targets install what the tests need, too.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 ENV := .venv
+# Byte code that is written once saves every process seconds at its start.
+unexport PYTHONDONTWRITEBYTECODE
 BIN := $(ENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
 .PHONY: serve test check kernels environment openapi judge plans record peers peers-scenes newest clean
-.PHONY: browser pictures vendor
+.PHONY: browser pictures vendor site
 
 serve: $(ENV)/runs
 	@$(BIN)/python -m service
@@ -50,6 +52,8 @@ openapi: environment
 judge: environment
 	$(BIN)/python -m tests.core.certified.judge 100000
 	$(BIN)/python -m tests.core.multibody.judge 10000
+	$(BIN)/python -m tests.core.multibody.named_judge 1000
+	$(BIN)/python -m tests.core.multibody.contact_judge 10000
 
 plans: environment
 	RANDOM_QUESTIONS=300 $(BIN)/python -m pytest -q tests/service/test_plan.py -k random
@@ -104,6 +108,19 @@ $(BROWSER)/made: tests/browser/requirements.txt
 	$(BROWSER)/bin/python -m pip install --quiet --disable-pip-version-check -r $<
 	@touch $@
 
+# The documentation as a static site in build/site/html, which loads nothing from elsewhere.
+SITE := .venv-site
+
+site: $(ENV)/runs $(SITE)/made
+	$(BIN)/python -m docs.site build/site
+	NO_MKDOCS_2_WARNING=1 $(SITE)/bin/mkdocs build --quiet --config-file build/site/mkdocs.yml
+	@! grep -rlE '<(script|img|link)[^>]* (src|href)="?https?:' build/site/html --include='*.html'
+
+$(SITE)/made: docs/site/requirements.txt
+	$(PYTHON) -m venv $(SITE)
+	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check -r $<
+	@touch $@
+
 # The vendored files of the pages, from the npm packages of the versions in service/page/vendor/package.json.
 VENDOR := service/page/vendor
 
@@ -119,7 +136,7 @@ vendor:
 	cp build/vendor/node_modules/swagger-ui-dist/swagger-ui-bundle.js.LICENSE.txt $(VENDOR)/swagger-ui-bundle.LICENSE.txt
 
 clean:
-	rm -rf $(ENV) $(PEERS) $(NEWEST) $(BROWSER) build/vendor .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(ENV) $(PEERS) $(NEWEST) $(BROWSER) $(SITE) build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find core service -name __pycache__ -prune -exec rm -rf {} +
 
 # A longer fuzz than the tests', with a new seed each time; FUZZ is the number of questions for each endpoint.

@@ -14,6 +14,11 @@ from threading import RLock
 
 from flint import ctx
 
+
+class Undetermined(ArithmeticError):
+    """An enclosure is too wide for a decision or a digit; a higher precision makes it narrower."""
+
+
 # Held while the precision is changed, so that no thread computes at the precision of another.
 _precision_lock = RLock()
 

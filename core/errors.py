@@ -15,7 +15,8 @@ classes to HTTP responses in one table; no status code appears here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 Path = tuple[str | int, ...]
 
@@ -126,3 +127,15 @@ class BudgetExceeded(MechanicsError):
     def __init__(self, what: str, needed: int, limit: int, *, path: Path = (), remedy: str | None = None) -> None:
         super().__init__(f"{needed} {what} are needed and {limit} are allowed", path=path, remedy=remedy)
         self.what, self.needed, self.limit = what, needed, limit
+
+
+@contextmanager
+def inside_field(*steps: str | int) -> Iterator[None]:
+    """Prefix the path of every fault with the field of the question to which it belongs."""
+    try:
+        yield
+    except InvalidParameter as fault:
+        raise fault.inside(*steps) from fault.__cause__
+    except MechanicsError as fault:
+        fault.path = (*steps, *fault.path)
+        raise

@@ -38,7 +38,7 @@ from core.systems.methods import (
 )
 from core.systems.methods.dormand_prince_853 import SMALLEST_TOLERANCE
 from core.systems.solve import checked_times
-from core.systems.system import Floats, System
+from core.systems.system import Floats, InitialValueProblem
 
 STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
 TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))
@@ -138,7 +138,7 @@ class WorkPrecision:
 
 
 def work_precision(
-    system: System,
+    system: InitialValueProblem,
     times: ArrayLike,
     methods: Sequence[Method] | None = None,
     *,
@@ -151,7 +151,7 @@ def work_precision(
 
     Parameters
     ----------
-    system : System
+    system : InitialValueProblem
     times : array_like, shape (n,)
         As in `solve`.
     methods : sequence of Method, optional
@@ -197,7 +197,7 @@ def check_distinct(methods: Sequence[Method]) -> None:
             )
 
 
-def default_methods(system: System, times: Floats) -> tuple[Method, ...]:
+def default_methods(system: InitialValueProblem, times: Floats) -> tuple[Method, ...]:
     """Return every method that the system admits, with a ladder of settings.
 
     Steps are fractions of the motion's own time, the size of the state over its rate of change, or of the horizon where
@@ -242,7 +242,7 @@ class _Reference(NamedTuple):
     largest_norm: float
 
 
-def _reference(system: System, times: Floats, budget: Budget) -> _Reference:
+def _reference(system: InitialValueProblem, times: Floats, budget: Budget) -> _Reference:
     exact = system.closed_form()
     if exact is not None:
         return _Reference("closed form", exact.sample(times), bound_of(exact, times), exact.largest_norm)
@@ -269,7 +269,7 @@ def _known(reference: _Reference) -> _Reference:
 
 
 def _measure(
-    system: System,
+    system: InitialValueProblem,
     times: Floats,
     method: Method,
     reference: _Reference,

@@ -61,6 +61,12 @@ class View(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        # A view in one kind of number is described as the view is.
+        if cls.__doc__ is None and cls.__pydantic_generic_metadata__["origin"] is not None:
+            cls.__doc__ = cls.__pydantic_generic_metadata__["origin"].__doc__
+
 
 class Signature(View):
     """Who answered."""

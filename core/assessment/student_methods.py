@@ -12,104 +12,78 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
 from core.compiled import kernel
-from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
+from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import Family
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 
-@kernel(march_by(VECTOR_FIELD))
-def _march_in_turn(
+@kernel(steps_by(VECTOR_FIELD))
+def _advance_in_turn(
     field: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
-    slope, grid = np.empty_like(state), np.empty_like(state)
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            h = step[i, run]
-            for j in range(count[i, run]):
-                for k in range(state.size):
-                    field(begin[i, run] + j * h, state, parameters, slope)
-                    state[k] += h * slope[k]
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-    return len(count)
+    state, slope = carried[0], work[0]
+    for j in range(count):
+        for k in range(state.size):
+            field(start + j * h, state, parameters, slope)
+            state[k] += h * slope[k]
+    return 0
 
 
-@kernel(march_by(VECTOR_FIELD))
-def _march_by_midpoint(
+@kernel(steps_by(VECTOR_FIELD))
+def _advance_by_midpoint(
     field: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
-    slope, stage, grid = np.empty_like(state), np.empty_like(state), np.empty_like(state)
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            h = step[i, run]
-            for j in range(count[i, run]):
-                t = begin[i, run] + j * h
-                field(t, state, parameters, slope)
-                for k in range(state.size):
-                    stage[k] = state[k] + 0.5 * h * slope[k]
-                field(t + 0.5 * h, stage, parameters, slope)
-                for k in range(state.size):
-                    state[k] += h * slope[k]
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-    return len(count)
+    state, slope, stage = carried[0], work[0], work[1]
+    for j in range(count):
+        t = start + j * h
+        field(t, state, parameters, slope)
+        for k in range(state.size):
+            stage[k] = state[k] + 0.5 * h * slope[k]
+        field(t + 0.5 * h, stage, parameters, slope)
+        for k in range(state.size):
+            state[k] += h * slope[k]
+    return 0
 
 
-@kernel(march_by(VECTOR_FIELD))
-def _march_by_mean_slope(
+@kernel(steps_by(VECTOR_FIELD))
+def _advance_by_mean_slope(
     field: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
-    slope, later, stage, grid = np.empty_like(state), np.empty_like(state), np.empty_like(state), np.empty_like(state)
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            h = step[i, run]
-            for j in range(count[i, run]):
-                t = begin[i, run] + j * h
-                field(t, state, parameters, slope)
-                for k in range(state.size):
-                    stage[k] = state[k] + h * slope[k]
-                field(t + h, stage, parameters, later)
-                for k in range(state.size):
-                    state[k] += 0.5 * h * (slope[k] + later[k])
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-    return len(count)
+    state, slope, later, stage = carried[0], work[0], work[1], work[2]
+    for j in range(count):
+        t = start + j * h
+        field(t, state, parameters, slope)
+        for k in range(state.size):
+            stage[k] = state[k] + h * slope[k]
+        field(t + h, stage, parameters, later)
+        for k in range(state.size):
+            state[k] += 0.5 * h * (slope[k] + later[k])
+    return 0
 
 
 @dataclass(frozen=True)
@@ -127,12 +101,13 @@ class SemiImplicitEuler(FixedStep):
 
     order: ClassVar[int] = 1
     family: ClassVar[Family] = "explicit"
+    work_vectors: ClassVar[int] = 1
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return int(system.initial_state.size)
 
     def _compiled(self) -> Any:
-        return _march_in_turn
+        return _advance_in_turn
 
 
 @dataclass(frozen=True)
@@ -150,12 +125,13 @@ class ExplicitMidpoint(FixedStep):
 
     order: ClassVar[int] = 2
     family: ClassVar[Family] = "explicit"
+    work_vectors: ClassVar[int] = 2
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2
 
     def _compiled(self) -> Any:
-        return _march_by_midpoint
+        return _advance_by_midpoint
 
 
 @dataclass(frozen=True)
@@ -173,9 +149,10 @@ class Heun(FixedStep):
 
     order: ClassVar[int] = 2
     family: ClassVar[Family] = "explicit"
+    work_vectors: ClassVar[int] = 3
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2
 
     def _compiled(self) -> Any:
-        return _march_by_mean_slope
+        return _advance_by_mean_slope

@@ -8,6 +8,8 @@ from functools import lru_cache
 
 from flint import arb, fmpz
 
+from core.balls import Undetermined
+
 FEWEST_DIGITS, MOST_DIGITS = 16, 1000
 
 SPARE_DIGITS = 4
@@ -23,10 +25,6 @@ DEEPEST = 2000
 """Decimal places below the largest norm down to which components known not to be zero are printed."""
 
 _TEN = [fmpz(10) ** k for k in range(64)]
-
-
-class Undetermined(ArithmeticError):
-    """The enclosure is too wide for the requested digits; a higher precision makes it narrower."""
 
 
 def decimal(ball: arb, digits: int, floor: int | None = None) -> str:

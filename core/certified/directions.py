@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from core.balls import Undetermined
 from core.certified.adaptive_precision import working_bits
-from core.certified.decimals import FLOOR_IN_DIGITS, Undetermined
+from core.certified.decimals import FLOOR_IN_DIGITS
 from core.certified.exact_start import Balls
 
 TIE_BITS = 320

@@ -9,8 +9,9 @@ from typing import Any, Literal, NamedTuple
 
 from flint import arb, fmpq, fmpq_poly
 
+from core.balls import Undetermined
 from core.certified.adaptive_precision import bits_for, until_determined, working_bits
-from core.certified.decimals import FEWEST_DIGITS, Undetermined
+from core.certified.decimals import FEWEST_DIGITS
 from core.certified.exact_inertia import ExactInertia, Vector, cross
 from core.certified.exact_inputs import enclosed
 

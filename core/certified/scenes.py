@@ -10,46 +10,34 @@ twice the requested digits, relative to the terms of the difference that gives i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
-from typing import Any, TypeVar
+from types import NoneType, UnionType
+from typing import Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from flint import arb
 
+from core.balls import Undetermined
 from core.certified.adaptive_precision import bits_for, check_digits, until_determined, working_bits
-from core.certified.decimals import Undetermined, decimal, place_of
+from core.certified.decimals import decimal, place_of
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
-from core.certified.scene_samples import Sampler, sampler
-from core.errors import InvalidParameter, MechanicsError, NotApplicable
+from core.errors import InvalidParameter, Path, inside_field
 from core.notices import Notice
-from core.scenes.answer import HORIZON, MOTION, ConstrainedSystem
-from core.scenes.enclosure import BITS, sign
-from core.scenes.friction import Friction
-from core.scenes.rod_in_hole import RodInHole
-from core.scenes.unwinding_shafts import UnwindingShafts
+from core.scenes.enclosure import BITS
+from core.scenes.named_scene import NamedScene
 from core.systems.system import Model
 
 LARGEST = Fraction(10**300)
 """Largest magnitude of a parameter, so that the scenes can check the range as a double."""
 
-SceneType = TypeVar("SceneType", bound=ConstrainedSystem)
+SceneType = TypeVar("SceneType", bound=NamedScene)
 
 
-@dataclass(frozen=True)
-class CertifiedScene:
-    """Answer to a question about a scene, with decimal numerals instead of doubles.
+class CertifiedScene(NamedTuple):
+    """Answer to a question about a scene, as `core.scenes.named_scene.SceneAnswer` with decimal numerals for numbers.
 
-    Attributes
-    ----------
-    model : Model
-    figures : mapping
-        By name; nested as in the scene's answer.
-    trajectory : mapping of str to list, or None
-        Columns; ``time`` has the requested times at which the motion exists.
-    ended : str or None
-        ``"horizon"``, or the event that ended the motion earlier.
-    warnings : tuple of Notice
+    Columns of the trajectory are lists; ``time`` has the requested times at which the motion exists, as given.
     """
 
     model: Model
@@ -73,14 +61,13 @@ def exact_scene(kind: type[SceneType], parameters: Mapping[str, Any]) -> SceneTy
     for name in parameters:
         if name not in known:
             raise InvalidParameter(name, f"be a parameter of this scene: one of {sorted(known - {'kind'})}")
-    converted = {name: _exactly(value, (name,)) for name, value in parameters.items()}
-    if kind is RodInHole:
-        converted.setdefault("inertia_factor", Fraction(1, 12))
-    return kind(**converted)
+    hints = get_type_hints(kind)
+    converted = {name: _exactly(value, hints[name], (name,)) for name, value in parameters.items()}
+    return kind(**{**kind.exact_defaults, **converted})
 
 
 def certified_scene(
-    scene: ConstrainedSystem,
+    scene: NamedScene,
     digits: int,
     times: Sequence[Number] | None = None,
     outputs: frozenset[str] | None = None,
@@ -89,7 +76,7 @@ def certified_scene(
 
     Parameters
     ----------
-    scene : ConstrainedSystem
+    scene : NamedScene
         Its parameters are doubles or fractions, both taken as exact.
     digits : int
         From 16 to 1000.
@@ -119,7 +106,7 @@ def certified_scene(
 
 @dataclass(frozen=True)
 class _Question:
-    scene: ConstrainedSystem
+    scene: NamedScene
     digits: int
     first_bits: int
     instants: tuple[Fraction, ...] | None
@@ -128,29 +115,19 @@ class _Question:
     def answer(self, given: Sequence[Number] | None) -> CertifiedScene:
         # A scene caches its constants; a copy computes them again, at the current precision.
         scene: Any = replace(self.scene)
-        table: dict[str, Callable[[], Any]] = dict(scene.figures())
-        motion, ended, trajectory = None, None, None
-        if self.wanted & {*MOTION, *scene.of_motion}:
-            points = [enclosed(t) for t in self.instants or ()]
-            horizon = max((float(t) for t in self.instants), default=0.0) if self.instants is not None else float("inf")
-            motion = scene.motion(horizon)
-            _refuse_rounded(scene, motion)
-            end = motion.end
-            last = None if self.instants is None else enclosed(max((*self.instants, Fraction(0))))
-            over = end is not None and (last is None or not end.time > last)
-            ended = end.kind if over else HORIZON if last is not None else None
-            table |= scene.motion_figures(motion)
-            happened = [event for event in motion.events() if last is None or not event.time > last]
-            table["events"] = lambda: [{"kind": event.kind, "time": event.time} for event in happened]
-            if "trajectory" in self.wanted and given is not None:
-                trajectory = self._trajectory(sampler(scene, motion), points, motion, given)
-        figures = {n: self._written(table[n]()) for n in scene.outputs if n in self.wanted and n in table}
-        model = scene.static_model() if motion is None else motion.model
-        return CertifiedScene(model, figures, trajectory, ended, scene.notices(self.wanted))
+        last = None if self.instants is None else max((*self.instants, Fraction(0)))
+        horizon = float("inf") if last is None else float(last)
+        bound = None if last is None else enclosed(last)
+        found = scene.outline(self.wanted, horizon, lambda time: bound is None or not time > bound, self._written)
+        fault = None if found.motion is None else scene.inexact(found.motion)
+        if fault is not None:
+            raise fault
+        trajectory = None
+        if found.motion is not None and "trajectory" in self.wanted and given is not None:
+            trajectory = self._trajectory([enclosed(t) for t in self.instants or ()], found.motion, given)
+        return CertifiedScene(found.model, found.figures, trajectory, found.ended, scene.notices(self.wanted))
 
-    def _trajectory(
-        self, sample: Sampler, points: Sequence[arb], motion: Any, given: Sequence[Number]
-    ) -> Mapping[str, list[Any]]:
+    def _trajectory(self, points: Sequence[arb], motion: Any, given: Sequence[Number]) -> Mapping[str, list[Any]]:
         existing = []
         for i, point in enumerate(points):
             if point < arb(motion.valid_from):
@@ -163,11 +140,11 @@ class _Question:
                 existing.append(i)
         columns: dict[str, list[Any]] = {"time": [given[i] for i in existing]}
         for i in existing:
-            for name, value in sample(points[i]).items():
+            for name, value in motion.at(points[i]).items():
                 columns.setdefault(name, []).append(self._written(value))
         return columns
 
-    def _written(self, value: Any) -> Any:
+    def _written(self, value: Any, path: Path = ()) -> Any:
         """Return a value with every ball in it, at any depth, as a numeral."""
         if isinstance(value, arb):
             return self._numeral(value)
@@ -186,39 +163,21 @@ class _Question:
             raise
 
 
-def _refuse_rounded(scene: ConstrainedSystem, motion: Any) -> None:
-    """Raise for a quantity that the scene takes as zero although it is not exactly zero."""
-    if not isinstance(scene, UnwindingShafts):
-        return
-    slips = [
-        Fraction(v) - Fraction(r) * Fraction(w)
-        for v, r, w in zip(scene.velocities, scene.radii, scene.spins, strict=True)
+def _exactly(value: Any, hint: Any, path: tuple[str | int, ...]) -> Any:
+    """Return a parameter of a type of core's with every number in it as a rational number."""
+    hints = [
+        part for part in (get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)) if part is not NoneType
     ]
-    taken = scene._given
-    pairs = [(sum(slips), taken.opening)]
-    if scene.friction is not None:
-        pairs += list(zip(slips, taken.slips, strict=True))
-    if sign(motion.phases.cut) > 0 or any(exactly != 0 and sign(ball) == 0 for exactly, ball in pairs):
-        raise NotApplicable(
-            "velocities and spins agree with a taut string only to rounding, or jerks become too weak to be told apart",
-            path=("digits",),
-            remedy='give velocities and spins that agree exactly, if need be as decimal strings ("0.1")',
-        )
-
-
-def _exactly(value: Any, path: tuple[str | int, ...]) -> Any:
-    if isinstance(value, Mapping):
-        parts = {name: _exactly(entry, (*path, name)) for name, entry in value.items()}
-        try:
-            return Friction(**parts)
-        except MechanicsError as fault:
-            if isinstance(fault, InvalidParameter):
-                raise fault.inside(*path) from None
-            raise
-    if isinstance(value, (tuple, list)):
-        return tuple(_exactly(entry, (*path, i)) for i, entry in enumerate(value))
-    if value is None or path[-1] in ("kind", "hole"):
+    kind = hints[0]
+    if value is None or get_origin(kind) is Literal:
         return value
+    if is_dataclass(kind) and isinstance(value, Mapping):
+        inner = get_type_hints(kind)
+        parts = {name: _exactly(entry, inner.get(name, float), (*path, name)) for name, entry in value.items()}
+        with inside_field(*path):
+            return kind(**parts)  # type: ignore[operator]
+    if isinstance(value, (tuple, list)):
+        return tuple(_exactly(entry, float, (*path, i)) for i, entry in enumerate(value))
     number = exact(value, path)
     if abs(number) > LARGEST or 0 < abs(number) < 1 / LARGEST:
         raise InvalidParameter(path, "be zero or have a magnitude between 1e-300 and 1e300")

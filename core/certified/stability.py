@@ -12,9 +12,10 @@ from fractions import Fraction
 
 from flint import arb
 
+from core.balls import Undetermined
 from core.bodies.principal_inertia import Symmetry
 from core.certified.adaptive_precision import bits_for, check_digits, until_determined
-from core.certified.decimals import Undetermined, decimal, decimal_of_fraction, decimals
+from core.certified.decimals import decimal, decimal_of_fraction, decimals
 from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers

@@ -27,10 +27,10 @@ from typing import NamedTuple
 
 from flint import arb
 
-from core.certified.decimals import Undetermined
-from core.certified.elliptic_functions import ONE, ZERO, EllipticFunctions, PhaseOfTheta, carlson_rf, split
+from core.balls import Undetermined
 from core.certified.exact_inputs import enclosed
 from core.certified.exact_start import Balls, ExactStart
+from core.elliptic.ball_functions import ONE, ZERO, EllipticFunctions, PhaseOfTheta, carlson_rf, split
 
 QuaternionBalls = tuple[arb, arb, arb, arb]
 

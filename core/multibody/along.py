@@ -8,12 +8,12 @@ from math import copysign
 import numpy as np
 
 from core.errors import BudgetExceeded
-from core.multibody.answer import Column, How
 from core.multibody.integrals import Integrand, integrated
 from core.multibody.measures import Work
 from core.multibody.momenta import work_of_potential
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, values
+from core.systems.trajectory import Column, How
 
 MOST_NODES = 20_000
 """Times at which a motion is looked at between the start and the last sample."""

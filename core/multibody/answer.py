@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
+from typing import Annotated
 
-from core.multibody.packed import Floats, Integers
-from core.notices import Notice
-from core.systems.trajectory import Work
+from core.quantities import Unit
+from core.systems.trajectory import How, Trajectory
 
-How = Literal["closed form", "measured against pairs", "measured against closed form"]
+Seconds = Annotated[float, Unit("s")]
+OwnUnit = Annotated[float, Unit("as in the field unit")]
 
 
 @dataclass(frozen=True)
@@ -126,83 +126,6 @@ class Energy:
 
 
 @dataclass(frozen=True)
-class Column:
-    """One quantity at every time.
-
-    Attributes
-    ----------
-    values : ndarray, shape (t,) or (t, k)
-    unit : str
-    error : float
-        Largest error of any sample, as a length of the vector, in the unit of the column.
-    how : str
-        How the error is known.
-    inherited : float or None
-        Largest change of any sample by the uncertainty of the inputs, to first order; None where it is not known.
-    """
-
-    values: Floats
-    unit: str
-    error: float
-    how: How
-    inherited: float | None = None
-
-
-@dataclass(frozen=True)
-class SceneAccuracy:
-    """How right the samples of a scene are.
-
-    Attributes
-    ----------
-    requested : float
-    error : float
-        Largest error of any column, relative to the largest value among the columns of its unit.
-    how : str
-        How that is known.
-    inherited : float or None
-        Largest change of any column by the uncertainty of the inputs, relative likewise; None where it is not known.
-    horizon : float or None
-        Time until which that change stays below the accuracy (s); None where it is not known.
-    why : str or None
-        Why one of them is not.
-    """
-
-    requested: float
-    error: float
-    how: How
-    inherited: float | None = None
-    horizon: float | None = None
-    why: str | None = None
-
-
-@dataclass(frozen=True)
-class SceneTrajectory:
-    """Columns by name, at times as asked for, without those that lie beyond the end of the scene.
-
-    Attributes
-    ----------
-    time : ndarray, shape (t,)
-    rows : ndarray of int, shape (t,)
-        Which of the times asked for these are.
-    columns : mapping of str to Column
-    accuracy : SceneAccuracy
-    method : str or None
-        Kind of the method that was named; None where the model's own motion is answered.
-    work : Work or None
-        What the method cost.
-    warnings : tuple of Notice
-    """
-
-    time: Floats
-    rows: Integers
-    columns: Mapping[str, Column]
-    accuracy: SceneAccuracy
-    method: str | None = None
-    work: Work | None = None
-    warnings: tuple[Notice, ...] = ()
-
-
-@dataclass(frozen=True)
 class SceneEvent:
     """Something that ends a phase or a scene.
 
@@ -258,27 +181,29 @@ class Occurrence:
 
 
 @dataclass(frozen=True)
-class Extremes:
-    """Least and largest value of a quantity, each with the time at which it is taken.
+class SceneExtremes:
+    """Least and largest value of a quantity.
 
     Attributes
     ----------
+    largest_time : float
+        Near a smooth extreme known to half of the digits only.
     error : float
         Of both values.
     until : float
-        End of the time that was searched, from the start (s).
+        End of what was searched, from the start.
     periodic : bool
         Whether that is a period, so that the extremes are those of all time.
     """
 
     quantity: str
     unit: str
-    least: float
-    least_time: float
-    largest: float
-    largest_time: float
-    error: float
-    until: float
+    least: OwnUnit
+    least_time: Seconds
+    largest: OwnUnit
+    largest_time: Seconds
+    error: OwnUnit
+    until: Seconds
     periodic: bool
 
 
@@ -308,24 +233,21 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
-class ScenePhase:
+class MotionPhase:
     """A time in which no contact, stop or string changes its state.
 
     Attributes
     ----------
-    start : float
     end : float or None
-        None where it lasts beyond the times asked for.
-    model, why : str
-    degrees_of_freedom : int
+        null for the last.
     coordinates : int
-        Those that remain.
+        Coordinates that remain.
     states : mapping of str to str
-        Of every contact, stop and string: open, closed, stick, slide, slide back.
+        By contact, stop or string: open, closed, stick, slide, slide back.
     """
 
-    start: float
-    end: float | None
+    start: Seconds
+    end: Seconds | None
     model: str
     why: str
     degrees_of_freedom: int
@@ -335,17 +257,16 @@ class ScenePhase:
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """Something that mechanics does not decide.
+    """Something that mechanics does not decide, or that is not followed any further: the motion ends there.
 
     Attributes
     ----------
     code : str
-        "no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "several-impacts", "no-impact",
-        "energy-gain" or "no-progress".
-    explanation : str
-    time : float
+        no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, several-impacts, no-impact,
+        energy-gain, grazing-contact, several-onsets, turning-onset, no-progress, event-limit or lost-event; each has a
+        section in docs/physics/undecided.md.
     connections : tuple of str
-        Those between which it is undecided.
+        Between which it is undecided.
     candidates : tuple of mapping
         What is possible.
     decided_by : str
@@ -354,7 +275,7 @@ class SceneProblem:
 
     code: str
     explanation: str
-    time: float
+    time: Seconds
     connections: tuple[str, ...]
     candidates: tuple[Mapping[str, str], ...]
     decided_by: str
@@ -362,59 +283,57 @@ class SceneProblem:
 
 @dataclass(frozen=True)
 class RestEnd:
-    """One end of the range.
+    """One end of the range of a number in which a scene stays at rest.
 
     Attributes
     ----------
-    value, error : float
-        In the unit of the number.
     beyond : mapping of str to str, or None
-        What every contact that touches does just beyond; None where rest lasts up to the bound.
+        What the contacts that touch do just beyond; null where rest lasts up to the bound.
     problem : str or None
         Code of what is undecided just beyond.
     """
 
-    value: float
-    error: float
+    value: OwnUnit
+    error: OwnUnit
     beyond: Mapping[str, str] | None
-    problem: str | None = None
+    problem: str | None
 
 
 @dataclass(frozen=True)
 class RestRange:
-    """The range of one number in which a scene stays at rest.
+    """In which range of a number a scene stays at rest.
 
     Attributes
     ----------
     vary : str
         JSON pointer of the number.
     written : float
-        Its value in the description.
+        Its value in the scene.
     lower, upper : RestEnd or None
-        None where the scene does not rest as it is written.
+        null where the scene does not rest as it is written.
     """
 
     vary: str
-    written: float
+    written: OwnUnit
     lower: RestEnd | None
     upper: RestEnd | None
 
 
 @dataclass(frozen=True)
 class SceneAnswer:
-    """The answer to a question about a scene; what was not asked for is None."""
+    """The answer to a question about a scene; what was not requested is None."""
 
     model: SceneModel
     accelerations: Mapping[str, BodyAcceleration] | None
     forces: Mapping[str, ForceAnswer] | None
     energy: Energy | None
-    trajectory: SceneTrajectory | None
+    trajectory: Trajectory | None
     period: float | None
     equilibria: tuple[Equilibrium, ...] | None
     events: tuple[SceneEvent, ...]
     ended: SceneEvent | None
     occurrences: tuple[Occurrence, ...] | None = None
-    extremes: tuple[Extremes, ...] | None = None
-    phases: tuple[ScenePhase, ...] | None = None
+    extremes: tuple[SceneExtremes, ...] | None = None
+    phases: tuple[MotionPhase, ...] | None = None
     problem: SceneProblem | None = None
     thresholds: tuple[RestRange, ...] | None = None

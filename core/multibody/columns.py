@@ -8,16 +8,27 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.multibody.answer import Column, How
+from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.measures import Force
 from core.multibody.momenta import momenta
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, WholeStates
+from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
+NEAREST = 2.0**-53 * (1 + 2.0**-20)
+"""The same for coordinates and rates that are the doubles nearest to pairs."""
+FINEST = 2.0**-50
+"""An accuracy below this is only met by such doubles."""
+_SOLVED = 2.0**-100
+"""Share of the largest multiplier to which all of them are known, with the state."""
 _TELL = 1.02
 """Margin for the judge's own error, which is some 2^-14 of what it judges."""
+
+
+COLUMNS_OF_STATES = ("trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
+"""Outputs that are columns of the state, in the order in which they are answered."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +39,7 @@ class Columns:
     times: Floats
     states: WholeStates
     how: How
+    rounding: float = _SMALL
     _along: dict[tuple[int, bool], Floats] = field(default_factory=dict, repr=False)
 
     def trajectory(self) -> dict[str, Column]:
@@ -50,17 +62,43 @@ class Columns:
                 found[f"{name}.angular_velocity_in_space"] = self._vector(frame.turns, "rad/s", rates=True)
         return found
 
+    def chosen(self, outputs: Sequence[object], determined: Sequence[bool]) -> dict[str, Column]:
+        """Return the columns of the state that are among some outputs.
+
+        Parameters
+        ----------
+        determined : sequence of bool
+            Which of the forces the scene determines; the others are left out.
+        """
+        found: dict[str, Column] = {}
+        for group in COLUMNS_OF_STATES:
+            if group in outputs and (len(self.times) or group != "forces-in-time"):
+                found.update(self.group(group, determined))
+        return found
+
+    def group(self, name: str, determined: Sequence[bool]) -> dict[str, Column]:
+        """Return the columns of one of `COLUMNS_OF_STATES`."""
+        if name == "trajectory":
+            return self.trajectory()
+        if name == "energy-in-time":
+            return self.energy()
+        if name == "momenta-in-time":
+            return self.momenta()
+        return self.forces([f for f, known in zip(self.whole.measures.forces, determined, strict=True) if known])
+
     def forces(self, chosen: Sequence[Force]) -> dict[str, Column]:
         """Return forces of connections in time."""
         q, v = self.states.q, self.states.v
         multipliers = self.whole.multipliers(q, v)
+        # What should be zero is known no better than the largest of what is solved for with it.
+        floor = _SOLVED * float(np.max(np.abs(multipliers), initial=0.0))
         judged = None
         if self.states.reference is not None:
             judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
         found: dict[str, Column] = {}
         for force in chosen:
             values, size = self.whole.force(force, q, v, multipliers)
-            error = _SMALL * float(np.max(size, initial=0.0))
+            error = _SMALL * float(np.max(size, initial=0.0)) + floor
             if judged is not None:
                 other = self.whole.force(force, *judged)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
@@ -118,12 +156,12 @@ class Columns:
         where = list(indices)
         values = (self.states.v if rates else self.states.q)[:, where, 0]
         errors = (self.states.v_error if rates else self.states.q_error)[:, where]
-        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1)), self.how)
+        return Column(values, unit, _stated(values, np.linalg.norm(errors, axis=1), self.rounding), self.how)
 
     def _scalar(self, index: int, unit: str, *, rates: bool) -> Column:
         values = (self.states.v if rates else self.states.q)[:, index, 0]
         errors = (self.states.v_error if rates else self.states.q_error)[:, index]
-        return Column(values, unit, _stated(values, errors), self.how)
+        return Column(values, unit, _stated(values, errors, self.rounding), self.how)
 
     def _angle(self, direction: tuple[int, int], name: str) -> Column:
         """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
@@ -218,9 +256,9 @@ def quaternions(axes: Floats) -> Floats:
     return out
 
 
-def _stated(values: Floats, errors: Floats) -> float:
+def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
     size = np.abs(values) if values.ndim == 1 else np.linalg.norm(values, axis=1)
-    return _TELL * float(np.max(errors, initial=0.0)) + _SMALL * float(np.max(size, initial=0.0))
+    return _TELL * float(np.max(errors, initial=0.0)) + rounding * float(np.max(size, initial=0.0))
 
 
 def apart(column: Column, other: Column) -> float:
@@ -243,7 +281,13 @@ def worst(columns: Mapping[str, Column]) -> float:
 
 
 def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> float:
-    """Return the largest of figures by column, relative to the largest value among the columns of its unit.
+    """Return the largest of figures by column, relative to the largest value among the columns of its unit."""
+    scales = scales_of(columns)
+    return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
+
+
+def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
+    """Return what the error of each column is relative to: the largest value among the columns of its unit.
 
     What is zero by symmetry has no scale of its own. Angles that are zero within their error are measured against one
     radian, and their rates against the largest speed over the largest distance.
@@ -251,7 +295,7 @@ def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> flo
     largest: dict[str, float] = {}
     unknown: dict[str, float] = {}
     for column in columns.values():
-        largest[column.unit] = max(largest.get(column.unit, 0.0), largest_of(column))
+        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest)
         unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
     away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
     for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
@@ -261,11 +305,44 @@ def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> flo
     for unit in ("kg m/s", "kg m^2/s", "J"):
         if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
             largest[unit] = 0.0
-    scales = {name: largest[columns[name].unit] for name in figures}
-    return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
+    return {name: largest[column.unit] for name, column in columns.items()}
 
 
-def largest_of(column: Column) -> float:
-    """Return the largest magnitude of a sample."""
-    size = np.abs(column.values) if column.values.ndim == 1 else np.linalg.norm(column.values, axis=1)
-    return float(np.max(size, initial=0.0))
+def require_known(columns: Mapping[str, Column]) -> None:
+    """Raise `NotApplicable` for columns that leave the range of doubles."""
+    lost = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
+    if lost:
+        raise NotApplicable(
+            f"{lost[0]} or its error leaves the range of doubles",
+            path=("times",),
+            remedy="ask for a shorter time, or choose units in which the numbers are moderate",
+        )
+
+
+def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: float | None = None) -> None:
+    """Raise for columns that leave the range of doubles, or whose errors are larger than the accuracy.
+
+    The remedy names the time `before` which they are not, where that is known.
+
+    Raises
+    ------
+    NotApplicable, AccuracyUnreachable
+    """
+    require_known(columns)
+    reached = worst(columns)
+    if reached > accuracy and reached <= 2 * FINEST:
+        raise AccuracyUnreachable(
+            accuracy,
+            reached,
+            "the samples are doubles, and angles, forces and energies are computed in them",
+            remedy="ask for places and velocities of particles alone, or for digits: POST /v1/certified/scenes",
+        )
+    if reached > accuracy:
+        raise AccuracyUnreachable(
+            accuracy,
+            reached,
+            "the motion amplifies rounding, even that of pairs of doubles",
+            remedy="ask for a shorter time or a larger accuracy"
+            if before is None
+            else f"ask for times before {before:.6g} s, or for a larger accuracy",
+        )

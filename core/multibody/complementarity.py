@@ -14,15 +14,16 @@ de glissement", Comptes rendus 121 (1895).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 from core.multibody.contact_forces import Balance, balanced
 from core.multibody.contact_responses import Responses, gap_rate, require_few, responses, slip_rate
-from core.multibody.contact_states import Problem, State, phase_table, sticks_more
+from core.multibody.contact_states import Problem, State, disc, grips, phase_table, sticks_more
 from core.multibody.expansion import expansion, leading_sign
 from core.multibody.measures import Unilateral
-from core.multibody.polynomials import ZERO, Ball, is_zero
+from core.multibody.polynomials import Ball, is_zero
+from core.multibody.slip_directions import Direction, along_slip, directions, turned
 from core.multibody.table import Table
 
 LOOKED = 8
@@ -46,14 +47,33 @@ class _Situation:
     choices: dict[int, tuple[State, ...]]
     found: Responses
 
+    def begins_somewhere(self, i: int, state: State) -> bool:
+        """Return whether a measure begins to slide in space, in a direction that is still to be found."""
+        return self.may_slip(i, state) and self.unilateral[i].across is not None
+
     def may_slip(self, i: int, state: State) -> bool:
         """Return whether a measure begins to slide: it could as well stick."""
         return state.sense != 0 and State.STICK in self.choices[i]
 
 
+@dataclass(frozen=True)
+class Decided:
+    """What unilateral measures do after a state.
+
+    Attributes
+    ----------
+    states : list of State
+    unilateral : list of Unilateral
+        The measures; what slides in space is turned into the direction of its slip.
+    """
+
+    states: list[State]
+    unilateral: list[Unilateral]
+
+
 def decided(
-    base: Table, unilateral: Sequence[Unilateral], touching: Sequence[int], q: Sequence[Ball], v: Sequence[Ball]
-) -> list[State] | Problem:
+    base: Table, measures: Sequence[Unilateral], touching: Sequence[int], q: Sequence[Ball], v: Sequence[Ball]
+) -> Decided | Problem:
     """Return the states of all unilateral measures just after a state, or what is undecided about them.
 
     Parameters
@@ -66,10 +86,11 @@ def decided(
     BudgetExceeded
         For more contacts that push one another than `core.multibody.contact_responses.MOST`.
     """
+    unilateral = along_slip(measures, touching, q, v)
     states = [State.OPEN] * len(unilateral)
     choices = {i: _choices(unilateral[i], q, v) for i in touching if is_zero(gap_rate(unilateral[i], q, v))}
     if not choices:
-        return states
+        return Decided(states, unilateral)
     found = responses(phase_table(base, (), (), q, v).table, unilateral, list(choices))
     at = _Situation(base, unilateral, q, v, choices, found)
     for group in found.clusters():
@@ -77,9 +98,11 @@ def decided(
         chosen = _decided_group(at, group, states)
         if isinstance(chosen, Problem):
             return chosen
-        for i, state in zip(group, chosen, strict=True):
+        for i, state in zip(group, chosen.states, strict=True):
             states[i] = state
-    return states
+        for i, direction in chosen.directions.items():
+            unilateral[i] = turned(unilateral[i], direction)
+    return Decided(states, unilateral)
 
 
 def stays(base: Table, unilateral: Sequence[Unilateral], touching: Sequence[int]) -> bool:
@@ -111,20 +134,38 @@ def _choices(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> tuple[Sta
         return (State.CLOSED, State.OPEN)
     slip = slip_rate(one, q, v)
     if is_zero(slip):
+        if one.across is not None:
+            return (State.STICK, State.FORWARD, State.OPEN)
         return (State.STICK, State.FORWARD, State.BACKWARD, State.OPEN)
     return (State.FORWARD if slip > 0 else State.BACKWARD, State.OPEN)
 
 
-def _decided_group(at: _Situation, group: Sequence[int], settled: Sequence[State]) -> tuple[State, ...] | Problem:
+def _decided_group(at: _Situation, group: Sequence[int], settled: Sequence[State]) -> Balance | Problem:
     """Return the states of contacts that push one another; those of groups before it are settled."""
     names = tuple(at.unilateral[i].name for i in group)
     consistent: list[Balance] = []
+    several = False
     for states in product(*(at.choices[i] for i in group)):
-        balance = balanced(at.unilateral, group, states, at.found)
-        if isinstance(balance, Problem):
-            return balance
-        if balance is not None and _lasts(at, group, settled, balance):
-            consistent.append(balance)
+        onsets = [i for i, state in zip(group, states, strict=True) if at.begins_somewhere(i, state)]
+        if onsets and any(sticks_more(other.states, states) for other in consistent):
+            continue
+        if len(onsets) > 1:
+            several = True
+            continue
+        for ways in _onsets(at, group, states, onsets):
+            balance = balanced(at.unilateral, group, states, at.found, ways)
+            if isinstance(balance, Problem):
+                return balance
+            if balance is not None and _lasts(at, group, settled, balance):
+                consistent.append(balance)
+    if not consistent and several:
+        return Problem(
+            "several-onsets",
+            "several contacts would begin to slide at once in space: the directions in which they do follow from one "
+            "another, and are not looked for",
+            names,
+            decided_by="velocities with which they slide already",
+        )
     if not consistent:
         return Problem(
             "no-motion",
@@ -143,7 +184,25 @@ def _decided_group(at: _Situation, group: Sequence[int], settled: Sequence[State
                 tuple({name: state.value for name, state in zip(names, one.states, strict=True)} for one in sticking),
                 "a compliance of the contact and how it came to this state",
             )
-    return max(sticking, key=lambda one: (sum(s is not State.OPEN for s in one.states), _stuck(one.states))).states
+    return max(sticking, key=lambda one: (sum(s is not State.OPEN for s in one.states), _stuck(one.states)))
+
+
+def _onsets(
+    at: _Situation, group: Sequence[int], states: Sequence[State], onsets: Sequence[int]
+) -> list[dict[int, Direction]]:
+    """Return the directions in which contacts may begin to slide in space; nothing is to be found where none does."""
+    if not onsets:
+        return [{}]
+    (i,) = onsets
+
+    def after(direction: Direction) -> Direction | None:
+        balance = balanced(at.unilateral, group, states, at.found, {i: direction})
+        if not isinstance(balance, Balance):
+            return None
+        along, across = (at.found.along(balance.forces, line) for line in at.found.grip(i))
+        return along, across
+
+    return [{i: direction} for direction in directions(after)]
 
 
 def _told(states: Sequence[State]) -> str:
@@ -168,24 +227,27 @@ def _lasts(at: _Situation, group: Sequence[int], settled: Sequence[State], balan
     states = list(settled)
     for i, state in zip(group, balance.states, strict=True):
         states[i] = state
-    return all(leading_sign(series) >= 0 for series in _conditions_in_time(at, group, states))
+    unilateral = list(at.unilateral)
+    for i, direction in balance.directions.items():
+        unilateral[i] = turned(unilateral[i], direction)
+    now = replace(at, unilateral=unilateral)
+    return all(leading_sign(series) >= 0 for series in _conditions_in_time(now, group, states))
 
 
 def _conditions(at: _Situation, group: Sequence[int], balance: Balance) -> Iterator[Ball]:
     """Yield everything that has to be at least zero at the start."""
     found, forces = at.found, balance.forces
-    along = [
-        x + sum((found.matrix[a][b] * force for b, force in enumerate(forces)), ZERO) for a, x in enumerate(found.free)
-    ]
     for i, state in zip(group, balance.states, strict=True):
         push = forces[found.normal[i]]
-        yield along[found.normal[i]] if state is State.OPEN else push
+        yield found.along(forces, found.normal[i]) if state is State.OPEN else push
         if state is State.STICK:
-            rub = forces[found.slips[i]]
-            yield at.unilateral[i].static * push - rub
-            yield at.unilateral[i].static * push + rub
-        if at.may_slip(i, state):
-            yield state.sense * along[found.slips[i]]
+            yield from grips(at.unilateral[i].static * push, [forces[line] for line in found.grip(i)])
+        if at.begins_somewhere(i, state):
+            c, s = balance.directions[i]
+            along, across = (found.along(forces, line) for line in found.grip(i))
+            yield c * along + s * across
+        elif at.may_slip(i, state):
+            yield state.sense * found.along(forces, found.slips[i])
 
 
 def _conditions_in_time(at: _Situation, group: Sequence[int], states: Sequence[State]) -> Iterator[list[Ball]]:
@@ -193,16 +255,18 @@ def _conditions_in_time(at: _Situation, group: Sequence[int], states: Sequence[S
     phase = phase_table(at.base, at.unilateral, states, at.q, at.v)
     motion = expansion(phase.table, LOOKED)
     for i in group:
-        one, row, slip = at.unilateral[i], phase.normal[i], phase.slip[i]
+        one, row, stuck = at.unilateral[i], phase.normal[i], phase.grip(i)
         if row is None:
             # Gap and rate are zero: the contact touches.
             yield motion.of(one.gap)[2:]
             continue
         push = motion.multipliers[row]
         yield push
-        if slip is not None:
-            rub = motion.multipliers[slip]
+        if len(stuck) == 1:
+            rub = motion.multipliers[stuck[0]]
             yield [one.static * a - b for a, b in zip(push, rub, strict=True)]
             yield [one.static * a + b for a, b in zip(push, rub, strict=True)]
+        elif stuck:
+            yield disc([one.static * a for a in push], [motion.multipliers[line] for line in stuck])
         if at.may_slip(i, states[i]):
             yield [states[i].sense * x for x in motion.of_rates(one.slip or {})[1:]]

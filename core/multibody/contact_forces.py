@@ -7,18 +7,19 @@ sticks, unless friction depends on the share.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 from flint import arb_mat
 
 from core.errors import BudgetExceeded
-from core.multibody.contact_responses import Forces, Responses, rate_along
+from core.multibody.contact_responses import NO_DIRECTIONS, Forces, Responses, rate_along
 from core.multibody.contact_states import Problem, State
 from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ONE, ZERO, Ball, entry, is_zero
 from core.multibody.rank import Elimination
+from core.multibody.shares_in_space import shared_in_space
 
 _MOST_FREE = 3
 """Forces left free at once among whose shares one is looked for."""
@@ -37,16 +38,23 @@ class Balance:
         Of every coordinate.
     undetermined : bool
         Whether other forces would do as well.
+    directions : dict of int to (ball, ball)
+        Cosine and sine of the direction in which a measure begins to slide in space.
     """
 
     states: tuple[State, ...]
     forces: list[Ball]
     acceleration: list[Ball]
     undetermined: bool
+    directions: dict[int, tuple[Ball, Ball]]
 
 
 def balanced(
-    unilateral: Sequence[Unilateral], group: Sequence[int], states: Sequence[State], found: Responses
+    unilateral: Sequence[Unilateral],
+    group: Sequence[int],
+    states: Sequence[State],
+    found: Responses,
+    directions: Mapping[int, tuple[Ball, Ball]] = NO_DIRECTIONS,
 ) -> Balance | Problem | None:
     """Return the forces that go with states, None where there are none.
 
@@ -57,12 +65,12 @@ def balanced(
     BudgetExceeded
         For more undetermined forces than can be looked through.
     """
-    unknowns, held = found.unknowns(unilateral, group, states)
+    unknowns, held = found.unknowns(unilateral, group, states, directions)
     size = len(unknowns)
 
     def balance(solved: Sequence[Ball], *, undetermined: bool = False) -> Balance:
         forces = _spread(solved, unknowns, found)
-        return Balance(tuple(states), forces, found.accelerations(forces), undetermined)
+        return Balance(tuple(states), forces, found.accelerations(forces), undetermined, dict(directions))
 
     if not size:
         return balance([])
@@ -96,7 +104,10 @@ def balanced(
             tuple(unilateral[i].name for i, state in zip(group, states, strict=True) if state is not State.OPEN),
             decided_by="compliances of the contacts, or one coefficient of friction for all of them",
         )
-    shares = _feasible(_conditions(unilateral, group, states), elimination, free, size)
+    if any(state is State.STICK and unilateral[i].across is not None for i, state in zip(group, states, strict=True)):
+        shares = shared_in_space(unilateral, group, states, elimination, free, size)
+    else:
+        shares = _feasible(_conditions(unilateral, group, states), elimination, free, size)
     return None if shares is None else balance(shares, undetermined=True)
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from flint import arb_mat
 
@@ -21,12 +22,14 @@ from core.multibody.contact_states import State
 from core.multibody.dynamics import weightless
 from core.multibody.expansion import saddle
 from core.multibody.measures import Unilateral
-from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, gradient, is_zero
+from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero
 from core.multibody.rank import independent
 from core.multibody.table import Row, Table
 
 MOST = 8
 """Contacts that push one another and are undecided at once."""
+
+NO_DIRECTIONS: Mapping[int, tuple[Ball, Ball]] = MappingProxyType({})
 
 Forces = dict[int, Ball]
 """Forces, or impulses, by the line along which they act."""
@@ -39,12 +42,17 @@ def rate_along(line: Mapping[int, Ball], v: Sequence[Ball]) -> Ball:
 
 def gap_rate(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> Ball:
     """Return the rate of a gap."""
-    return sum((evaluated(poly, q) * v[j] for j, poly in gradient(one.gap).items()), ZERO)
+    return sum((evaluated(poly, q) * v[j] for j, poly in one.normal.items()), ZERO)
 
 
 def slip_rate(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> Ball:
-    """Return the rate of slip, zero without friction."""
+    """Return the rate of slip, zero without friction; in space that along the first direction."""
     return sum((evaluated(poly, q) * v[j] for j, poly in (one.slip or {}).items()), ZERO)
+
+
+def across_rate(one: Unilateral, q: Sequence[Ball], v: Sequence[Ball]) -> Ball:
+    """Return the rate of slip along the second direction, zero in the plane."""
+    return sum((evaluated(poly, q) * v[j] for j, poly in (one.across or {}).items()), ZERO)
 
 
 @dataclass(frozen=True)
@@ -53,8 +61,8 @@ class Responses:
 
     Attributes
     ----------
-    normal, slips : dict of int to int
-        Line of the gap of each measure, and of its slip where it has friction.
+    normal, slips, across : dict of int to int
+        Line of the gap of each measure, and of its slip where it has friction; in space there are two.
     free : list of ball
         Accelerations of every line without contact forces.
     matrix : list of list of ball
@@ -69,6 +77,7 @@ class Responses:
 
     normal: dict[int, int]
     slips: dict[int, int]
+    across: dict[int, int]
     free: list[Ball]
     matrix: list[list[Ball]]
     columns: list[list[Ball]]
@@ -90,14 +99,23 @@ class Responses:
         return found
 
     def _of(self, i: int) -> list[int]:
-        return [self.normal[i], *([self.slips[i]] if i in self.slips else [])]
+        return [self.normal[i], *self.grip(i)]
+
+    def grip(self, i: int) -> list[int]:
+        """Return the lines of the slip of a measure: none, one in the plane, two in space."""
+        return [lines[i] for lines in (self.slips, self.across) if i in lines]
 
     def unknowns(
-        self, unilateral: Sequence[Unilateral], group: Sequence[int], states: Sequence[State]
+        self,
+        unilateral: Sequence[Unilateral],
+        group: Sequence[int],
+        states: Sequence[State],
+        directions: Mapping[int, tuple[Ball, Ball]] = NO_DIRECTIONS,
     ) -> tuple[list[Forces], list[int]]:
         """Return the forces that states leave to be found, and the lines along which the states hold something.
 
-        What slides rubs by its kinetic coefficient against the slip, with every unit of its normal force.
+        What slides rubs by its kinetic coefficient against the slip, with every unit of its normal force. In space it
+        slides along the first direction of its slip, if no other is given by cosine and sine.
         """
         unknowns: list[Forces] = []
         held: list[int] = []
@@ -106,17 +124,26 @@ class Responses:
                 continue
             push = {self.normal[i]: ONE}
             if state.sense:
-                push[self.slips[i]] = -state.sense * unilateral[i].kinetic
+                rub = -state.sense * unilateral[i].kinetic
+                c, s = directions.get(i, (ONE, ZERO))
+                push[self.slips[i]] = rub * c
+                if s != 0:
+                    push[self.across[i]] = rub * s
             unknowns.append(push)
             held.append(self.normal[i])
             if state is State.STICK:
-                unknowns.append({self.slips[i]: ONE})
-                held.append(self.slips[i])
+                for line in self.grip(i):
+                    unknowns.append({line: ONE})
+                    held.append(line)
         return unknowns, held
 
     def among(self, unknowns: Sequence[Forces], held: Sequence[int]) -> list[list[Ball]]:
         """Return the matrix from unknown forces to accelerations along the lines that are held."""
         return [[sum((self.matrix[a][b] * x for b, x in push.items()), ZERO) for push in unknowns] for a in held]
+
+    def along(self, forces: Sequence[Ball], line: int) -> Ball:
+        """Return the acceleration along a line by forces along every line."""
+        return self.free[line] + sum((self.matrix[line][b] * force for b, force in enumerate(forces)), ZERO)
 
     def accelerations(self, forces: Sequence[Ball], *, from_rest: bool = False) -> list[Ball]:
         """Return the accelerations of all coordinates by forces along every line, with all other forces or alone."""
@@ -138,13 +165,14 @@ def responses(table: Table, unilateral: Sequence[Unilateral], chosen: Sequence[i
     rows: list[Row] = []
     normal: dict[int, int] = {}
     slips: dict[int, int] = {}
+    across: dict[int, int] = {}
     for i in chosen:
         one = unilateral[i]
         normal[i] = len(rows)
-        rows.append(Row.held(one.name, one.gap))
-        if one.slip is not None:
-            slips[i] = len(rows)
-            rows.append(Row(one.name, None, one.slip))
+        rows.append(Row(one.name, one.gap, one.normal))
+        for numbers, slip in zip((slips, across), one.slips, strict=False):
+            numbers[i] = len(rows)
+            rows.append(Row(one.name, None, slip))
     count = len(table.names)
     lines = [row.line(table.q) for row in table.rows]
     own = independent(lines)
@@ -167,7 +195,7 @@ def responses(table: Table, unilateral: Sequence[Unilateral], chosen: Sequence[i
     free = [rate_along(line, start) - table.convective(row) for line, row in zip(extra, rows, strict=True)]
     matrix = [[_nought(rate_along(line, column)) for column in columns] for line in extra]
     reactions = [{r: solved[count + k][1 + b] for k, r in enumerate(own)} for b in range(len(rows))]
-    return Responses(normal, slips, free, matrix, columns, start, reactions)
+    return Responses(normal, slips, across, free, matrix, columns, start, reactions)
 
 
 def _nought(x: Ball) -> Ball:

@@ -72,7 +72,7 @@ def _as_written(base: Described, touching: Sequence[int], fitted: list[str]) -> 
     table, rows = base.measures.table, []
     for i in touching:
         one = base.measures.unilateral[i]
-        for row in (Row.held(one.name, one.gap), *([Row(one.name, None, one.slip)] if one.slip else [])):
+        for row in (Row.held(one.name, one.gap), *(Row(one.name, None, slip) for slip in one.slips)):
             line = row.line(table.q)
             rate = rate_along(line, table.v)
             terms = sum((abs(x * table.v[j]) for j, x in line.items()), ZERO)

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.errors import InvalidParameter, Path
+from core.multibody.contacts_in_space import contact_in_space
 from core.multibody.coordinates import Point, Rate
 from core.multibody.language import GROUND
 from core.multibody.measures import Measures, Unilateral
@@ -26,13 +27,27 @@ def contact(measures: Measures, name: str, connection: Any, path: Path) -> None:
     InvalidParameter
         Where it names nothing that can touch, or coefficients out of their ranges.
     """
-    if measures.dimension != 2:
-        raise InvalidParameter(
-            (*path, "kind"), "be used in the plane: contacts in space are not answered yet", remedy="describe a plane"
-        )
     static, kinetic = _friction(measures, connection.friction, (*path, "friction"))
     restitution, order = bounciness(measures, connection, path)
     rubs = not is_zero(static)
+    if measures.dimension == 3:
+        touching = contact_in_space(measures, connection, path, rubs=rubs)
+        slips = touching.slips or (None, None)
+        measures.unilateral.append(
+            Unilateral(
+                name,
+                touching.gap,
+                slips[0],
+                static,
+                kinetic,
+                restitution,
+                rolls=touching.rolls,
+                order=order,
+                across=slips[1],
+                tangents=touching.tangents,
+            )
+        )
+        return
     if connection.measure == "turn":
         if rubs:
             raise InvalidParameter((*path, "friction"), "be left out of a stop that limits a turn")
@@ -62,7 +77,11 @@ def bounciness(measures: Measures, connection: Any, path: Path) -> tuple[Ball, B
     if connection.restitution is not None:
         restitution = measures.numerals.number(connection.restitution, (*path, "restitution"))
         if restitution < 0 or restitution > 1:
-            raise InvalidParameter((*path, "restitution"), "be at least 0 and at most 1")
+            raise InvalidParameter(
+                (*path, "restitution"),
+                "be at least 0 and at most 1",
+                remedy="it is the speed apart over the speed together: 1 is elastic, 0 leaves both in touch",
+            )
     if connection.order is not None:
         order = measures.numerals.number(connection.order, (*path, "order"))
     return restitution, order
@@ -142,11 +161,15 @@ def _sum(*rates: Rate) -> Rate:
 def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
     point, radius, rolls = _rim(measures, connection.place, (*path, "place"))
     where, on = (*path, "on"), connection.on
-    if point.body is None:
-        raise InvalidParameter((*path, "place"), "belong to a body")
     if not isinstance(on, Mapping) or "at" not in on:
         raise InvalidParameter((*where, "at"), "be given")
     at = measures.coordinates.point(on["at"], (*where, "at"))
+    if point.body is None and at.body is None:
+        raise InvalidParameter(
+            (*path, "place"),
+            "belong to a body: a fixed point does not move on what is fixed",
+            remedy='name a body or a place of one, as "rod.end"; or let the face in "on" be that of a body',
+        )
     if at.body == point.body:
         raise InvalidParameter((*where, "at"), "belong to another body than the place")
     keys = set(on) - {"at"}

@@ -106,14 +106,21 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
                 body = scene.bodies.get(place) if isinstance(place, str) else None
                 if body is not None and body.radius is not None:
                     see(place, "turn")
-        if kind in ("rolling", "contact"):
+        if kind == "rolling" or (kind == "contact" and (plane or connection.friction is not None)):
             for place in (connection.place, connection.a, connection.b):
-                see(place, "turn")
+                if plane or kind == "rolling" or _is_ball(scene, place):
+                    see(place, "turn")
         if kind in _TURNED or (kind == "damper" and connection.measure == "turn"):
             for place in (getattr(connection, "a", None), getattr(connection, "b", None)):
                 see(place, "turn")
             see(getattr(connection, "body", None), "turn", "orientation")
     return found
+
+
+def _is_ball(scene: Scene, place: Any) -> bool:
+    """Return whether a place is a body with a radius: what rolls in space."""
+    body = scene.bodies.get(place) if isinstance(place, str) else None
+    return body is not None and body.radius is not None
 
 
 def _concentric(scene: Scene, numerals: Numerals, connection: Any) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from flint import arb_mat
@@ -10,7 +10,7 @@ from flint import arb_mat
 from core.multibody.dynamics import weightless
 from core.multibody.polynomials import ZERO, Ball, Poly, is_zero
 from core.multibody.rank import independent
-from core.multibody.table import Rates, Table
+from core.multibody.table import Rates, Row, Table
 
 Series = list[Ball]
 """Coefficients of powers of time, lowest first."""
@@ -93,14 +93,18 @@ def saddle(table: Table, chosen: Sequence[int]) -> arb_mat:
     return arb_mat(entries)
 
 
-def expansion(table: Table, order: int) -> Expansion:
+def expansion(start: Table, order: int) -> Expansion:
     """Return the Taylor coefficients of the motion of a table from its state.
+
+    Friction in space turns with the slip s: its line is -mu (s/|s|) times the two lines of the slip, and the series of
+    s/|s| is found to one power with that of s.
 
     Raises
     ------
     InvalidParameter
         If something without mass can move by itself.
     """
+    table = start.oriented()
     count = len(table.names)
     lines = [row.line(table.q) for row in table.rows]
     chosen = independent(lines)
@@ -113,7 +117,7 @@ def expansion(table: Table, order: int) -> Expansion:
     rates: list[Series] = [[v] for v in table.v]
     # Entries of W and of W + X that vary, as series.
     varying = [_varying(table.rows[r].rates, places) for r in chosen]
-    pushing = [_joined(varying[k], _varying(table.rows[r].drag, places)) for k, r in enumerate(chosen)]
+    pushing = [_joined(varying[k], _dragging(table, table.rows[r], places, rates)) for k, r in enumerate(chosen)]
     for k in range(order - 1):
         right = [ZERO] * (count + len(chosen))
         if k == 0:
@@ -146,14 +150,65 @@ def expansion(table: Table, order: int) -> Expansion:
     return Expansion(places, multipliers)
 
 
+class _Turning:
+    """The direction s/|s| of a slip along a motion whose own coefficients are still being found."""
+
+    def __init__(self, lines: Sequence[Rates], rates: Sequence[Series]) -> None:
+        self._lines, self._rates = lines, rates
+        self._slip: tuple[Series, Series] = ([], [])
+        self._size: Series = []
+        self.units: tuple[Series, Series] = ([], [])
+
+    def up_to(self, power: int) -> tuple[Series, Series]:
+        """Return the two components, at least to a power."""
+        while len(self._size) <= power:
+            k = len(self._size)
+            for slip, line in zip(self._slip, self._lines, strict=True):
+                slip.append(sum((poly[()] * self._rates[j][k] for j, poly in line.items()), ZERO))
+            square = sum((s[a] * s[k - a] for s in self._slip for a in range(k + 1)), ZERO)
+            # |s|^2 and s = |s| u, power by power.
+            inner = sum((self._size[a] * self._size[k - a] for a in range(1, k)), ZERO)
+            self._size.append(square.sqrt() if k == 0 else (square - inner) / (2 * self._size[0]))
+            for unit, slip in zip(self.units, self._slip, strict=True):
+                known = sum((self._size[k - a] * unit[a] for a in range(k)), ZERO)
+                unit.append((slip[k] - known) / self._size[0])
+        return self.units
+
+
+class _Friction:
+    """The coefficients from the first on of an entry of friction that turns."""
+
+    def __init__(self, turning: _Turning, parts: tuple[Ball, Ball]) -> None:
+        self._turning, self._parts = turning, parts
+
+    def __call__(self, power: int) -> Ball:
+        units = self._turning.up_to(power)
+        return self._parts[0] * units[0][power] + self._parts[1] * units[1][power]
+
+
+class _Sum:
+    """Two entries of one place."""
+
+    def __init__(self, first: Callable[[int], Ball], second: Callable[[int], Ball]) -> None:
+        self._first, self._second = first, second
+
+    def __call__(self, power: int) -> Ball:
+        return self._first(power) + self._second(power)
+
+
 class _Entry:
     """The coefficients from the first on of an affine polynomial along a motion whose own are still being found."""
 
     def __init__(self, slopes: Mapping[int, Ball], places: Sequence[Series]) -> None:
         self.slopes, self.places = slopes, places
+        self._known: dict[int, Ball] = {}
 
     def __call__(self, power: int) -> Ball:
-        return sum((x * self.places[i][power] for i, x in self.slopes.items()), ZERO)
+        found = self._known.get(power)
+        if found is None:
+            found = sum((x * self.places[i][power] for i, x in self.slopes.items()), ZERO)
+            self._known[power] = found
+        return found
 
 
 def _varying(line: Rates, places: Sequence[Series]) -> dict[int, _Entry]:
@@ -165,16 +220,26 @@ def _varying(line: Rates, places: Sequence[Series]) -> dict[int, _Entry]:
     return found
 
 
-def _joined(first: dict[int, _Entry], second: dict[int, _Entry]) -> dict[int, _Entry]:
+def _dragging(
+    table: Table, row: Row, places: Sequence[Series], rates: Sequence[Series]
+) -> Mapping[int, Callable[[int], Ball]]:
+    """Return the entries of the line of friction of a row that vary."""
+    if row.slide is None or not any(not is_zero(x) for x in table.slip_of(row)):
+        return _varying(row.drag, places)
+    factor, along, across = row.slide
+    turning = _Turning((along, across), rates)
+    return {
+        j: _Friction(turning, (factor * along.get(j, {}).get((), ZERO), factor * across.get(j, {}).get((), ZERO)))
+        for j in {*along, *across}
+    }
+
+
+def _joined(
+    first: Mapping[int, Callable[[int], Ball]], second: Mapping[int, Callable[[int], Ball]]
+) -> dict[int, Callable[[int], Ball]]:
     found = dict(first)
     for j, entry in second.items():
-        if j in found:
-            slopes = dict(found[j].slopes)
-            for i, x in entry.slopes.items():
-                slopes[i] = slopes.get(i, ZERO) + x
-            found[j] = _Entry(slopes, entry.places)
-        else:
-            found[j] = entry
+        found[j] = _Sum(found[j], entry) if j in found else entry
     return found
 
 

@@ -13,8 +13,7 @@ from fractions import Fraction
 import numpy as np
 from flint import arb
 
-from core.balls import precision
-from core.certified.decimals import Undetermined
+from core.balls import Undetermined, precision
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_start import ExactStart
 from core.certified.turning_motion import TurningMotion

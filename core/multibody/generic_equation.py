@@ -273,6 +273,11 @@ class SceneSystem:
         free = int(self.parameters[1] - self.parameters[2])
         return Model("a described scene", "", "a method was named, and runs the whole table", free)
 
+    @property
+    def state_column(self) -> tuple[str, str]:
+        """The coordinates and rates of the reduced table, which share no unit."""
+        return "state", "1"
+
     def closed_form(self) -> ClosedForm | None:
         """Return None: what a scene is compared with is its own answer, column by column."""
         return None

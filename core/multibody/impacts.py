@@ -14,12 +14,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
 
-from core.multibody.contact_responses import Forces, Responses, gap_rate, require_few, responses, slip_rate
+from core.multibody.contact_responses import (
+    Forces,
+    Responses,
+    across_rate,
+    gap_rate,
+    require_few,
+    responses,
+    slip_rate,
+)
 from core.multibody.contact_states import Problem, phase_table
 from core.multibody.dynamics import kinetic
-from core.multibody.impulses import LIMIT, Rates, alike, impulses_at_once, rates_after
+from core.multibody.impulses import LIMIT, Rates, alike, impulses_at_once, likest, rates_after
 from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ZERO, Ball, is_zero
+from core.multibody.slip_directions import along_slip
 from core.multibody.table import Table
 
 _MOST_IN_TURN = 400
@@ -36,8 +45,12 @@ class Impact:
     ----------
     v : list of ball
         Rates afterwards.
-    impulses : mapping of int to (ball, ball)
-        Of every measure that takes one: along its gap, and along its slip.
+    impulses : mapping of int to (ball, ball, ball)
+        Of every measure that takes one: along its gap, and along its slip, of which there are two in space.
+    unilateral : sequence of Unilateral
+        The measures, those that slip in space turned into the direction in which they did.
+    change : list of ball
+        Of all rates.
     loss : ball
         Kinetic energy that is lost.
     together : bool
@@ -45,8 +58,10 @@ class Impact:
     """
 
     v: list[Ball]
-    impulses: dict[int, tuple[Ball, Ball]]
+    impulses: dict[int, tuple[Ball, Ball, Ball]]
     loss: Ball
+    unilateral: Sequence[Unilateral]
+    change: list[Ball]
     together: bool = False
 
 
@@ -58,16 +73,16 @@ def approaching(unilateral: Sequence[Unilateral], touching: Sequence[int], q: li
 
 def impact(
     base: Table,
-    unilateral: Sequence[Unilateral],
+    measures: Sequence[Unilateral],
     touching: Sequence[int],
     q: list[Ball],
     v: list[Ball],
     *,
-    settled: bool = False,
+    settled: Impact | None = None,
 ) -> Impact | Problem:
     """Return the outcome of an impact of the touching measures, or why it is undecided.
 
-    If it is `settled` that only one outcome is possible, as far as the state is known, none other is looked for.
+    If it is `settled` which outcome is the only possible one, as far as the state is known, its like is returned.
 
     Raises
     ------
@@ -75,8 +90,9 @@ def impact(
         For more than eight touching contacts that push one another.
     """
     table = phase_table(base, (), (), q, v).table
+    unilateral = along_slip(measures, touching, q, v)
     found = responses(table, unilateral, touching)
-    normal, slips = found.normal, found.slips
+    normal, slips, across = found.normal, found.slips, found.across
     before = kinetic(table)
     after, impulses, together = list(v), {}, False
     for group in found.clusters():
@@ -91,16 +107,18 @@ def impact(
                 after = [a + x * y for a, y in zip(after, found.columns[b], strict=True)]
         taking = [i for i in group if outcome.get(normal[i], ZERO) != 0]
         together = together or len(taking) > 1
-        impulses.update({i: (outcome[normal[i]], outcome.get(slips.get(i, -1), ZERO)) for i in taking})
+        rubs = [[outcome.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
+        impulses.update({i: (outcome[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
     loss = before - kinetic(replace(table, v=after))
-    if not is_zero(loss) and loss < 0 and not settled:
+    if not is_zero(loss) and loss < 0 and settled is None:
         return Problem(
             "energy-gain",
             f"Newton's law of restitution with friction would add {float(-loss):.6g} J to the motion",
             tuple(unilateral[i].name for i in impulses),
             decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
         )
-    return Impact(after, impulses, ZERO if is_zero(loss) else loss, together)
+    change = [x - y for x, y in zip(after, v, strict=True)]
+    return Impact(after, impulses, ZERO if is_zero(loss) else loss, unilateral, change, together)
 
 
 def _group(
@@ -110,21 +128,21 @@ def _group(
     v: list[Ball],
     found: Responses,
     *,
-    settled: bool,
+    settled: Impact | None,
 ) -> Forces | Problem:
     """Return the impulses of contacts that push one another, or why they are undecided."""
-    normal, slips = found.normal, found.slips
-    rates = {normal[i]: gap_rate(unilateral[i], q, v) for i in group}
-    rates |= {slips[i]: slip_rate(unilateral[i], q, v) for i in group if i in slips}
-    rates = {a: ZERO if is_zero(x) else x for a, x in rates.items()}
+    normal = found.normal
+    rates = {a: ZERO if is_zero(x) else x for a, x in _rates(unilateral, group, q, v, found).items()}
     names = tuple(unilateral[i].name for i in group)
     given = [i for i in group if unilateral[i].order is not None]
     if len(given) == len(group) > 1:
         ordered = sorted(given, key=lambda i: (float(unilateral[i].order or ZERO), i))
         in_turn = _in_turn(unilateral, ordered, rates, found)
         return in_turn if in_turn is not None else _endless(names)
+    if settled is not None:
+        return likest(unilateral, group, rates, settled.change, found)
     at_once = impulses_at_once(unilateral, group, rates, found)
-    if isinstance(at_once, Problem) or settled:
+    if isinstance(at_once, Problem):
         return at_once
     taking = [i for i in group if at_once.get(normal[i], ZERO) != 0]
     # A taut string passes on what pulls it at once.
@@ -150,11 +168,31 @@ def _group(
         "several contacts take impulses at once, and rigid bodies do not say in which order",
         names,
         tuple(
-            {"order": told} | {unilateral[i].name: f"opens at {float(then[normal[i]]):.10g}" for i in group}
+            {"order": told} | {unilateral[i].name: _told(unilateral[i], normal[i], then) for i in group}
             for told, then in different
         ),
         'the order in which they happen, as "order" of the contacts',
     )
+
+
+def _rates(
+    unilateral: Sequence[Unilateral], group: Sequence[int], q: list[Ball], v: list[Ball], found: Responses
+) -> Rates:
+    """Return the rates along all lines of a group."""
+    rates: Rates = {}
+    for i in group:
+        one = unilateral[i]
+        lines = [found.normal[i], *found.grip(i)]
+        rates.update(zip(lines, (gap_rate(one, q, v), slip_rate(one, q, v), across_rate(one, q, v)), strict=False))
+    return rates
+
+
+def _told(one: Unilateral, line: int, after: Rates) -> str:
+    """Return in words how a gap changes after an impact; what is left of a zero by rounding is zero."""
+    rate = float(after[line])
+    if abs(rate) <= LIMIT * max(abs(float(x)) for x in after.values()):
+        return "stays closed"
+    return f"opens at {rate:.10g} {'rad/s' if one.unit == 'N m' else 'm/s'}"
 
 
 def _endless(names: tuple[str, ...]) -> Problem:

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import MechanicsError, NotApplicable, Path
-from core.multibody.answer import Column
 from core.multibody.columns import Columns, relative
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled, modelled
@@ -26,6 +25,7 @@ from core.multibody.packed import Floats
 from core.multibody.polynomials import Ball
 from core.multibody.rank import independent
 from core.multibody.whole import Whole, WholeStates
+from core.systems.trajectory import Column
 
 MOST_INPUTS = 400
 """Numbers that are moved; each costs a motion of its own."""
@@ -81,7 +81,7 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
     for name, body in scene.bodies.items():
         if body.body is not None:
             raise NotApplicable(f'"{name}" is a body of the catalogue, whose numbers are not propagated')
-    inputs = list(_inputs(found.described.measures.numerals.read))
+    inputs = list(inputs_of(found.described.measures.numerals.read))
     if len(inputs) > MOST_INPUTS:
         raise NotApplicable(f"the description has {len(inputs)} numbers, and at most {MOST_INPUTS} are propagated")
     places, rates = found.whole.in_pairs(times)
@@ -122,7 +122,7 @@ def _shifted(pairs: Floats, change: Floats) -> Floats:
     return np.stack([high, (pairs[..., 0] - (high - back)) + (change - back) + pairs[..., 1]], axis=-1)
 
 
-def _inputs(read: dict[Path, Ball]) -> Iterator[tuple[Path, ...]]:
+def inputs_of(read: dict[Path, Ball]) -> Iterator[tuple[Path, ...]]:
     """Yield the numbers that are uncertain by themselves, each with all of its places."""
     shared: dict[tuple[Path, str], list[Path]] = {}
     for path, value in read.items():

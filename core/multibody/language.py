@@ -167,11 +167,12 @@ class Track(Connection):
 
 @dataclass(frozen=True)
 class Contact(Connection):
-    """What touches pushes and does not pull, in the plane.
+    """What touches pushes and does not pull.
 
     `place`, a point or a body with a rim, does not pass `on`: a face ``{at, slope}``, free on the left of its slope, or
-    a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. Or `a` does not pass `b`, of
-    which one has a rim at least. Or with `measure` "turn", the turn of `a` relative to `b` stays `at_least` or
+    a circle ``{at, radius}``, from inside if the radius is negative, an edge if it is 0. In space a face is a plane
+    ``{at, normal}``, free on the side of its normal, and a circle is a sphere. Or `a` does not pass `b`, of which one
+    has a rim at least. Or with `measure` "turn", the turn of `a` relative to `b` stays `at_least` or
     `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order` says, where several
     impacts at once leave their outcome open, in which order they happen.
     """
@@ -395,9 +396,18 @@ class Scene:
                 check_name(given, ("connections", i, "name"))
             name = f"{connection.kind}-{i + 1}" if given is None else given
             if name in found or name in self.bodies:
-                raise InvalidParameter(("connections", i, "name"), f'be a name of its own; "{name}" has another owner')
+                raise InvalidParameter(
+                    ("connections", i, "name"),
+                    f'be a name of its own; "{name}" has another owner',
+                    remedy=f'call it "{_unlike(name, {*found, *self.bodies})}", say',
+                )
             found[name] = i
         return tuple(found)
+
+
+def _unlike(name: str, others: set[str]) -> str:
+    """Return a name followed by the first number that makes it another."""
+    return next(new for k in range(2, len(others) + 3) if (new := f"{name[: LONGEST_NAME - 5]}-{k}") not in others)
 
 
 def check_name(name: object, path: Path) -> None:

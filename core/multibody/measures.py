@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from core.errors import InvalidParameter, Path
@@ -24,6 +25,7 @@ from core.multibody.polynomials import (
     difference,
     dot,
     evaluated,
+    gradient,
     is_zero,
     product,
 )
@@ -111,8 +113,10 @@ class Unilateral:
         Of the connection, or of one part of a string.
     gap : polynomial
         Whose multiplier, while it is zero, is the force that keeps it there.
-    slip : linear form in the rates, or None
-        Rate of slip where there is friction; its multiplier is the friction.
+    slip, across : linear form in the rates, or None
+        Rate of slip where there is friction; its multiplier is the friction. In space, along two directions.
+    tangents : two vectors, or None
+        These directions.
     static, kinetic, restitution : ball
         Coefficients.
     closes, opens : str
@@ -134,6 +138,18 @@ class Unilateral:
     rolls: bool = False
     unit: str = "N"
     order: Ball | None = None
+    across: Rate | None = None
+    tangents: tuple[Sequence[Ball], Sequence[Ball]] | None = None
+
+    @property
+    def slips(self) -> list[Rate]:
+        """The rates of slip: none without friction, one in the plane, two in space."""
+        return [line for line in (self.slip, self.across) if line is not None]
+
+    @cached_property
+    def normal(self) -> Rate:
+        """The gradient of the gap: its rate as a linear form."""
+        return gradient(self.gap)
 
 
 class Measures:

@@ -21,9 +21,12 @@ from core.multibody.motion import States
 from core.multibody.packed import Floats, pair
 from core.multibody.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.table import Table
+from core.multibody.turning import FEW_RADIANS
 
 MOST_NODES = 20000
 """Times at which events may be looked for."""
+MOST_CANCELLED = 64.0
+"""How much larger the terms of a sum over modes may be than the start that they add up to, where doubles have to do."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +76,7 @@ class Modes:
     name: str = "modes"
     why: str = "every measure is linear and the forces are linear in places and velocities"
     how: str = "closed form"
-    _known: dict[int, Any] = field(default_factory=dict, repr=False)
+    _known: dict[int | str, Any] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, table: Table, chosen: Sequence[int]) -> Modes:
@@ -153,6 +156,12 @@ class Modes:
                 errors[s] = [float(x.rad()) + 2.0**-104 * abs(float(x)) for x in values[: 2 * n]]
         return States(q, v, errors[:, :n], errors[:, n:])
 
+    def proven(self, times: Sequence[Ball]) -> list[list[Ball]]:
+        """Return places and rates at each time, as balls of the present precision."""
+        start = [*self.table.q, *self.table.v, ONE]
+        terms = self._terms(start)
+        return [self._at(t, start, terms) for t in times]
+
     def _terms(self, start: list[Ball]) -> Any:
         """Return roots and their vector coefficients, or None where roots coincide.
 
@@ -163,13 +172,18 @@ class Modes:
         return self._known[ctx.prec]
 
     def _new_terms(self, start: list[Ball]) -> Any:
+        seen = self._seen(start)
+        inner = acb_mat([[self.matrix[i][j] for j in seen] for i in seen])
         try:
-            roots, vectors = acb_mat(self.matrix).eig(right=True)
-            weights = vectors.solve(acb_mat([[acb(x)] for x in start])).entries()
+            roots, vectors = inner.eig(right=True)
+            weights = vectors.solve(acb_mat([[acb(start[i])] for i in seen])).entries()
         except (ValueError, ZeroDivisionError):
             return None
         table = vectors.tolist()
-        columns = [[table[i][k] * weights[k] for i in range(len(start))] for k in range(len(roots))]
+        columns = [[acb(0)] * len(start) for _ in roots]
+        for a, i in enumerate(seen):
+            for k, column in enumerate(columns):
+                column[i] = table[a][k] * weights[k]
         if any(x.rad() > 1e-20 * (1 + abs(x)) for column in columns for z in column for x in (z.real, z.imag)):
             return None
         above, below = sum(root.imag > 0 for root in roots), sum(root.imag < 0 for root in roots)
@@ -180,6 +194,15 @@ class Modes:
             (root, column) for root, column in zip(roots, columns, strict=True) if not (root.imag > 0 or root.imag < 0)
         ]
 
+    def _seen(self, start: list[Ball]) -> list[int]:
+        """Return what is not zero for ever: what stays zero would only make the root zero multiple."""
+        seen = {i for i, x in enumerate(start) if not is_zero(x)}
+        while True:
+            more = {i for i, row in enumerate(self.matrix) if any(not is_zero(row[j]) for j in seen)} - seen
+            if not more:
+                return sorted(seen)
+            seen |= more
+
     def _at(self, t: Ball, start: list[Ball], terms: Any) -> list[Ball]:
         if terms is None:
             return (arb_mat(self.matrix) * t).exp().__mul__(arb_mat([[x] for x in start])).entries()  # type: ignore[no-any-return]
@@ -188,6 +211,28 @@ class Modes:
             factor = (root * t).exp()
             total = [x + factor * y for x, y in zip(total, column, strict=True)]
         return [x.real for x in total]
+
+    def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
+        """Return coordinates and rates in doubles, None where roots coincide or have turned far."""
+        n, start = len(self.table.names), [*self.table.q, *self.table.v, ONE]
+        roots, columns = self._glances(start)
+        turned = np.max(np.abs(roots), initial=0.0) * np.max(np.abs(times), initial=0.0)
+        if not len(roots) or turned > FEW_RADIANS:
+            return None
+        values = (np.exp(np.outer(times, roots)) @ columns).real
+        return values[:, :n], values[:, n : 2 * n]
+
+    def _glances(self, start: list[Ball]) -> tuple[Any, Any]:
+        """Return roots and their vector coefficients in doubles, none where roots coincide or terms cancel."""
+        if "doubles" not in self._known:
+            terms = self._terms(start) or []
+            roots = np.array([complex(root) for root, _ in terms], dtype=np.complex128)
+            columns = np.array([[complex(x) for x in column] for _, column in terms], dtype=np.complex128)
+            largest = max((abs(float(x)) for x in start), default=1.0)
+            if len(terms) and np.max(np.abs(columns)) > MOST_CANCELLED * largest:
+                roots = roots[:0]
+            self._known["doubles"] = roots, columns.reshape(-1, len(start))
+        return self._known["doubles"]  # type: ignore[no-any-return]
 
     def nodes(self, end: float) -> Floats:
         """Return times eight to the shortest period."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -56,6 +56,14 @@ class Motion(Protocol):
     @property
     def period(self) -> Ball | None:
         """The period in seconds, where there is one."""
+
+
+@runtime_checkable
+class Glanced(Protocol):
+    """A motion that is known faster to a few roundings of doubles: enough to see about when something changes sign."""
+
+    def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
+        """Return coordinates and rates at times of shape (t,), each of shape (t, n); None where doubles do not do."""
 
 
 @dataclass(frozen=True)

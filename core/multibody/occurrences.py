@@ -14,9 +14,10 @@ import numpy as np
 
 from core.errors import InvalidParameter, Path
 from core.multibody.along import watched_times
-from core.multibody.answer import Column, Extremes, Occurrence
+from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole
+from core.systems.trajectory import Column
 
 _SECTIONS = 33
 _ROUNDS = 14
@@ -61,7 +62,7 @@ def component(columns: dict[str, Column], quantity: str) -> Column | None:
     return Column(column.values[:, order.index(part)], column.unit, column.error, column.how)
 
 
-def occurrences(whole: Whole, sampler: Sampler, asked: When, end: float, most: int = MOST_FOUND) -> list[Occurrence]:
+def occurrences(whole: Whole, sampler: Sampler, search: When, end: float, most: int = MOST_FOUND) -> list[Occurrence]:
     """Return the times after the start, up to `end`, at which a quantity takes a value.
 
     Parameters
@@ -71,9 +72,9 @@ def occurrences(whole: Whole, sampler: Sampler, asked: When, end: float, most: i
         Positive; where the motion ends before, its end.
     """
     grid = watched_times(whole, end)
-    curve = sampler(grid).values - asked.equals
+    curve = sampler(grid).values - search.equals
     crossings: list[tuple[float, float]] = []
-    wanted = most if asked.nth is None else asked.nth
+    wanted = most if search.nth is None else search.nth
     touching = _touching(curve)
     for k in range(len(grid) - 1):
         if len(crossings) >= wanted:
@@ -83,16 +84,16 @@ def occurrences(whole: Whole, sampler: Sampler, asked: When, end: float, most: i
         elif curve[k] * curve[k + 1] < 0.0:
             crossings.append((grid[k], grid[k + 1]))
         elif touching[k] and k + 2 < len(grid):
-            crossings.extend(_pair(sampler, asked.equals, grid[k], grid[k + 2], curve[k]))
+            crossings.extend(_pair(sampler, search.equals, grid[k], grid[k + 2], curve[k]))
     if len(grid) > 1 and curve[-1] == 0.0 and len(crossings) < wanted:
         crossings.append((grid[-1], grid[-1]))
     numbered = list(enumerate(crossings, 1))
-    if asked.nth is not None:
-        numbered = numbered[asked.nth - 1 : asked.nth]
-    return [_located(sampler, asked, low, high, number) for number, (low, high) in numbered]
+    if search.nth is not None:
+        numbered = numbered[search.nth - 1 : search.nth]
+    return [_located(sampler, search, low, high, number) for number, (low, high) in numbered]
 
 
-def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Extremes:
+def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> SceneExtremes:
     """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
     periods = {
         None if motion.period is None else float(motion.period) for _, motion in whole.parts if motion.name != "rest"
@@ -118,7 +119,7 @@ def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Extre
         if np.all(np.ptp(values, axis=1) <= _FLAT * np.abs(values).max(axis=1)):
             break
     error = sampler(np.array([found[0][1], found[1][1]])).error
-    return Extremes(
+    return SceneExtremes(
         quantity, column.unit, found[0][0], found[0][1], found[1][0], found[1][1], error, float(end), repeats
     )
 
@@ -151,14 +152,14 @@ def _pair(sampler: Sampler, equals: float, low: float, high: float, before: floa
     return []
 
 
-def _located(sampler: Sampler, asked: When, low: float, high: float, number: int) -> Occurrence:
+def _located(sampler: Sampler, search: When, low: float, high: float, number: int) -> Occurrence:
     """Return where the sign changes between two times, to the last bit, with the error of the time."""
-    first = sampler(np.array([low])).values[0] - asked.equals
+    first = sampler(np.array([low])).values[0] - search.equals
     fine = np.linspace(low, high, _SECTIONS)
     for _ in range(_MOST_ROUNDS):
         if not low < np.nextafter(low, high) < high:
             break
-        values = sampler(fine).values - asked.equals
+        values = sampler(fine).values - search.equals
         beyond = values * first <= 0.0
         k = int(np.argmax(beyond)) if np.any(beyond) else len(fine) - 1
         if k == 0:
@@ -179,28 +180,28 @@ def _located(sampler: Sampler, asked: When, low: float, high: float, number: int
     known = [2.0 * (2.0 * off / bend) ** 0.5] if bend > 0.0 else []
     error = min([off / slope, *known] if slope > 0.0 else [abs(high), *known])
     error += (high - low) + 2.0**-52 * abs(high)
-    return Occurrence(asked.quantity, asked.equals, around.unit, number, float(high), float(error), around.how)
+    return Occurrence(search.quantity, search.equals, around.unit, number, float(high), float(error), around.how)
 
 
-def check_search(asked: When | ExtremesOf, index: int) -> None:
+def check_search(search: When | ExtremesOf, index: int) -> None:
     """Raise `InvalidParameter` unless a question can be answered as it stands."""
-    where: Path = ("outputs", index, "when") if isinstance(asked, When) else ("outputs", index)
-    key = "quantity" if isinstance(asked, When) else "extremes"
-    if not isinstance(asked.quantity, str) or not asked.quantity:
+    where: Path = ("outputs", index, "when") if isinstance(search, When) else ("outputs", index)
+    key = "quantity" if isinstance(search, When) else "extremes"
+    if not isinstance(search.quantity, str) or not search.quantity:
         raise InvalidParameter((*where, key), "name a column of the trajectory, or a component of one")
-    if isinstance(asked, ExtremesOf):
+    if isinstance(search, ExtremesOf):
         return
-    if isinstance(asked.equals, bool) or not isinstance(asked.equals, (int, float)) or not np.isfinite(asked.equals):
+    if isinstance(search.equals, bool) or not isinstance(search.equals, (int, float)) or not np.isfinite(search.equals):
         raise InvalidParameter((*where, "equals"), "be a finite number")
-    nth = asked.nth
+    nth = search.nth
     if nth is not None and (isinstance(nth, bool) or not isinstance(nth, int) or not 1 <= nth <= MOST_FOUND):
         raise InvalidParameter((*where, "nth"), f"be a whole number from 1 to {MOST_FOUND}")
 
 
-def unknown(asked: When | ExtremesOf, index: int, known: Sequence[str]) -> InvalidParameter:
+def unknown(search: When | ExtremesOf, index: int, known: Sequence[str]) -> InvalidParameter:
     """Return the fault of a quantity that the scene has not."""
     return InvalidParameter(
-        ("outputs", index, "when", "quantity") if isinstance(asked, When) else ("outputs", index, "extremes"),
-        f'name a quantity of the scene, unlike "{asked.quantity[:80]}"; there are {", ".join(known[:40])}',
+        ("outputs", index, "when", "quantity") if isinstance(search, When) else ("outputs", index, "extremes"),
+        f'name a quantity of the scene, unlike "{search.quantity[:80]}"; there are {", ".join(known[:40])}',
         remedy='take a component of a vector by ".x", its length by ".length"',
     )

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from core.multibody.accumulation import Accumulation
 from core.multibody.answer import SceneEvent
+from core.multibody.complementarity import Decided
 from core.multibody.contact_start import ContactStart
 from core.multibody.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.crossings import is_uniform
@@ -18,7 +19,8 @@ from core.multibody.motion import Motion
 from core.multibody.numerical import Numerical
 from core.multibody.polynomials import ZERO, Ball
 from core.multibody.projection import project
-from core.multibody.tracks import Track, Tracks
+from core.multibody.tracks import FLOOR, Track, Tracks
+from core.multibody.turning_slip import ENDED, TurningSlip, turning_model
 
 
 @dataclass
@@ -33,6 +35,10 @@ class Phase:
         One for each track.
     tables : list of PhaseTable
     states : list of State
+    unilateral : list of Unilateral
+        The measures; those that slide in space are turned into the direction in which they do at the start.
+    unknown : two lists of float, or None
+        By how much every coordinate and rate is wrong at the start on all tracks alike.
     end : ball or None
         None for the last.
     bounces : Accumulation or None
@@ -43,6 +49,8 @@ class Phase:
     models: list[Modelled]
     tables: list[PhaseTable]
     states: list[State]
+    unilateral: list[Unilateral]
+    unknown: tuple[list[float], list[float]] | None = None
     end: Ball | None = None
     bounces: Accumulation | None = None
 
@@ -55,6 +63,16 @@ class Phase:
     def uniform(self) -> bool:
         """Whether every acceleration is constant."""
         return all(is_uniform(model) for model in self.models)
+
+    @property
+    def turning(self) -> bool:
+        """Whether friction turns with the slip."""
+        return any(isinstance(motion, TurningSlip) for _, motion in self.models[0].whole.parts)
+
+    @property
+    def share(self) -> float:
+        """Share of the largest rates by which what is known of its end is wrong at least."""
+        return ENDED if self.turning else FLOOR
 
     @property
     def still(self) -> list[bool]:
@@ -89,28 +107,47 @@ class PhaseMotion:
     ended: SceneEvent | None = None
 
 
-def phase_of(base: Described, states: Sequence[State], tracks: Tracks, start: ContactStart) -> Phase:
+def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:
     """Return the phase that begins at the present state.
+
+    Parameters
+    ----------
+    turning : sequence of str
+        Contacts whose friction turns with their slip.
+
 
     Where that is known from two tracks, each is put onto the rows of the phase: it came there by a series.
     """
     each, models, tables = [], [], []
     for track in tracks.each:
-        phase = phase_table(base.measures.table, base.measures.unilateral, states, track.q, track.v)
+        phase = phase_table(base.measures.table, found.unilateral, found.states, track.q, track.v)
+        phase.table.rows = [row if row.name in turning else replace(row, slide=None) for row in phase.table.rows]
         if not tracks.exact:
             project(phase.table, tracks.wide()[0])
             tracks.settle(phase.table.q, phase.table.v)
-        models.append(_model(base, states, phase, start))
+            if track is tracks.first:
+                table = phase.table
+                # What is zero as far as it is known becomes zero on all tracks, which may then agree too well.
+                known = tracks.wide()
+                lost = [
+                    [_apart(x, y) for x, y in zip(*both, strict=True)]
+                    for both in zip((table.q, table.v), known, strict=True)
+                ]
+                tracks.lose(*lost)
+        models.append(_model(base, found, phase, start))
         each.append(Track(track.time, phase.table.q, phase.table.v))
         tables.append(phase)
-    return Phase(each, models, tables, list(states))
+    unknown = tracks.lost if any(map(any, tracks.lost)) else None
+    return Phase(each, models, tables, found.states, found.unilateral, unknown)
 
 
-def _model(base: Described, states: Sequence[State], phase: PhaseTable, start: ContactStart) -> Modelled:
+def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:
     """Return the models of the table of a phase; a series runs in pairs, judged by a coarser one."""
     measures = copy.copy(base.measures)
     measures.table = phase.table
-    measures.forces = [*base.measures.forces, *forces_of(base.measures.unilateral, states, phase)]
+    measures.forces = [*base.measures.forces, *forces_of(decided.unilateral, decided.states, phase)]
+    if any(row.slide is not None for row in phase.table.rows):
+        return turning_model(replace(base, measures=measures), decided.unilateral, phase.normal, start)
     found = models_of(replace(base, measures=measures), start.moved, start.fitted)
     parts: list[tuple[Sequence[int], Motion]] = []
     for (indices, motion), piece in zip(found.whole.parts, found.pieces, strict=True):
@@ -120,6 +157,11 @@ def _model(base: Described, states: Sequence[State], phase: PhaseTable, start: C
             own.lost_to_doubles = True
         parts.append((indices, own))
     return replace(found, whole=replace(found.whole, parts=parts))
+
+
+def _apart(now: Ball, known: Ball) -> float:
+    """Return how far a number is at most from what is known of it."""
+    return abs(float((now - known).mid())) + float(known.rad())
 
 
 def _pulls(piece: Piece) -> list[Ball]:

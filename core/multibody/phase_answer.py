@@ -8,42 +8,40 @@ from dataclasses import replace
 import numpy as np
 from flint import arb
 
-from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, NotApplicable
+from core.errors import InvalidParameter, MechanicsError, NotApplicable
 from core.multibody.answer import (
     BodyAcceleration,
-    Column,
     ForceAnswer,
-    How,
-    SceneAccuracy,
+    MotionPhase,
     SceneAnswer,
     SceneModel,
-    ScenePhase,
     SceneProblem,
-    SceneTrajectory,
 )
-from core.multibody.columns import Columns, worst
-from core.multibody.dynamics import ForceAtStart, forces_at_start, multipliers_at_start
+from core.multibody.columns import Columns, relative, require_reached, scales_of, worst
+from core.multibody.dynamics import forces_at_start, multipliers_at_start
+from core.multibody.inherited_in_phases import inherited_in_phases
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.packed import Floats, nearest, pair
 from core.multibody.phase import Phase, PhaseMotion
 from core.multibody.phases import motion_in_phases
 from core.multibody.polynomials import Ball
-from core.multibody.shortened import shortened
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.tracks import FLOOR, TOLD
-from core.multibody.trajectories import AskedMotion
+from core.multibody.trajectories import SceneRequest, require_affordable
 from core.multibody.whole import WholeStates
+from core.systems.methods.closed_form import ClosedFormEvaluation
+from core.systems.question import MotionQuestion
+from core.systems.trajectory import HORIZON, Accuracy, Column, How, Trajectory, Work
 
-MOST_NUMBERS = 5_000_000
 ANSWERED = ("accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
 """Outputs that are answered about scenes with contacts."""
 THRESHOLDS = "thresholds"
 """Place of a question about rest among the outputs: it is answered apart from the motion."""
-_NOT_KNOWN = "what the uncertainty of the inputs does is not followed through events"
+_NO_HORIZON = "how long a motion through events stays within the accuracy is not looked for"
 
 
-def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
+def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
     """Answer a question about a scene with contacts, or with strings that are slack at times.
 
     Raises
@@ -55,41 +53,35 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
     AccuracyUnreachable, BudgetExceeded
         As `core.multibody.solve.solve_scene`.
     """
-    if asked.method is not None:
+    if request.method is not None:
         raise NotApplicable(
             "a scene with contacts is answered by its own phases, each with the smallest model that suffices",
             path=("method",),
             remedy="leave the method out",
         )
-    unknown = [i for i, output in enumerate(asked.outputs) if output not in (*ANSWERED, "equilibria", THRESHOLDS)]
+    unknown = [i for i, output in enumerate(request.outputs) if output not in (*ANSWERED, "equilibria", THRESHOLDS)]
     if unknown:
         raise NotApplicable(
             f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",
             path=("outputs", unknown[0]),
-            remedy="leave it out; events are found without being asked for",
+            remedy="leave it out; events are found without being requested",
         )
-    if "equilibria" in asked.outputs:
+    if "equilibria" in request.outputs:
         raise NotApplicable(
             "equilibria are not answered where something may touch, slide or be slack",
-            path=("outputs", list(asked.outputs).index("equilibria")),
+            path=("outputs", list(request.outputs).index("equilibria")),
             remedy="hold what touches by a connection of another kind",
         )
-    before = np.flatnonzero(asked.times < 0.0)
+    before = np.flatnonzero(request.times < 0.0)
     if len(before):
         raise InvalidParameter(
             ("times", int(before[0])), "be at least 0: contacts and impacts do not say what was before the start"
         )
-    end = float(np.max(asked.times, initial=0.0))
+    end = float(np.max(request.times, initial=0.0))
     motion = motion_in_phases(scene, end)
     count = len(motion.base.measures.table.names)
-    if len(asked.times) * 4 * count > MOST_NUMBERS:
-        most = MOST_NUMBERS // (4 * count)
-        raise BudgetExceeded("samples", len(asked.times), most, path=("times",), remedy="ask for fewer times")
     noticed = _noticed(motion)
-    trajectory = None
-    with np.errstate(over="ignore", invalid="ignore"):
-        if len(asked.times):
-            trajectory = _trajectory(motion, asked)
+    trajectory = request.solved(PhasedSystem(scene, motion, request.outputs))
     started = motion.phases[0] if motion.phases else None
     accelerations: Mapping[str, BodyAcceleration] = {}
     forces: Mapping[str, ForceAnswer] = {}
@@ -109,7 +101,7 @@ def answer_in_phases(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         model = scene_model(found, noticed, multipliers.rank)
         accelerations = accelerations_of(found.described, found.whole.acceleration)
         forces = forces_of_start(found.described, values)
-    outputs = asked.outputs
+    outputs = request.outputs
     return SceneAnswer(
         model,
         accelerations if "accelerations" in outputs else None,
@@ -142,7 +134,7 @@ def _noticed(motion: PhaseMotion) -> list[str]:
     return list(dict.fromkeys(motion.noticed))
 
 
-def _told(phase: Phase, motion: PhaseMotion) -> ScenePhase:
+def _told(phase: Phase, motion: PhaseMotion) -> MotionPhase:
     model = phase.models[0]
     names = list(dict.fromkeys(part.name for _, part in model.whole.parts))
     if phase.bounces is not None:
@@ -156,7 +148,7 @@ def _told(phase: Phase, motion: PhaseMotion) -> ScenePhase:
         name, why = names[0], model.whole.parts[0][1].why
     else:
         name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
-    return ScenePhase(
+    return MotionPhase(
         nearest(phase.start),
         None if phase.end is None else nearest(phase.end),
         name,
@@ -182,43 +174,75 @@ def _problem(motion: PhaseMotion) -> SceneProblem | None:
     )
 
 
-def _trajectory(motion: PhaseMotion, asked: AskedMotion) -> SceneTrajectory:
-    reached = list(range(len(asked.times)))
-    if motion.ended is not None and motion.phases:
-        ends = motion.phases[-1].end
-        ends = arb(motion.ended.time) if ends is None else ends
-        reached = [k for k, t in enumerate(asked.times) if not arb(float(t)) > ends]
-    if not motion.phases:
-        reached = []
-    rows = np.array(reached, dtype=np.int64)
-    times = asked.times[rows]
-    which = np.array([_phase_at(motion.phases, float(t)) for t in times], dtype=np.int64)
-    exact = all(_closed(motion.phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if motion.phases else True
-    how: How = "closed form" if exact else "measured against pairs"
-    pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
-    for k in sorted(set(which.tolist())) or ([0] if motion.phases else []):
-        mine = np.flatnonzero(which == k)
-        phase = motion.phases[k]
-        states = _states(phase, times[mine], motion)
-        pieces.append((mine, _columns(phase.models[0], times[mine], states, how, asked.outputs)))
-    columns = _merged(pieces, len(times))
-    bad = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
-    if bad:
-        raise NotApplicable(
-            f"{bad[0]} or its error leaves the range of doubles", path=("times",), remedy="ask for a shorter time"
+class PhasedSystem:
+    """The motion of a scene through phases, as a system; `outputs` are its columns."""
+
+    def __init__(self, scene: Scene, motion: PhaseMotion, outputs: Sequence[object]) -> None:
+        self.scene, self.motion, self.outputs = scene, motion, outputs
+
+    def trajectory(self, question: MotionQuestion) -> Trajectory:
+        """Return the samples up to the end of the motion; see `core.systems.question.System`."""
+        motion, phases = self.motion, self.motion.phases
+        require_affordable(len(question.times), len(motion.base.measures.table.names))
+        reached = list(range(len(question.times))) if phases else []
+        if motion.ended is not None and phases:
+            ends = phases[-1].end
+            ends = arb(motion.ended.time) if ends is None else ends
+            reached = [k for k, t in enumerate(question.times) if not arb(float(t)) > ends]
+        rows = np.array(reached, dtype=np.int64)
+        times = question.times[rows]
+        with np.errstate(over="ignore", invalid="ignore"):
+            pieces, how = self._pieces(motion, times)
+            columns = _merged(pieces, len(times))
+            lost = next((float(times[mine[0]]) for mine, own in pieces if worst(own) > question.accuracy), None)
+            require_reached(columns, question.accuracy, before=lost)
+            stated = Accuracy(question.accuracy, worst(columns), how)
+            if question.input_uncertainty is not None and len(times):
+                end = float(np.max(question.times))
+                columns, stated = self._with_inherited(times, columns, stated, question.input_uncertainty, end)
+        scales = scales_of(columns)
+        return Trajectory(
+            times,
+            {name: replace(column, scale=scales[name]) for name, column in columns.items()},
+            stated,
+            None,
+            ClosedFormEvaluation().kind,
+            Work(len(times)),
+            ended=HORIZON if motion.ended is None else motion.ended.kind,
+            rows=rows,
+            events=motion.events,
         )
-    stated = SceneAccuracy(asked.accuracy, worst(columns), how)
-    if stated.error > asked.accuracy:
-        raise AccuracyUnreachable(
-            asked.accuracy,
-            stated.error,
-            "the motion amplifies rounding, even that of pairs of doubles",
-            remedy="ask for a shorter time or a larger accuracy",
-        )
-    if asked.input_uncertainty is not None:
-        stated = replace(stated, why=_NOT_KNOWN)
-    trajectory = SceneTrajectory(times, rows, columns, stated)
-    return trajectory if asked.digits is None else shortened(trajectory, asked.digits)
+
+    def _pieces(self, motion: PhaseMotion, times: Floats) -> tuple[list[tuple[np.ndarray, dict[str, Column]]], How]:
+        """Return the columns of every phase, with the numbers of the times in it, and how their errors are known."""
+        phases = motion.phases
+        which = np.array([_phase_at(phases, float(t)) for t in times], dtype=np.int64)
+        exact = all(_closed(phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if phases else True
+        how: How = "closed form" if exact else "measured against pairs"
+        pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
+        for k in sorted(set(which.tolist())) or ([0] if phases else []):
+            mine = np.flatnonzero(which == k)
+            states = _states(phases[k], times[mine], motion)
+            pieces.append((mine, _columns(phases[k].models[0], times[mine], states, how, self.outputs)))
+        return pieces, how
+
+    def _with_inherited(
+        self, times: Floats, columns: dict[str, Column], stated: Accuracy, uncertainty: float, end: float
+    ) -> tuple[dict[str, Column], Accuracy]:
+        """Add what the uncertainty of the inputs does, or why that is not known."""
+
+        def columns_of(other: PhaseMotion) -> dict[str, Column]:
+            return _merged(self._pieces(other, times)[0], len(times))
+
+        try:
+            moved = inherited_in_phases(self.scene, self.motion, end, columns, columns_of)
+        except MechanicsError as fault:
+            return columns, replace(stated, why=fault.detail)
+        share = uncertainty * relative(moved, columns)
+        if not share < 1.0:
+            return columns, replace(stated, why="nothing is known of the motion at the latest times")
+        with_own = {name: replace(one, inherited=uncertainty * moved[name]) for name, one in columns.items()}
+        return with_own, replace(stated, inherited=share, why=_NO_HORIZON)
 
 
 def _closed(phase: Phase) -> bool:
@@ -247,6 +271,11 @@ def _states(phase: Phase, times: Floats, motion: PhaseMotion) -> WholeStates:
         FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
     )
     q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
+    if phase.unknown is not None:
+        moves = np.array([not still for still in phase.still])
+        places, rates = np.array(phase.unknown[0]), np.array(phase.unknown[1]) * moves
+        late = np.array([max(float(arb(float(t)) - phase.start), 0.0) for t in times])
+        q_error, v_error = q_error + places + np.outer(late, rates), v_error + rates
     reference = first.reference
     if len(found) > 1:
         other = found[1]
@@ -303,22 +332,12 @@ def _bouncing(phase: Phase, times: Floats) -> WholeStates:
 def _columns(
     model: Modelled, times: Floats, states: WholeStates, how: How, outputs: Sequence[object]
 ) -> dict[str, Column]:
-    columns = Columns(model.whole, times, states, how)
-    found: dict[str, Column] = {}
-    if "trajectory" in outputs:
-        found.update(columns.trajectory())
+    determined: Sequence[bool] = ()
     if "forces-in-time" in outputs:
         measures = model.described.measures
         multipliers = multipliers_at_start(measures, model.whole.acceleration)
-        known: list[ForceAtStart] = forces_at_start(measures, multipliers)
-        found.update(
-            columns.forces([f for f, one in zip(measures.forces, known, strict=True) if one.value is not None])
-        )
-    if "energy-in-time" in outputs:
-        found.update(columns.energy())
-    if "momenta-in-time" in outputs:
-        found.update(columns.momenta())
-    return found
+        determined = [force.value is not None for force in forces_at_start(measures, multipliers)]
+    return Columns(model.whole, times, states, how).chosen(outputs, determined)
 
 
 def _merged(pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], count: int) -> dict[str, Column]:

@@ -5,13 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.errors import AccuracyUnreachable
+from core.multibody.contact_states import State, phase_table
 from core.multibody.crossings import Crossing, first_in_closed_form, uniform_motion
 from core.multibody.description import Described
+from core.multibody.grazing import Graze, grazed
 from core.multibody.phase import Phase
 from core.multibody.polynomials import Ball
+from core.multibody.projection import project
 from core.multibody.sampled_crossings import Sampled
+from core.multibody.table import Row
 from core.multibody.taylor_crossings import located
+from core.multibody.turning_slip import TurningSlip
 from core.multibody.watches import Watch, watches
+
+_BEYOND = 1.001
+"""How far beyond the end of a phase, as a share of it, a gap is looked at that may only just have closed."""
+
+
+class Undecided(Exception):
+    """A gap turns back where it is zero, as far as it is known."""
+
+    def __init__(self, graze: Graze) -> None:
+        super().__init__(graze)
+        self.graze = graze
 
 
 def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) -> list[Crossing]:
@@ -26,11 +42,28 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
         Where the connections lose their hold before.
     AccuracyUnreachable
         If the end cannot be located.
+    Undecided
+        If it is not known whether a gap closes before that.
     """
-    watched = watches(base.measures.unilateral, phase.states, phase.tables[0])
+    watched = watches(phase.unilateral, phase.states, phase.tables[0])
+    found = _crossings(base, phase, watched, left, noticed)
+    ends = float(left) if not found else min(float(left), _BEYOND * float(found[0].time))
+    graze = grazed(phase, watched, ends)
+    if graze is None or (found and graze.watch != found[0].watch and not graze.time < found[0].time):
+        return found
+    if not graze.closes:
+        raise Undecided(graze)
+    return found if found and found[0].time < graze.time else _located(phase, graze.watch, float(graze.time))
+
+
+def _crossings(
+    base: Described, phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]
+) -> list[Crossing]:
     lengths = any(limit.length is not None for limit in base.measures.limits)
     if phase.uniform and not lengths:
         return _in_closed_form(phase, watched, left, noticed)
+    if phase.turning:
+        return _while_turning(base, phase, watched, float(left))
     return _sampled(phase, watched, float(left))
 
 
@@ -52,6 +85,32 @@ def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed:
     return found
 
 
+def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
+    """Return the end of a phase in which friction turns: that of a slip, if nothing else comes before."""
+    turning = {row.name for row in phase.tables[0].table.rows if row.slide is not None}
+    others = [one for one in watched if not (one.what == "slip" and one.one.name in turning)]
+    runs = []
+    for model, kind in zip([phase.models[0], phase.models[-1]], ("fine", "check"), strict=True):
+        (_, motion), *_ = model.whole.parts
+        assert isinstance(motion, TurningSlip)
+        runs.append(motion.run(kind, left))
+    ended = [run.ended for run in runs]
+    reach = left if ended[0] is None else min(left, float(runs[0].starts[-1]))
+    found = _sampled(phase, others, reach)
+    if found or ended[0] is None or runs[0].starts[-1] > left:
+        return found
+    number = next(i for i, one in enumerate(phase.unilateral) if one.name == (ended[0] or Row("", None, {})).name)
+    crossings = []
+    states = [State.STICK if i == number else state for i, state in enumerate(phase.states)]
+    for run in runs:
+        # What is left of the slip is taken out, as the connections would.
+        table = phase_table(base.measures.table, phase.unilateral, states, run.table.q, run.table.v).table
+        project(table, table.q)
+        watch = Watch(number, "slip", phase.unilateral[number])
+        crossings.append(Crossing(run.starts[-1], watch, table.q, table.v))
+    return crossings
+
+
 def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
     tables, wholes = [one.table for one in phase.tables], [model.whole for model in phase.models]
     hit = Sampled(tables[0], wholes[0], watched).first(left)
@@ -71,3 +130,10 @@ def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossi
     if first.time > left:
         return []
     return [first, located(tables[-1], wholes[-1], watch, float(first.time), "check")]
+
+
+def _located(phase: Phase, watch: Watch, time: float) -> list[Crossing]:
+    """Return the crossing next to a time, by both runs."""
+    first = located(phase.tables[0].table, phase.models[0].whole, watch, time, "fine")
+    table, whole = phase.tables[-1].table, phase.models[-1].whole
+    return [first, located(table, whole, watch, float(first.time), "check")]

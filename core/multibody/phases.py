@@ -7,35 +7,42 @@ summed up.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from flint import arb
 
 from core.balls import precision
-from core.errors import BudgetExceeded
+from core.errors import AccuracyUnreachable
 from core.multibody.answer import SceneEvent
-from core.multibody.complementarity import decided
-from core.multibody.contact_responses import gap_rate
+from core.multibody.complementarity import LOOKED, Decided, decided
+from core.multibody.contact_responses import gap_rate, slip_rate
 from core.multibody.contact_start import assemble_contacts
-from core.multibody.contact_states import Problem, State, change_of
+from core.multibody.contact_states import Problem, State, change_of, phase_table
 from core.multibody.description import Described, described
 from core.multibody.impacts import Impact, approaching, impact
 from core.multibody.language import Scene
+from core.multibody.measures import COMPONENTS
+from core.multibody.numerals import Numerals
 from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
-from core.multibody.phase_ends import crossings_of
-from core.multibody.polynomials import BITS, ZERO, evaluated, is_zero
-from core.multibody.recurring_bounces import LISTED, recurring
+from core.multibody.phase_ends import Undecided, crossings_of
+from core.multibody.polynomials import ZERO, evaluated, is_zero
+from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
+from core.multibody.turning_slip import turns
 
 MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
 SLOW = 2.0**-42
 """Share of the largest rate below which several contacts that bounce in turn come to rest."""
-FINER_BITS = (1280,)
-"""Precisions in which a motion in closed form is tried again whose balls have become wide."""
+OFTEN = 3
+"""Impacts among the last ones by which a contact shows that it bounces in turn with others."""
+PRECISIONS = (480, 1280)
+"""Precisions of a motion: the second where, in closed form, balls have become wide. An impact takes three bits."""
 EXACT = 2.0**-130
 """Share up to which the width of a state in balls is nothing."""
 _STILL = 60
@@ -50,19 +57,20 @@ def one_sided(scene: Scene) -> bool:
     )
 
 
-def motion_in_phases(scene: Scene, end: float) -> PhaseMotion:
-    """Return the phases of a scene up to a time; the precision of balls is the caller's.
+def motion_in_phases(scene: Scene, end: float, numerals: Callable[[], Numerals] | None = None) -> PhaseMotion:
+    """Return the phases of a scene up to a time, whose numbers may be read in another way.
 
     Raises
     ------
     InvalidParameter
         For a scene that cannot be.
-    BudgetExceeded
-        For more events than one question may have.
+    AccuracyUnreachable
+        If the first event cannot be located; a later one ends the motion.
     """
-    for bits in (BITS, *FINER_BITS):
+    for bits in PRECISIONS:
         with precision(bits):
-            run = _Run(described(scene, one_sided=True), end, last=bits == FINER_BITS[-1])
+            read = None if numerals is None else numerals()
+            run = _Run(described(scene, read, one_sided=True), end, last=bits == PRECISIONS[-1])
             try:
                 run.go()
             except _TooWide:
@@ -85,6 +93,8 @@ class _Run:
         table = base.measures.table
         self.tracks = Tracks(table.units, table.q, table.v)
         self.states = [State.OPEN] * len(self.unilateral)
+        self.decided = Decided(self.states, list(self.unilateral))
+        self.turning: list[str] = []
         self.bounced: dict[int, int] = {}
 
     def go(self) -> None:
@@ -97,21 +107,28 @@ class _Run:
             if problem is not None:
                 self._stop(problem)
                 return
-            phase = phase_of(self.base, self.states, self.tracks, self.start)
+            phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start)
             self.motion.phases.append(phase)
             if self._accumulate(phase):
                 continue
-            if not self._advance(phase):
+            try:
+                if not self._advance(phase):
+                    return
+            except AccuracyUnreachable as lost:
+                if len(self.motion.phases) == 1:
+                    raise
+                self._stop(Problem("lost-event", lost.detail, (), decided_by="an answer up to an earlier time"))
                 return
             now = float(self.tracks.time)
             still, last = (still + 1, last) if now <= last else (0, now)
             if still > _STILL:
                 self._stop(Problem("no-progress", "events follow one another without any time between them", ()))
                 return
-            if len(self.motion.events) > MOST_EVENTS:
-                raise BudgetExceeded(
-                    "events", len(self.motion.events), MOST_EVENTS, path=("times",), remedy="ask for a shorter time"
-                )
+            if len(self.motion.events) >= MOST_EVENTS:
+                explanation = f"{MOST_EVENTS} events are as many as one question may have, and more would follow"
+                decided_by = "another question, from the state that is answered last"
+                self._stop(Problem("event-limit", explanation, (), decided_by=decided_by))
+                return
 
     def _stop(self, problem: Problem) -> None:
         """End the motion where mechanics does not decide."""
@@ -138,7 +155,12 @@ class _Run:
                 unilateral = [replace(one, restitution=ZERO) for one in self.unilateral]
                 tracks.floor = max(tracks.floor, share)
                 tracks.part(self.motion.phases[-1].still, share)
+                tracks.delay(share * tracks.own_time())
+                tracks.lose(*([share * x for x in scales] for scales in tracks.scales()))
                 q, v = tracks.wide()
+                # What is within that of another contact touches it.
+                near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
+                self.touching = sorted({*self.touching, *near})
             outcome = impact(table, unilateral, self.touching, q, v)
             if isinstance(outcome, Problem):
                 self._stop(outcome)
@@ -148,7 +170,7 @@ class _Run:
             if not tracks.exact:
                 rates = []
                 for track in tracks.each:
-                    alike = impact(table, unilateral, self.touching, track.q, track.v, settled=True)
+                    alike = impact(table, unilateral, self.touching, track.q, track.v, settled=outcome)
                     if isinstance(alike, Problem):
                         self._stop(alike)
                         return False
@@ -158,26 +180,34 @@ class _Run:
         return False
 
     def _slowness(self, hit: Sequence[int]) -> float:
-        """Return how slowly what hits does so, as a share of the largest rate, if it has done so often; else 0."""
-        if len(self.motion.events) < LISTED or all(is_zero(self.unilateral[i].restitution) for i in hit):
+        """Return what is left of bounces that are slow, as a share of the largest rate, if there were many; else 0."""
+        names = Counter(event.name for event in self.motion.events[-2 * LISTED :])
+        if len(self.motion.events) < LISTED or any(names[self.unilateral[i].name] < OFTEN for i in hit):
             return 0.0
-        first = self.tracks.first
-        share = 0.0
-        for i in hit:
-            fastest = self.tracks.fastest("rad" if self.unilateral[i].unit == "N m" else "m")
-            if not fastest > 0.0:
-                return 0.0
-            share = max(share, abs(float(gap_rate(self.unilateral[i], first.q, first.v))) / fastest)
-        return share if share < SLOW else 0.0
+        share = max(self._share(i) for i in hit)
+        if not share < SLOW:
+            return 0.0
+        # All bounces that would follow, each less than the one before by the restitution, and as much again.
+        bounciest = max(float(self.unilateral[i].restitution) for i in hit)
+        return 2.0 * share / (1.0 - bounciest) if bounciest < 1.0 else 0.0
+
+    def _share(self, i: int) -> float:
+        """Return the rate of a gap as a share of the largest rate so far of its unit."""
+        one, first = self.unilateral[i], self.tracks.first
+        fastest = self.tracks.fastest("rad" if one.unit == "N m" else "m")
+        return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf
 
     def _record(self, hit: Sequence[int], outcome: Impact) -> None:
         """Add the events of an impact, the loss of energy with the first."""
         self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
         loss = nearest(outcome.loss)
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
-            one, (push, rub) = self.unilateral[i], outcome.impulses[i]
+            one, (push, rub, beside) = outcome.unilateral[i], outcome.impulses[i]
             impulses = {"normal": nearest(push)}
-            if one.slip is not None:
+            if one.tangents is not None:
+                for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
+                    impulses[f"friction.{axis}"] = nearest(rub * x + beside * y)
+            elif one.slip is not None:
                 impulses["friction"] = nearest(rub)
             time, late = nearest(self.tracks.time), self.tracks.late()
             self.motion.events.append(SceneEvent(one.closes, one.name, time, late, impulses, loss))
@@ -186,16 +216,27 @@ class _Run:
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""
         q, v = self.tracks.wide()
-        states = decided(self.base.measures.table, self.unilateral, self.touching, q, v)
-        if isinstance(states, Problem):
-            return states
-        for one, old, new in zip(self.unilateral, self.states, states, strict=True):
+        table = self.base.measures.table
+        found = decided(table, self.unilateral, self.touching, q, v)
+        if isinstance(found, Problem):
+            return found
+        now = phase_table(table, found.unilateral, found.states, q, v)
+        self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
+        for one in found.unilateral:
+            if one.name in self.turning and is_zero(slip_rate(one, q, v)):
+                return Problem(
+                    "turning-onset",
+                    "what begins to slide in space would turn the direction of its friction from the first moment on",
+                    (one.name,),
+                    decided_by="a velocity with which it slides already",
+                )
+        for one, old, new in zip(self.unilateral, self.states, found.states, strict=True):
             kind = change_of(one, old, new)
             if kind and self.motion.phases:
                 self._event(kind, one.name)
             if old is not new:
                 self.bounced = {}
-        self.states = states
+        self.decided, self.states = found, found.states
         return None
 
     def _advance(self, phase: Phase) -> bool:
@@ -205,6 +246,20 @@ class _Run:
             return False
         try:
             crossings = crossings_of(self.base, phase, left, self.motion.noticed)
+        except Undecided as undecided:
+            phase.end = phase.start + undecided.graze.time
+            self.tracks.each = [replace(track, time=phase.end) for track in self.tracks.each]
+            name = undecided.graze.watch.one.name
+            self._stop(
+                Problem(
+                    "grazing-contact",
+                    f"whether {name} is reached is not known: the gap turns back at zero, to the width of its error",
+                    (name,),
+                    ({name: "touches, and bounces at less than is known"}, {name: "is passed by"}),
+                    "a start from which it is clearly reached or missed",
+                )
+            )
+            return False
         except SingularPlace as place:
             phase.end = phase.start + place.time
             event = SceneEvent("singular", "", float(phase.end), 1e-9 * float(phase.end))
@@ -221,7 +276,7 @@ class _Run:
         if wide and not self.last:
             raise _TooWide
         if wide or not tracks.exact:
-            tracks.part(phase.still)
+            tracks.part(phase.still, phase.share, FLOOR)
         phase.end = tracks.time
         self._meet(phase, first.watch.number)
         return True
@@ -245,7 +300,9 @@ class _Run:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
         for i, count in self.bounced.items():
             own_time = self.tracks.own_time()
-            found = recurring(self.unilateral, i, count, phase, own_time, arb(self.end))
+            few = len(self.motion.events) >= MANY or self._share(i) < SMALL
+            listed = count >= (LATER_LISTED if few else LISTED)
+            found = recurring(self.unilateral, i, phase, own_time, arb(self.end), listed=listed)
             if found is None:
                 continue
             length = found.tails[0].length
@@ -258,8 +315,10 @@ class _Run:
             ]
             if not self.tracks.exact:
                 # Over the bounces the acceleration changes in proportion to their length.
-                share = 0.0 if found.exact else (float(length) / own_time) ** 2
-                self.tracks.part(phase.still, max(FLOOR, share))
+                part = 0.0 if found.exact else float(length) / own_time
+                self.tracks.part(phase.still, max(FLOOR, part**2), max(FLOOR, part**3))
+                if part:
+                    self.tracks.delay(own_time * part**2)
             self.touching = sorted({*(j for j, s in enumerate(phase.states) if s is not State.OPEN), i})
             self._event("settle", self.unilateral[i].name)
             self.bounced = {}

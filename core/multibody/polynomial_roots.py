@@ -29,13 +29,13 @@ def first_negative(series: Sequence[Ball], end: Ball) -> tuple[Ball | None, list
     if len(rest) < 2:
         return None, []
     touched: list[Ball] = []
-    for root, sign in _changes(rest, end, touched):
+    for root, sign in changes(rest, end, touched):
         if sign < 0:
             return root, [t for t in touched if t < root]
     return None, touched
 
 
-def _changes(p: Sequence[Ball], end: Ball, touched: list[Ball] | None = None) -> list[tuple[Ball, int]]:
+def changes(p: Sequence[Ball], end: Ball, touched: list[Ball] | None = None) -> list[tuple[Ball, int]]:
     """Return the roots in (0, end] at which a polynomial changes its sign, with the sign that follows."""
     while p and is_zero(p[-1]):
         p = p[:-1]
@@ -57,7 +57,7 @@ def _changes(p: Sequence[Ball], end: Ball, touched: list[Ball] | None = None) ->
         s = -(b + discriminant.sqrt()) / 2 if b > 0 else (discriminant.sqrt() - b) / 2
         pairs = [x for x in (s / a, c / s if not is_zero(s) else ZERO) if x > 0 and not x > end]
         return [(x, 1 if 2 * a * x + b > 0 else -1) for x in sorted(pairs, key=float)]
-    turns = [t for t, _ in _changes(slope(p), end)]
+    turns = [t for t, _ in changes(slope(p), end)]
     found = []
     low, sign = ZERO, _sign(p[0])
     for t in [*turns, end]:

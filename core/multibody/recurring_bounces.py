@@ -12,18 +12,29 @@ from dataclasses import dataclass
 from flint import arb
 
 from core.multibody.accumulation import Accumulation
-from core.multibody.contact_responses import Responses, gap_rate, rate_along, responses, slip_rate
-from core.multibody.contact_states import State
+from core.multibody.contact_responses import (
+    Responses,
+    across_rate,
+    gap_rate,
+    rate_along,
+    responses,
+    slip_rate,
+)
+from core.multibody.contact_states import State, grips
 from core.multibody.crossings import is_uniform
 from core.multibody.measures import Unilateral
 from core.multibody.phase import Phase
 from core.multibody.polynomials import ZERO, Ball, evaluated, is_zero
+from core.multibody.slip_directions import along_slip
 from core.multibody.table import Row, Table
 
 SHORT = 2.0**-30
 """Share of a scene's own time in which the bounces that are left are alike, where they are not exactly so."""
-LISTED = 12
-"""Bounces of one contact that are listed before the rest is summed up."""
+LISTED, LATER_LISTED = 12, 3
+"""Bounces of one contact that are listed before the rest is summed up: at first; after `MANY` events, or if small."""
+MANY = 60
+SMALL = 2.0**-20
+"""Share of the largest rate below which bounces are small."""
 
 
 @dataclass(frozen=True)
@@ -43,24 +54,24 @@ class Recurring:
 
 
 def recurring(
-    unilateral: Sequence[Unilateral], i: int, count: int, phase: Phase, own_time: float, end: Ball
+    unilateral: Sequence[Unilateral], i: int, phase: Phase, own_time: float, end: Ball, *, listed: bool
 ) -> Recurring | None:
     """Return the bounces of a measure that follow the start of a phase, None where they do not end as they are.
 
     Parameters
     ----------
-    count : int
-        Bounces of the measure so far, in a row.
     own_time : float
         Time in which the scene moves by its own size (s).
     end : ball
         Time up to which the motion is wanted (s).
+    listed : bool
+        Whether enough bounces are listed, so that those that are alike exactly may be summed up.
     """
     one = unilateral[i]
     if phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
         return None
     exact = is_uniform(phase.models[0]) and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
-    if count < LISTED and exact:
+    if exact and not listed:
         return None
     tails = [_tail(unilateral, i, phase, k) for k in range(len(phase.tracks))]
     found = [tail for tail in tails if tail is not None]
@@ -73,9 +84,10 @@ def recurring(
 
 def _tail(unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int) -> Accumulation | None:
     """Return the bounces of a measure as they follow the start of a track of a phase, None where they are not alike."""
-    one, track, table = unilateral[i], phase.tracks[k], phase.tables[k].table
+    track, table = phase.tracks[k], phase.tables[k].table
+    one = along_slip(unilateral, [i], track.q, track.v)[i]
     acceleration = list(phase.models[k].whole.acceleration)
-    found = responses(table, unilateral, [i])
+    found = responses(table, [one], [0])
     opening = gap_rate(one, track.q, track.v)
     closing = -_acceleration(table, Row.held(one.name, one.gap), acceleration)
     if not opening > 0 or not closing > 0:
@@ -86,6 +98,8 @@ def _tail(unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int) -> Acc
         ratio = _ratio(one, found, opening, closing, gain, slip_rate(one, track.q, track.v))
         if ratio is None:
             return None
+    if one.across is not None and not _straight(one, found, table, track.q, track.v, acceleration):
+        return None
     push, yields = list(found.columns[0]), found.matrix[0][0]
     if one.slip is not None:
         push = [x + ratio * y for x, y in zip(push, found.columns[1], strict=True)]
@@ -100,6 +114,15 @@ def _acceleration(table: Table, row: Row, acceleration: list[Ball]) -> Ball:
     return rate_along(row.line(table.q), acceleration) - table.convective(row)
 
 
+def _straight(
+    one: Unilateral, found: Responses, table: Table, q: list[Ball], v: list[Ball], acceleration: list[Ball]
+) -> bool:
+    """Return whether the slip of bounces in space stays along one direction."""
+    gain = _acceleration(table, Row(one.name, None, one.across or {}), acceleration)
+    beside = (across_rate(one, q, v), gain, found.matrix[2][0], found.matrix[2][1])
+    return all(is_zero(x) for x in beside)
+
+
 def _ratio(one: Unilateral, found: Responses, opening: Ball, closing: Ball, gain: Ball, slip: Ball) -> Ball | None:
     """Return the ratio of friction to push that every impulse has, None where it is not always the same.
 
@@ -111,7 +134,7 @@ def _ratio(one: Unilateral, found: Responses, opening: Ball, closing: Ball, gain
         Acceleration of the slip during an arc, and its rate at the start.
     """
     e = one.restitution
-    (nn, nt), (tn, tt) = found.matrix
+    (nn, nt), (tn, tt) = (line[:2] for line in found.matrix[:2])
     if is_zero(slip):
         # It slips during an arc, and stops at its end: by as much less, every time, as the arc is shorter.
         share = 2 * gain / (closing * (1 + e))
@@ -126,16 +149,16 @@ def _ratio(one: Unilateral, found: Responses, opening: Ball, closing: Ball, gain
 def _pressed(unilateral: Sequence[Unilateral], phase: Phase, k: int, found: Responses, ratio: Ball) -> bool:
     """Return whether what is closed takes its share of every impulse as it is: it is pressed, and sticks."""
     reactions = dict(found.reactions[0])
-    if len(found.reactions) > 1:
+    if ratio != 0:
         for r, x in found.reactions[1].items():
             reactions[r] = reactions[r] + ratio * x
     # The row's multiplier answers an acceleration; an impulse is answered alike.
-    for one, row, slip in zip(unilateral, phase.tables[k].normal, phase.tables[k].slip, strict=True):
+    for j, (one, row) in enumerate(zip(unilateral, phase.tables[k].normal, strict=True)):
         push: Ball = ZERO if row is None else reactions.get(row, ZERO)
         if not is_zero(push) and push < 0:
             return False
-        rub: Ball = ZERO if slip is None else reactions.get(slip, ZERO)
-        if not is_zero(rub) and not abs(rub) < one.static * push:
+        rubs = [reactions.get(slip, ZERO) for slip in phase.tables[k].grip(j)]
+        if any(not is_zero(rub) for rub in rubs) and not all(x > 0 for x in grips(one.static * push, rubs)):
             return False
     return True
 

@@ -21,6 +21,8 @@ from core.multibody.whole import Whole, values
 
 _NOISE = 2.0**-44
 """Share of its terms below which the sign of something sampled in doubles is noise."""
+_ROUNDED = 2.0**-46
+"""Share of its largest terms that is noise where the motion itself is in doubles, of which terms may cancel."""
 _CLOSER = 33
 """Samples of an interval that is looked at again."""
 _MOST_NARROWINGS = 8
@@ -89,7 +91,7 @@ class Sampled:
 
     def curves(self, times: Floats) -> tuple[Floats, Floats]:
         """Return everything watched at times, and below which size it is noise, each of shape (watches, t)."""
-        q, v = self.whole.in_pairs(times)
+        q, v, glanced = self.whole.glance(times)
         multipliers = None
         found, noise = np.empty((len(self.watched), len(times))), np.empty((len(self.watched), len(times)))
         for k, watch in enumerate(self.watched):
@@ -103,8 +105,13 @@ class Sampled:
                     multipliers = self.whole.multipliers(q, v)
                 assert watch.force is not None
                 found[k], size = self.whole.force(watch.force, q, v, multipliers)
+                if watch.rubs:
+                    rubs = [self.whole.force(rub, q, v, multipliers)[0] for rub in watch.rubs]
+                    found[k] -= np.hypot(*rubs)
                 size = np.maximum(size, float(np.max(np.abs(multipliers), initial=0.0)))
             noise[k] = _NOISE * size
+            if glanced:
+                noise[k] += _ROUNDED * np.max(size, initial=0.0)
         return found, noise
 
     def first(self, end: float) -> tuple[float, Watch] | None:

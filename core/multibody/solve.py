@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Literal, get_args
 
 import numpy as np
 
 from core.balls import precision
-from core.errors import BudgetExceeded, InvalidParameter, SlackAtStart
-from core.multibody.answer import SceneAnswer, SceneEvent, SceneTrajectory
+from core.errors import InvalidParameter, SlackAtStart
+from core.multibody.answer import SceneAnswer, SceneEvent
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equilibria import equilibria_of
 from core.multibody.language import Scene
@@ -22,11 +22,12 @@ from core.multibody.phases import one_sided
 from core.multibody.polynomials import BITS
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.thresholds import RestOf, range_of_rest
-from core.multibody.trajectories import AskedMotion, Searched, trajectory_of
-from core.quantities import Uncertainty, check_value
+from core.multibody.trajectories import DescribedSystem, SceneRequest
+from core.quantities import Tolerance, Uncertainty, check_value
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
+from core.systems.solve import checked_times
 
 Output = Literal[
     "accelerations",
@@ -40,22 +41,8 @@ Output = Literal[
     "paths-in-time",
     "equilibria",
 ]
-OUTPUTS: tuple[Output, ...] = (
-    "accelerations",
-    "forces",
-    "energy",
-    "trajectory",
-    "forces-in-time",
-    "energy-in-time",
-    "momenta-in-time",
-    "work-in-time",
-    "paths-in-time",
-    "equilibria",
-)
+OUTPUTS: tuple[Output, ...] = get_args(Output)
 DEFAULT_OUTPUTS: tuple[Output, ...] = ("accelerations", "forces", "energy", "trajectory")
-
-MOST_NUMBERS = 5_000_000
-"""Numbers that one trajectory may have."""
 
 
 def solve_scene(
@@ -102,7 +89,12 @@ def solve_scene(
     NotApplicable
         Where the method does not exist for scenes.
     """
-    moments = _times(times)
+    budget = budget or Budget()
+    check_value("accuracy", Tolerance, accuracy)
+    if input_uncertainty is not None:
+        check_value("input_uncertainty", Uncertainty, input_uncertainty)
+    empty = isinstance(times, Sized) and len(times) == 0
+    moments = np.zeros(0) if empty else checked_times(times, budget)
     for i, output in enumerate(outputs):
         if isinstance(output, (When, ExtremesOf)):
             check_search(output, i)
@@ -110,47 +102,26 @@ def solve_scene(
                 raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
         elif not isinstance(output, RestOf) and (not isinstance(output, str) or output not in OUTPUTS):
             raise InvalidParameter(("outputs", i), f"be one of {', '.join(OUTPUTS)}")
-    if not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
-        raise InvalidParameter("accuracy", "be greater than 0 and less than 1")
-    if input_uncertainty is not None:
-        check_value("input_uncertainty", Uncertainty, input_uncertainty)
     of_motion = [output if not isinstance(output, RestOf) else THRESHOLDS for output in outputs]
-    asked = AskedMotion(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget or Budget())
+    request = SceneRequest(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget)
     with precision(BITS):
         ranges = [
             range_of_rest(scene, output, ("outputs", i, "thresholds"))
             for i, output in enumerate(outputs)
             if isinstance(output, RestOf)
         ]
-        return replace(_solve(scene, asked), thresholds=tuple(ranges) or None)
+        return replace(_answered(scene, request), thresholds=tuple(ranges) or None)
 
 
-def _times(times: Any) -> Floats:
-    try:
-        moments = np.array(times, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
-        raise InvalidParameter("times", "be a list of numbers") from None
-    if moments.ndim != 1:
-        raise InvalidParameter("times", "be a list of numbers")
-    bad = np.flatnonzero(~np.isfinite(moments))
-    if len(bad):
-        raise InvalidParameter(("times", int(bad[0])), "be finite")
-    return moments
-
-
-def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
+def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
     if one_sided(scene):
-        return answer_in_phases(scene, asked)
+        return answer_in_phases(scene, request)
     try:
         found = modelled(scene)
     except SlackAtStart:
-        if asked.method is not None:
+        if request.method is not None:
             raise
-        return answer_in_phases(scene, asked)
-    table, outputs = found.described.measures.table, asked.outputs
-    if len(asked.times) * 4 * len(table.names) > MOST_NUMBERS:
-        most = MOST_NUMBERS // (4 * len(table.names))
-        raise BudgetExceeded("samples", len(asked.times), most, path=("times",), remedy="ask for fewer times")
+        return answer_in_phases(scene, request)
     multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
     forces = forces_at_start(found.described.measures, multipliers)
     noticed = noticed_of(found, forces, multipliers)
@@ -158,16 +129,14 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
     if still:
         noticed.append(f"nothing ever moves {', '.join(still)}")
     model = scene_model(found, noticed, multipliers.rank)
-    trajectory: SceneTrajectory | None = None
-    events: tuple[SceneEvent, ...] = ()
-    searched = Searched()
-    if len(asked.times):
-        determined = [value.value is not None for value in forces]
-        trajectory, events, searched = trajectory_of(scene, found, determined, asked)
-    if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(asked):
+    system = DescribedSystem(scene, found, [value.value is not None for value in forces], request.outputs)
+    trajectory = request.solved(system)
+    events: Sequence[SceneEvent] = () if trajectory is None else trajectory.events
+    if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(request):
         # Slack strings become taut again: the scene has further phases.
-        return answer_in_phases(scene, asked)
-    motions = found.whole.parts
+        return answer_in_phases(scene, request)
+    searched = None if trajectory is None else system.searched(trajectory, request.times)
+    motions, outputs = found.whole.parts, request.outputs
     periods = [motion.period for _, motion in motions if motion.name != "rest"]
     single = periods[0] if len(periods) == 1 else None
     return SceneAnswer(
@@ -178,14 +147,13 @@ def _solve(scene: Scene, asked: AskedMotion) -> SceneAnswer:
         trajectory,
         None if single is None else float(single),
         equilibria_of(found.described) if "equilibria" in outputs else None,
-        events,
+        tuple(events),
         next((event for event in events if event.time >= 0.0), None),
-        searched.occurrences,
-        searched.extremes,
+        *((None, None) if searched is None else searched),
     )
 
 
-def _has_phases(asked: AskedMotion) -> bool:
-    """Return whether what is asked can be answered through events."""
-    forward = bool(np.min(asked.times) >= 0.0)
-    return forward and asked.method is None and all(output in (*ANSWERED, THRESHOLDS) for output in asked.outputs)
+def _has_phases(request: SceneRequest) -> bool:
+    """Return whether what is requested can be answered through events."""
+    forward = bool(np.min(request.times) >= 0.0)
+    return forward and request.method is None and all(output in (*ANSWERED, THRESHOLDS) for output in request.outputs)

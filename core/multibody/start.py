@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from core.multibody.answer import BodyAcceleration, Energy, ForceAnswer, PartModel, SceneModel
 from core.multibody.description import Described
@@ -58,16 +59,23 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
     )
 
 
-def accelerations_of(found: Described, full: Sequence[Ball]) -> Mapping[str, BodyAcceleration]:
-    """Return the accelerations of every body."""
+def in_doubles(ball: Ball) -> float:
+    """Return a number of the start as a double; what cannot be told from zero is zero."""
+    return 0.0 if is_zero(ball) else float(ball)
+
+
+def accelerations_of(
+    found: Described, full: Sequence[Ball], number: Callable[[Ball], Any] = in_doubles
+) -> Mapping[str, BodyAcceleration]:
+    """Return the accelerations of every body, in a kind of number."""
     table, answer = found.measures.table, {}
     for name, frame in found.measures.coordinates.frames.items():
         angular: float | tuple[float, ...] | None = None
         if frame.turn is not None:
-            angular = _double(full[frame.turn])
+            angular = number(full[frame.turn])
         elif frame.direction is not None:
             c, s = frame.direction
-            angular = _double(table.q[c] * full[s] - table.q[s] * full[c])
+            angular = number(table.q[c] * full[s] - table.q[s] * full[c])
         elif frame.axes is not None:
             # Half the sum of e x e'' is the rate of the angular velocity in space.
             space = [ZERO] * 3
@@ -76,22 +84,24 @@ def accelerations_of(found: Described, full: Sequence[Ball]) -> Mapping[str, Bod
                     j, k = axis[(i + 1) % 3], axis[(i + 2) % 3]
                     space[i] = space[i] + (table.q[j] * full[k] - table.q[k] * full[j]) / 2
             angular = tuple(
-                _double(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
+                number(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
             )
         elif frame.turns is not None and frame.start_axes is not None:
             angular = tuple(
-                _double(sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO))
+                number(sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO))
                 for axis in frame.start_axes
             )
-        answer[name] = BodyAcceleration(tuple(_double(full[i]) for i in frame.position), angular)
+        answer[name] = BodyAcceleration(tuple(number(full[i]) for i in frame.position), angular)
     return answer
 
 
-def forces_of_start(found: Described, forces: Sequence[ForceAtStart]) -> Mapping[str, ForceAnswer]:
-    """Return the forces of every connection."""
+def forces_of_start(
+    found: Described, forces: Sequence[ForceAtStart], number: Callable[[Ball], Any] = in_doubles
+) -> Mapping[str, ForceAnswer]:
+    """Return the forces of every connection, in a kind of number."""
     return {
         force.name: ForceAnswer(
-            None if value.value is None else _double(value.value),
+            None if value.value is None else number(value.value),
             force.unit,
             value.value is not None,
             value.shared_with,
@@ -100,16 +110,12 @@ def forces_of_start(found: Described, forces: Sequence[ForceAtStart]) -> Mapping
     }
 
 
-def _double(ball: Ball) -> float:
-    return 0.0 if is_zero(ball) else float(ball)
-
-
-def energy_of(found: Described) -> Energy:
-    """Return the energies at the start."""
+def energy_of(found: Described, number: Callable[[Ball], Any] = in_doubles) -> Energy:
+    """Return the energies at the start, in a kind of number."""
     measures = found.measures
     spin = sum((frame.spin_energy for frame in measures.coordinates.frames.values()), ZERO)
     moving, resting = kinetic(measures.table) + spin, potential(measures.table) + measures.potential
-    return Energy(_double(moving), _double(resting), _double(moving + resting), measures.conservative)
+    return Energy(number(moving), number(resting), number(moving + resting), measures.conservative)
 
 
 def at_rest(found: Modelled) -> list[str]:

@@ -9,7 +9,7 @@ polynomial of degree two at most whose gradient is its line of W, or a rate row 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from core.multibody.polynomials import (
@@ -17,6 +17,7 @@ from core.multibody.polynomials import (
     ZERO,
     Ball,
     Poly,
+    combined,
     degree,
     evaluated,
     gradient,
@@ -45,6 +46,9 @@ class Row:
     drag : Rates
         Its line of X: where its multiplier pushes beside the line of W. That of a sliding contact is -sigma mu times
         the rate of slip.
+    slide : (ball, line, line) or None
+        In space, of friction that turns with the slip: -mu and two constant lines along which the slip has the
+        components s. The drag is -mu (s/|s|) times these lines, and stands in `drag` for the present state.
     """
 
     name: str
@@ -52,6 +56,7 @@ class Row:
     rates: Rates
     rate: Ball = ZERO
     drag: Rates = field(default_factory=dict)
+    slide: tuple[Ball, Rates, Rates] | None = None
 
     @classmethod
     def held(cls, name: str, measure: Poly) -> Row:
@@ -167,6 +172,31 @@ class Table:
         for (i, j, k), value in self.gyration.items():
             total[i] = total[i] + value * q[j] * v[k]
         return total
+
+    def slip_of(self, row: Row) -> tuple[Ball, Ball]:
+        """Return the two components of the slip of a row whose friction turns with it."""
+        assert row.slide is not None
+        found = []
+        for line in row.slide[1:]:
+            found.append(sum((evaluated(poly, self.q) * self.v[j] for j, poly in line.items()), ZERO))
+        return found[0], found[1]
+
+    def oriented(self) -> Table:
+        """Return the table with all friction against the present slip; where that is zero, as it stands."""
+        if all(row.slide is None for row in self.rows):
+            return self
+        rows = []
+        for row in self.rows:
+            if row.slide is not None:
+                x, y = self.slip_of(row)
+                square = x * x + y * y
+                if square > 0:
+                    factor, along, across = row.slide
+                    c, s = (factor * z / square.sqrt() for z in (x, y))
+                    drag = {j: combined((c, along.get(j, {})), (s, across.get(j, {}))) for j in {*along, *across}}
+                    row = replace(row, drag={j: poly for j, poly in drag.items() if poly})
+            rows.append(row)
+        return replace(self, rows=rows)
 
     def inertial(self, acceleration: Sequence[Ball]) -> list[Ball]:
         """Return M times an acceleration."""

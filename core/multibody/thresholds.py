@@ -96,7 +96,7 @@ def _rests(base: Described, touching: Sequence[int]) -> bool:
     return all(is_zero(x) for x in table.v) and stays(table, base.measures.unilateral, touching)
 
 
-def range_of_rest(scene: Scene, asked: RestOf, where: Path = ()) -> RestRange:
+def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange:
     """Return the range of a number in which a scene stays at rest; the precision of balls is the caller's.
 
     Parameters
@@ -112,13 +112,13 @@ def range_of_rest(scene: Scene, asked: RestOf, where: Path = ()) -> RestRange:
     NotApplicable
         Where other places touch with another value.
     """
-    path, least, most = _checked(asked, where)
+    path, least, most = _checked(question, where)
     numerals = Numerals.of(scene.let, scene.numbers)
     base = described(scene, numerals, one_sided=True)
     if path not in numerals.every:
         raise InvalidParameter(
             (*where, "vary"),
-            f'be the JSON pointer of a number of the description, unlike "{asked.vary[:80]}"',
+            f'be the JSON pointer of a number of the description, unlike "{question.vary[:80]}"',
             remedy="name one that is written there, as /connections/0/friction",
         )
     written = numerals.every[path]
@@ -126,22 +126,22 @@ def range_of_rest(scene: Scene, asked: RestOf, where: Path = ()) -> RestRange:
         raise InvalidParameter((*where, "between"), f"hold the written value {float(written):.10g}")
     touching = assemble_contacts(base).touching
     if not _rests(base, touching):
-        return RestRange(asked.vary, nearest(written), None, None)
+        return RestRange(question.vary, nearest(written), None, None)
     varied = _Varied(scene, path, where, touching)
-    return RestRange(asked.vary, nearest(written), _end(varied, written, least), _end(varied, written, most))
+    return RestRange(question.vary, nearest(written), _end(varied, written, least), _end(varied, written, most))
 
 
-def _checked(asked: RestOf, where: Path) -> tuple[Path, Ball, Ball]:
+def _checked(question: RestOf, where: Path) -> tuple[Path, Ball, Ball]:
     """Return the path of the number and the bounds."""
-    if not isinstance(asked.vary, str) or not asked.vary.startswith("/"):
+    if not isinstance(question.vary, str) or not question.vary.startswith("/"):
         raise InvalidParameter((*where, "vary"), "be a JSON pointer, which begins with /")
-    bounds = asked.between
+    bounds = question.between
     if isinstance(bounds, str) or not isinstance(bounds, Sequence) or len(bounds) != 2:
         raise InvalidParameter((*where, "between"), "be two numbers")
     for i, x in enumerate(bounds):
         if isinstance(x, bool) or not isinstance(x, (int, float)) or not isfinite(x):
             raise InvalidParameter((*where, "between", i), "be a finite number")
-    path = tuple(int(part) if part.isdecimal() else part for part in asked.vary[1:].split("/"))
+    path = tuple(int(part) if part.isdecimal() else part for part in question.vary[1:].split("/"))
     return path, arb(bounds[0]), arb(bounds[1])
 
 
@@ -168,7 +168,7 @@ def _end(varied: _Varied, inside: Ball, bound: Ball) -> RestEnd:
         if not varied.rests(outside):
             return _bisected(varied, inside, outside)
         inside = outside
-    return RestEnd(nearest(bound), 0.0, None)
+    return RestEnd(nearest(bound), 0.0, None, None)
 
 
 def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
@@ -187,7 +187,7 @@ def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
     error = max(float(abs(x - arb(value)).upper()) for x in (inside, outside))
     base = varied.at(outside)
     table, unilateral = base.measures.table, base.measures.unilateral
-    states = decided(table, unilateral, varied.touching, table.q, table.v)
-    if isinstance(states, Problem):
-        return RestEnd(value, error, {}, states.code)
-    return RestEnd(value, error, {unilateral[i].name: states[i].value for i in varied.touching})
+    found = decided(table, unilateral, varied.touching, table.q, table.v)
+    if isinstance(found, Problem):
+        return RestEnd(value, error, {}, found.code)
+    return RestEnd(value, error, {unilateral[i].name: found.states[i].value for i in varied.touching}, None)

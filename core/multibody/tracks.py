@@ -8,7 +8,7 @@ is, and every sign at an event is decided in balls of that width.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from flint import arb
 
@@ -52,12 +52,15 @@ class Tracks:
     each : list of Track
     floor : float
         Share of the largest coordinate of its unit that the state is wrong by at least.
+    lost : two lists of float
+        By how much coordinates and rates are wrong on all tracks alike: what was taken to be zero, or left out.
     """
 
     def __init__(self, units: Sequence[str], q: Sequence[Ball], v: Sequence[Ball]) -> None:
         self.units = units
         self.each = [Track(ZERO, list(q), list(v))]
         self.floor = FLOOR
+        self.lost = [0.0] * len(q), [0.0] * len(q)
         self._largest: tuple[dict[str, float], dict[str, float]] = ({}, {})
         self.scales()
 
@@ -111,6 +114,7 @@ class Tracks:
 
     def lived(self, time: float, before: Sequence[Ball], after: Sequence[Ball], acceleration: Sequence[Ball]) -> None:
         """Take account of how large coordinates and rates were during a phase, as far as its ends tell."""
+        self.lost = [x + time * y for x, y in zip(*self.lost, strict=True)], self.lost[1]
         for i, unit in enumerate(self.units):
             pull = abs(float(acceleration[i].mid()))
             moved = abs(float((after[i] - before[i]).mid()))
@@ -137,27 +141,42 @@ class Tracks:
             default=0.0,
         )
 
+    def lose(self, places: Sequence[float], rates: Sequence[float]) -> None:
+        """Take account of changes of which the difference of the tracks says nothing."""
+        q, v = ([x + y for x, y in zip(*both, strict=True)] for both in zip(self.lost, (places, rates), strict=True))
+        self.lost = q, v
+
     def settle(self, q: Vector, v: Vector) -> None:
         """Make exact zeros of what a projection leaves of numbers that the rows hold at zero."""
-        for largest, vector in zip(self._largest, (q, v), strict=True):
+        # What hardly turns has no scale of its own.
+        turning = 1.0 / self.own_time()
+        for largest, vector, least in zip(self._largest, (q, v), (0.0, turning), strict=True):
             for i, (unit, x) in enumerate(zip(self.units, vector, strict=True)):
-                if abs(float(x)) <= NOUGHT * largest.get(unit, 0.0):
+                own = largest.get(unit, 0.0)
+                if abs(float(x)) <= NOUGHT * (own if unit == "m" else max(own, least)):
                     vector[i] = ZERO
 
-    def part(self, still: Sequence[bool], share: float = FLOOR) -> None:
+    def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float | None = None) -> None:
         """Go on with two tracks, the second moved by a share of the largest, so that the growth of errors is seen.
 
         Parameters
         ----------
         still : sequence of bool
             Which coordinates are constants of the last phase on both: these remain the same.
+        share, of_places : float
+            Of rates and, where that is another, of places.
         """
         last = self.each[-1].bare()
         self.each = [self.first.bare(), last]
         q_scales, v_scales = self.scales()
-        q = _moved(self.first.q, last.q, q_scales, still, share)
+        q = _moved(self.first.q, last.q, q_scales, still, share if of_places is None else of_places)
         v = _moved(self.first.v, last.v, v_scales, still, share)
         self.each = [self.first, Track(last.time, q, v)]
+
+    def delay(self, time: float) -> None:
+        """Set the time of the second track apart from the first's, where both are wrong by as much."""
+        last = self.each[-1]
+        self.each = [self.first, replace(last, time=last.time + time)]
 
 
 def _moved(first: Vector, second: Vector, scales: Sequence[float], still: Sequence[bool], share: float) -> Vector:

@@ -1,41 +1,43 @@
-"""The motion of a scene at many times: by the models of its parts, or by a method that the client names."""
+"""The motion of a described scene: by the models of its parts, or by a method that the client names."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.errors import AccuracyUnreachable, MechanicsError, NotApplicable
+from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError, NotApplicable, inside_field
 from core.multibody.along import Along
-from core.multibody.answer import Column, Extremes, How, Occurrence, SceneAccuracy, SceneEvent, SceneTrajectory
-from core.multibody.columns import Columns, apart, relative, worst
+from core.multibody.answer import Occurrence, SceneEvent, SceneExtremes
+from core.multibody.columns import (
+    COLUMNS_OF_STATES,
+    FINEST,
+    NEAREST,
+    Columns,
+    apart,
+    relative,
+    require_known,
+    require_reached,
+    scales_of,
+    worst,
+)
 from core.multibody.events import first_event
 from core.multibody.generic_equation import SceneSystem
-from core.multibody.inherited import Derived, changes, horizon, looks
+from core.multibody.inherited import changes, horizon, looks
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled
 from core.multibody.numerical import Numerical
-from core.multibody.occurrences import (
-    ExtremesOf,
-    Sampler,
-    When,
-    component,
-    extremes,
-    occurrences,
-    unknown,
-)
-from core.multibody.packed import Floats
-from core.multibody.shortened import shortened
+from core.multibody.occurrences import ExtremesOf, Sampler, When, component, extremes, occurrences, unknown
+from core.multibody.packed import Floats, Integers
 from core.multibody.whole import Whole, WholeStates
-from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
+from core.systems.question import MotionQuestion, System
 from core.systems.rounding import Digits
-from core.systems.solve import inside_field
-from core.systems.trajectory import Work
+from core.systems.solve import solve
+from core.systems.trajectory import HORIZON, Accuracy, Column, How, Trajectory, Work
 
 _HOLDS = 1e-8
 """Relative mismatch of a measure above which it is not held."""
@@ -46,267 +48,160 @@ SHARE = 0.1
 LOST = 1e-3
 """A motion that is known no better than this measures nothing."""
 
+MOST_NUMBERS = 5_000_000
+"""Numbers that one trajectory may have."""
 
-_GROUPS = ("trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
-"""Outputs that are columns of the state, in the order in which they are answered."""
+Output = str | When | ExtremesOf
+
+
+def require_affordable(samples: int, coordinates: int) -> None:
+    """Raise `BudgetExceeded` for more samples of so many coordinates than one trajectory may have."""
+    most = MOST_NUMBERS // (4 * coordinates) if coordinates else samples
+    if samples > most:
+        raise BudgetExceeded("samples", samples, most, path=("times",), remedy="ask for fewer times")
 
 
 @dataclass(frozen=True)
-class AskedMotion:
-    """What is asked about a motion; the attributes are the parameters of `core.multibody.solve.solve_scene`."""
+class SceneRequest:
+    """What is requested of a scene; the attributes are the parameters of `core.multibody.solve.solve_scene`."""
 
     times: Floats
-    outputs: Sequence[str | When | ExtremesOf]
+    outputs: Sequence[Output]
     accuracy: float
     method: AbstractMethod | None
     input_uncertainty: float | None
     digits: Digits | None
     budget: Budget
 
+    def solved(self, system: System) -> Trajectory | None:
+        """Return the trajectory of a system, None without times."""
+        if not len(self.times):
+            return None
+        return solve(
+            system,
+            self.times,
+            accuracy=self.accuracy,
+            method=self.method,
+            input_uncertainty=self.input_uncertainty,
+            digits=self.digits,
+            budget=self.budget,
+        )
 
-@dataclass(frozen=True)
-class Searched:
-    """What was searched for along the motion; None where nothing was."""
 
-    occurrences: tuple[Occurrence, ...] | None = None
-    extremes: tuple[Extremes, ...] | None = None
-
-
-def trajectory_of(
-    scene: Scene, found: Modelled, determined: Sequence[bool], asked: AskedMotion
-) -> tuple[SceneTrajectory, tuple[SceneEvent, ...], Searched]:
-    """Return the samples up to the events that end the motion, these events, and what was searched for.
+class DescribedSystem:
+    """A described scene without contacts, as a system.
 
     Parameters
     ----------
+    scene : Scene
+    found : Modelled
+        The models of its parts.
     determined : sequence of bool
         Which of the forces the scene determines.
-
-    Raises
-    ------
-    AccuracyUnreachable, NotApplicable, BudgetExceeded, InvalidParameter
-        As `core.multibody.solve.solve_scene`.
+    outputs : sequence of str, When and ExtremesOf
+        Those of the motion are its columns.
     """
-    method = asked.method
-    work = None
-    # What leaves the range of doubles is refused.
-    with np.errstate(over="ignore", invalid="ignore"):
-        rows, events = _until(found.whole, determined, asked.times)
-        sampling = _Sampling(found.whole, determined, asked.times[rows], asked.outputs)
-        times = sampling.times
-        if method is None:
-            columns = sampling.answered(asked.accuracy)
-        elif isinstance(method, ClosedFormEvaluation):
-            columns, work = sampling.exact(asked.accuracy), Work(len(times))
-        elif sampling.follows:
-            raise NotApplicable(
-                "what is summed up or searched along the way is told of the motion itself, not of a method",
-                path=("method",),
-                remedy="leave the method out",
-            )
-        else:
-            with inside_field("method"):
-                states, work = _integrated(found.whole, times, method, asked.budget)
-            columns = sampling.measured(states)
-        searched = sampling.searched(
-            min((event.time for event in events if event.time >= 0.0), default=np.inf), asked.times
-        )
-        stated = SceneAccuracy(asked.accuracy, worst(columns), sampling.how(method))
-        if asked.input_uncertainty is not None and len(times):
-            follow = sampling.following
-            columns, stated = _with_inherited(scene, found, times, columns, stated, asked.input_uncertainty, follow)
-    warnings = () if method is None else _warnings(stated, method)
-    kind = None if method is None else method.kind
-    trajectory = SceneTrajectory(times, rows, columns, stated, kind, work, warnings)
-    return trajectory if asked.digits is None else shortened(trajectory, asked.digits), events, searched
 
-
-def _with_inherited(
-    scene: Scene,
-    found: Modelled,
-    times: Floats,
-    columns: dict[str, Column],
-    stated: SceneAccuracy,
-    uncertainty: float,
-    follow: Derived,
-) -> tuple[dict[str, Column], SceneAccuracy]:
-    """Add what the uncertainty of the inputs does, or why that is not known."""
-    try:
-        known = changes(scene, found, np.concatenate([times, looks(times)]), follow)
-        moved = known.of_columns(np.arange(len(times)))
-    except MechanicsError as fault:
-        return columns, replace(stated, why=fault.detail)
-    own = {name: column for name, column in columns.items() if name in moved}
-    if not own:
-        return columns, replace(
-            stated, why="it is not propagated to what is summed up along the motion, and there is nothing else"
-        )
-    moved = {name: moved[name] for name in own}
-    share = uncertainty * relative(moved, own)
-    until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
-    why = None if until is not None else "the change stays below the accuracy at all of the times"
-    if not share < 1.0:
-        return columns, replace(stated, horizon=until, why="nothing is known of the motion at the latest times")
-    with_own = {name: replace(column, inherited=uncertainty * moved[name]) for name, column in own.items()}
-    return columns | with_own, replace(stated, inherited=share, horizon=until, why=why)
-
-
-def _until(whole: Whole, determined: Sequence[bool], times: Floats) -> tuple[np.ndarray, tuple[SceneEvent, ...]]:
-    """Return the rows of the times that the motion reaches, and the events that end it."""
-    events: list[SceneEvent] = []
-    rows = np.arange(len(times))
-    watched = [limit for limit in whole.measures.limits if limit.force is None or determined[limit.force]]
-    for end in {max(float(np.max(times)), 0.0), min(float(np.min(times)), 0.0)} - {0.0}:
-        event = first_event(whole, watched, end)
-        if event is not None:
-            events.append(event)
-            beyond = times[rows] > event.time if end > 0.0 else times[rows] < event.time
-            rows = rows[~beyond]
-    return rows, tuple(sorted(events, key=lambda event: event.time))
-
-
-class _Sampling:
-    """What is answered of a motion at some times."""
-
-    def __init__(
-        self, whole: Whole, determined: Sequence[bool], times: Floats, outputs: Sequence[str | When | ExtremesOf]
-    ) -> None:
-        self.whole, self.determined, self.times, self.outputs = whole, determined, times, outputs
+    def __init__(self, scene: Scene, found: Modelled, determined: Sequence[bool], outputs: Sequence[Output]) -> None:
+        self.scene, self.found, self.whole = scene, found, found.whole
+        self.determined, self.outputs = determined, outputs
         self.finer = False
-        self.numerical = any(isinstance(motion, Numerical) for _, motion in whole.parts)
-        self.closed = all(motion.how == "closed form" for _, motion in whole.parts)
+        self.numerical = any(isinstance(motion, Numerical) for _, motion in self.whole.parts)
+        self.closed = all(motion.how == "closed form" for _, motion in self.whole.parts)
 
-    def how(self, method: AbstractMethod | None) -> How:
-        """Return how errors are known."""
-        if not self.closed:
-            return "measured against pairs"
-        own = method is None or isinstance(method, ClosedFormEvaluation)
-        return "closed form" if own else "measured against closed form"
+    def trajectory(self, question: MotionQuestion) -> Trajectory:
+        """Return the samples up to the events that end the motion; see `core.systems.question.System`."""
+        require_affordable(len(question.times), len(self.found.described.measures.table.names))
+        # What leaves the range of doubles is refused.
+        with np.errstate(over="ignore", invalid="ignore"):
+            rows, events = self._until(question.times)
+            times, method = question.times[rows], question.method
+            work = Work(len(times))
+            if question.integrator is None:
+                if method is not None and not self.closed:
+                    raise NotApplicable(
+                        "this scene has no closed form",
+                        path=("method", "kind"),
+                        remedy="leave the method out, and the smallest model that suffices answers",
+                    )
+                columns, how = self._own(times, question.accuracy), self.how
+            else:
+                if self._follows:
+                    raise NotApplicable(
+                        "what is summed up or searched along the way belongs to the motion itself, not to a method",
+                        path=("method",),
+                        remedy="leave the method out",
+                    )
+                with inside_field("method"):
+                    states, work = _integrated(self.whole, times, question.integrator, question.budget)
+                how = "measured against closed form" if self.closed else "measured against pairs"
+                columns = self._measured(times, states, how)
+            stated = Accuracy(question.accuracy, worst(columns), how)
+            if question.input_uncertainty is not None and len(times):
+                columns, stated = self._with_inherited(times, columns, stated, question.input_uncertainty)
+        scales = scales_of(columns)
+        return Trajectory(
+            times,
+            {name: replace(column, scale=scales[name]) for name, column in columns.items()},
+            stated,
+            None,
+            ClosedFormEvaluation().kind if method is None else method.kind,
+            work,
+            ended=next((event.kind for event in events if event.time >= 0.0), HORIZON),
+            rows=rows,
+            events=events,
+        )
 
-    def exact(self, accuracy: float) -> dict[str, Column]:
-        """Return the columns of a motion in closed form."""
-        if not self.closed:
-            raise NotApplicable(
-                "this scene has no closed form",
-                path=("method", "kind"),
-                remedy="leave the method out, and the smallest model that suffices answers",
-            )
-        return self.answered(accuracy)
+    @property
+    def how(self) -> How:
+        """How the errors of the motion itself are known."""
+        return "closed form" if self.closed else "measured against pairs"
 
-    def answered(self, accuracy: float) -> dict[str, Column]:
+    def _until(self, times: Floats) -> tuple[Integers, tuple[SceneEvent, ...]]:
+        """Return the rows of the times that the motion reaches, and the events that end it."""
+        events: list[SceneEvent] = []
+        rows = np.arange(len(times))
+        limits = self.whole.measures.limits
+        watched = [limit for limit in limits if limit.force is None or self.determined[limit.force]]
+        for end in {max(float(np.max(times)), 0.0), min(float(np.min(times)), 0.0)} - {0.0}:
+            event = first_event(self.whole, watched, end)
+            if event is not None:
+                events.append(event)
+                beyond = times[rows] > event.time if end > 0.0 else times[rows] < event.time
+                rows = rows[~beyond]
+        return rows, tuple(sorted(events, key=lambda event: event.time))
+
+    def _own(self, times: Floats, accuracy: float) -> dict[str, Column]:
         """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""
-        columns = self.columns(finer=False)
-        if self.numerical and worst(columns) > accuracy:
+        columns = self._columns(times, finer=False)
+        if worst(columns) > accuracy and (self.numerical or accuracy < FINEST):
             self.finer = True
-            columns = self.columns(finer=True)
-        columns |= self.along()
-        _require_known(columns)
-        reached = worst(columns)
-        if reached > accuracy:
-            raise AccuracyUnreachable(
-                accuracy,
-                reached,
-                "the motion amplifies rounding, even that of pairs of doubles",
-                remedy="ask for a shorter time or a larger accuracy",
-            )
+            columns = self._columns(times, finer=True, rounding=NEAREST if accuracy < FINEST else FINEST)
+        sums = Along(self.whole, times, self.how, finer=self.finer)
+        columns |= sums.works() if "work-in-time" in self.outputs else {}
+        columns |= sums.paths() if "paths-in-time" in self.outputs else {}
+        require_reached(columns, accuracy)
         return columns
 
-    def columns(self, *, finer: bool) -> dict[str, Column]:
-        """Return the columns of the motion itself, with their errors."""
-        states = self.whole.states(self.times, finer=finer)
+    def _columns(self, times: Floats, *, finer: bool, rounding: float = FINEST) -> dict[str, Column]:
+        """Return the columns of the states of the motion itself, with their errors."""
+        states = self.whole.states(times, finer=finer)
         if self.whole.dropped and self.whole.misfit(states.q) > _HOLDS:
             raise NotApplicable(
                 "connections that depend on one another at the start do not do so later: the start is a singular place",
                 path=("connections",),
                 remedy="start elsewhere",
             )
-        return self.columns_of(states, self.how(None))
+        return Columns(self.whole, times, states, self.how, rounding).chosen(self.outputs, self.determined)
 
-    def columns_of(self, states: WholeStates, how: How) -> dict[str, Column]:
-        """Return the columns of any states."""
-        columns = Columns(self.whole, self.times, states, how)
-        found: dict[str, Column] = {}
-        for group in _GROUPS:
-            if group in self.outputs and (len(self.times) or group != "forces-in-time"):
-                found.update(self._group(columns, group))
-        return found
-
-    @property
-    def follows(self) -> bool:
-        """Whether something is asked that needs the motion between the samples."""
-        return any(
-            output in ("work-in-time", "paths-in-time") or not isinstance(output, str) for output in self.outputs
-        )
-
-    def along(self) -> dict[str, Column]:
-        """Return the columns that are summed up along the motion."""
-        sums = Along(self.whole, self.times, self.how(None), finer=self.finer)
-        found = sums.works() if "work-in-time" in self.outputs else {}
-        return found | sums.paths() if "paths-in-time" in self.outputs else found
-
-    def searched(self, ended: float, times: Floats) -> Searched:
-        """Return when quantities take values and how large they become, between the start and the latest time."""
-        if all(isinstance(output, str) for output in self.outputs):
-            return Searched()
-        end = min(ended, float(np.max(times)))
-        times_found: list[Occurrence] = []
-        ranges: list[Extremes] = []
-        for index, output in enumerate(self.outputs):
-            if isinstance(output, When):
-                times_found.extend(occurrences(self.whole, self._sampler(output, index), output, end))
-            elif isinstance(output, ExtremesOf):
-                ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, end))
-        return Searched(tuple(times_found), tuple(ranges))
-
-    def _sampler(self, asked: When | ExtremesOf, index: int) -> Sampler:
-        """Return the samples of a quantity, from the columns among which it is."""
-
-        def of(group: str, times: Floats) -> dict[str, Column]:
-            states = self.whole.states(times, finer=self.finer)
-            return self._group(Columns(self.whole, times, states, self.how(None)), group)
-
-        known: list[str] = []
-        for group in _GROUPS:
-            columns = of(group, np.zeros(1))
-            known.extend(columns)
-            if component(columns, asked.quantity) is not None:
-
-                def sampled(times: Floats, group: str = group) -> Column:
-                    found = component(of(group, np.asarray(times, dtype=np.float64)), asked.quantity)
-                    assert found is not None
-                    return found
-
-                return sampled
-        raise unknown(asked, index, known)
-
-    def _group(self, columns: Columns, group: str) -> dict[str, Column]:
-        if group == "trajectory":
-            return columns.trajectory()
-        if group == "energy-in-time":
-            return columns.energy()
-        if group == "momenta-in-time":
-            return columns.momenta()
-        forces = columns.whole.measures.forces
-        return columns.forces([f for f, known in zip(forces, self.determined, strict=True) if known])
-
-    def following(self, whole: Whole, times: Floats, states: WholeStates) -> dict[str, Column]:
-        """Return the columns that were asked for and that follow from the states of a scene like this one."""
-        columns = Columns(whole, times, states, "closed form")
-        found: dict[str, Column] = {}
-        for group in _GROUPS[1:]:
-            if group in self.outputs:
-                found.update(self._group(columns, group))
-        return found
-
-    def measured(self, states: WholeStates) -> dict[str, Column]:
+    def _measured(self, times: Floats, states: WholeStates, how: How) -> dict[str, Column]:
         """Return the columns of states that a method computed, their errors measured against the motion itself."""
-        how: How = "measured against closed form" if self.closed else "measured against pairs"
-        own = self.columns_of(states, how)
-        _require_known(own)
+        own = Columns(self.whole, times, states, how).chosen(self.outputs, self.determined)
+        require_known(own)
         finer = False
         while True:
-            right = self.columns(finer=finer)
-            _require_known(right)
+            right = self._columns(times, finer=finer)
+            require_known(right)
             known = worst(right)
             found = {name: replace(one, error=apart(one, right[name]) + right[name].error) for name, one in own.items()}
             if finer or not self.numerical or known <= SHARE * worst(found):
@@ -322,6 +217,83 @@ class _Sampling:
             )
         return found
 
+    def _with_inherited(
+        self, times: Floats, columns: dict[str, Column], stated: Accuracy, uncertainty: float
+    ) -> tuple[dict[str, Column], Accuracy]:
+        """Add what the uncertainty of the inputs does, or why that is not known."""
+
+        def following(whole: Whole, times: Floats, states: WholeStates) -> dict[str, Column]:
+            followed = [output for output in self.outputs if output != "trajectory"]
+            return Columns(whole, times, states, "closed form").chosen(followed, self.determined)
+
+        try:
+            known = changes(self.scene, self.found, np.concatenate([times, looks(times)]), following)
+            moved = known.of_columns(np.arange(len(times)))
+        except MechanicsError as fault:
+            return columns, replace(stated, why=fault.detail)
+        own = {name: column for name, column in columns.items() if name in moved}
+        if not own:
+            return columns, replace(
+                stated, why="it is not propagated to what is summed up along the motion, and there is nothing else"
+            )
+        moved = {name: moved[name] for name in own}
+        share = uncertainty * relative(moved, own)
+        until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
+        why = None if until is not None else "the change stays below the accuracy at all of the times"
+        if not share < 1.0:
+            return columns, replace(stated, horizon=until, why="nothing is known of the motion at the latest times")
+        with_own = {name: replace(column, inherited=uncertainty * moved[name]) for name, column in own.items()}
+        return columns | with_own, replace(stated, inherited=share, horizon=until, why=why)
+
+    @property
+    def _follows(self) -> bool:
+        """Whether something is requested that needs the motion between the samples."""
+        return any(
+            output in ("work-in-time", "paths-in-time") or not isinstance(output, str) for output in self.outputs
+        )
+
+    def searched(
+        self, found: Trajectory, times: Floats
+    ) -> tuple[tuple[Occurrence, ...], tuple[SceneExtremes, ...]] | None:
+        """Return when quantities take values and how large they become, between the start and the latest of the times.
+
+        None where no search is among the outputs.
+        """
+        if all(isinstance(output, str) for output in self.outputs):
+            return None
+        end = min((event.time for event in found.events if event.time >= 0.0), default=np.inf)
+        end = min(end, float(np.max(times)))
+        times_found: list[Occurrence] = []
+        ranges: list[SceneExtremes] = []
+        with np.errstate(over="ignore", invalid="ignore"):
+            for index, output in enumerate(self.outputs):
+                if isinstance(output, When):
+                    times_found.extend(occurrences(self.whole, self._sampler(output, index), output, end))
+                elif isinstance(output, ExtremesOf):
+                    ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, end))
+        return tuple(times_found), tuple(ranges)
+
+    def _sampler(self, search: When | ExtremesOf, index: int) -> Sampler:
+        """Return the samples of a quantity, from the columns among which it is."""
+
+        def of(group: str, times: Floats) -> dict[str, Column]:
+            states = self.whole.states(times, finer=self.finer)
+            return Columns(self.whole, times, states, self.how).group(group, self.determined)
+
+        known: list[str] = []
+        for group in COLUMNS_OF_STATES:
+            columns = of(group, np.zeros(1))
+            known.extend(columns)
+            if component(columns, search.quantity) is not None:
+
+                def sampled(times: Floats, group: str = group) -> Column:
+                    found = component(of(group, np.asarray(times, dtype=np.float64)), search.quantity)
+                    assert found is not None
+                    return found
+
+                return sampled
+        raise unknown(search, index, known)
+
 
 def _integrated(whole: Whole, times: Floats, method: AbstractMethod, budget: Budget) -> tuple[WholeStates, Work]:
     """Return the states that a method computes, and what they cost."""
@@ -331,23 +303,3 @@ def _integrated(whole: Whole, times: Floats, method: AbstractMethod, budget: Bud
         return whole.states_at(at_rest, at_rest), Work(len(times))
     found = method.integrate(system, times, budget)
     return whole.states_at(*system.places_and_rates(found.states)), found.work
-
-
-def _require_known(columns: Mapping[str, Column]) -> None:
-    lost = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
-    if lost:
-        raise NotApplicable(
-            f"{lost[0]} or its error leaves the range of doubles",
-            path=("times",),
-            remedy="ask for a shorter time, or choose units in which the numbers are moderate",
-        )
-
-
-def _warnings(stated: SceneAccuracy, method: AbstractMethod) -> tuple[Notice, ...]:
-    if stated.error <= stated.requested:
-        return ()
-    detail = (
-        f"the error of {method.kind} with this setting is {stated.error:.3g}, where {stated.requested:.3g} was asked "
-        "for; leave out the method to have the motion to that accuracy"
-    )
-    return (Notice("accuracy-not-reached", detail, ("method",)),)

@@ -15,6 +15,8 @@ from core.multibody.table import Rates, Table
 
 _PER_RADIAN = 8
 _MOST_NODES = 100_000
+FEW_RADIANS = 64.0
+"""Up to which the sine of an angle in doubles is right to 2^-46."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,22 @@ class Turning:
             if self.turn is not None:
                 q[k, self.turn], v[k, self.turn] = pair(self.table.q[self.turn] + angle, 0), pair(self.rate, 0)
         return States(q, v, 2.0**-100 * np.abs(q[..., 0]), 2.0**-100 * np.abs(v[..., 0]))
+
+    def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
+        """Return coordinates and rates in doubles, None after so many radians that sines lose digits."""
+        rate = float(self.rate)
+        if abs(rate) * float(np.max(np.abs(times), initial=0.0)) > FEW_RADIANS:
+            return None
+        n = len(self.table.q)
+        q, v = np.empty((len(times), n)), np.empty((len(times), n))
+        c, s = self.direction
+        start = complex(float(self.table.q[c]), float(self.table.q[s]))
+        now = start * np.exp(1j * rate * times)
+        q[:, c], q[:, s] = now.real, now.imag
+        v[:, c], v[:, s] = -rate * now.imag, rate * now.real
+        if self.turn is not None:
+            q[:, self.turn], v[:, self.turn] = float(self.table.q[self.turn]) + rate * times, rate
+        return q, v
 
     def nodes(self, end: float) -> Floats:
         """Return eight times to a radian."""

@@ -14,7 +14,7 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.error_statements import rest_of
 from core.systems.methods.method import AbstractMethod
-from core.systems.rounding import Digits, covering, notices_of, rounded, unknown_share
+from core.systems.rounding import Digits
 from core.systems.solve import checked_times, solve
 from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
@@ -37,13 +37,10 @@ class Ensemble:
         s.
     members : tuple of Trajectory
         One per start, each with its own model, period and statement of error.
-    by_rounding : tuple of Notice
-        Warning that rounding took more than the accuracy that was asked for, if it did.
     """
 
     time: Floats
     members: tuple[Trajectory, ...]
-    by_rounding: tuple[Notice, ...] = ()
 
     @property
     def angular_velocity(self) -> Floats:
@@ -60,7 +57,7 @@ class Ensemble:
         for k, member in enumerate(self.members):
             for notice in member.warnings:
                 grouped.setdefault((notice.code, notice.path), []).append((k, notice))
-        return (*(self.merged(members) for members in grouped.values()), *self.by_rounding)
+        return tuple(self.merged(members) for members in grouped.values())
 
     def merged(self, grouped: Sequence[tuple[int, Notice]]) -> Notice:
         """Return one notice for what members, each with its index, say alike."""
@@ -79,17 +76,6 @@ class Ensemble:
         """Largest stated error of any member."""
         return max(member.accuracy.error for member in self.members)
 
-    def rounded(self, digits: Digits) -> Ensemble:
-        """Return the ensemble with samples of fewer digits, covered by the error stated of each member."""
-        members, notices = [], []
-        for k, member in enumerate(self.members):
-            stated = member.accuracy
-            samples, added = rounded(member.state, digits, unknown_share(stated), stated.largest_norm)
-            members.append(replace(member, state=samples, accuracy=covering(stated, added)))
-            notices += [(k, notice) for notice in notices_of(stated, added)]
-        found = replace(self, members=tuple(members))
-        return replace(found, by_rounding=(found.merged(notices),)) if notices else found
-
 
 def ensemble(
     body: MassProperties,
@@ -98,6 +84,7 @@ def ensemble(
     *,
     accuracy: float = 1e-9,
     method: AbstractMethod | None = None,
+    digits: Digits | None = None,
     budget: Budget | None = None,
 ) -> Ensemble:
     """Solve one body from several starts, shape (m, 3), at times, shape (n,); see `core.systems.solve.solve`.
@@ -124,7 +111,7 @@ def ensemble(
         try:
             rest = rest_of(budget, spent)
             system = TorqueFree(body, start)
-            member = solve(system, instants, accuracy=accuracy, method=method, budget=rest)
+            member = solve(system, instants, accuracy=accuracy, method=method, digits=digits, budget=rest)
             member = replace(member, warnings=(*member.warnings, *system.moment_notices))
             spent += member.work.evaluations + member.work.evaluations_for_error
             members.append(member)

@@ -18,10 +18,11 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
-from core.systems.rounding import Digits, covering, notices_of, rounded, unknown_share
-from core.systems.solve import HALF_ULP, solve
+from core.systems.rounding import Digits, rounded
+from core.systems.solve import solve
+from core.systems.state_motion import HALF_ULP
 from core.systems.system import Floats
-from core.systems.trajectory import Accuracy, Trajectory
+from core.systems.trajectory import Trajectory
 
 Output = Literal["time", "angular_velocity", "attitude"]
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
@@ -62,11 +63,7 @@ class SampledRotation:
     Attributes
     ----------
     motion : Trajectory
-        The solved motion, before rounding; its `state` is the angular velocity in body axes (rad/s).
-    angular_velocity : ndarray, shape (n, 3)
-        With the digits that are wanted (rad/s).
-    accuracy : Accuracy
-        Of the angular velocity, rounding included.
+        Its `state` is the angular velocity in body axes (rad/s).
     period, flip_interval : float or None
         Of the angular velocity in the body, and between its sign changes along the middle axis (s).
     middle_axis_tilt : tuple of 2 floats, or None
@@ -81,8 +78,6 @@ class SampledRotation:
     """
 
     motion: Trajectory
-    angular_velocity: Floats
-    accuracy: Accuracy
     period: float | None
     flip_interval: float | None
     middle_axis_tilt: tuple[float, float] | None
@@ -131,13 +126,17 @@ def sample_rotation(
         For attitudes beside a method that is not the closed form.
     """
     system = TorqueFree(body, np.array(angular_velocity))
-    solved = solve(system, times, accuracy=accuracy, method=method, budget=budget, input_uncertainty=input_uncertainty)
-    exact, stated, states, added = system.closed_form(), solved.accuracy, solved.state, 0.0
-    notices = [*system.warnings, *solved.warnings]
     wanted = wanted_outputs(outputs, attitude)
-    if digits is not None and "angular_velocity" in wanted:
-        states, added = rounded(states, digits, unknown_share(stated), stated.largest_norm)
-        notices += notices_of(stated, added)
+    solved = solve(
+        system,
+        times,
+        accuracy=accuracy,
+        method=method,
+        budget=budget,
+        input_uncertainty=input_uncertainty,
+        digits=digits if "angular_velocity" in wanted else None,
+    )
+    exact, notices = system.closed_form(), [*system.warnings, *solved.warnings]
     turned = None
     if "attitude" in wanted:
         require_closed_form(method)
@@ -147,8 +146,6 @@ def sample_rotation(
     least = None if tilt is None else in_range("middle_axis_tilt", tilt.least, notices)
     return SampledRotation(
         solved,
-        states,
-        covering(stated, added),
         in_range("period", solved.period, notices),
         in_range("flip_interval", exact.flip_interval, notices),
         None if tilt is None or least is None else tilt.range,

@@ -20,7 +20,10 @@ from core.rotation.discrete_mechanics import moser_veselov
 from core.rotation.equal_moments import NEARLY_EQUAL
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.stability.classification import unstable_axis
+from core.systems.question import MotionQuestion
+from core.systems.state_motion import state_motion
 from core.systems.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
+from core.systems.trajectory import Trajectory
 
 PARTS = 3
 
@@ -242,6 +245,15 @@ class TorqueFree:
         described = self.body.mass is not None or not self._diagonal
         sensitivities = partial(tensor_sensitivities, self.body) if described else None
         return FreeRotation(self.body.principal_of_motion, self.angular_velocity, sensitivities)
+
+    @property
+    def state_column(self) -> tuple[str, str]:
+        """Name and unit of the state."""
+        return "angular_velocity", "rad/s"
+
+    def trajectory(self, question: MotionQuestion) -> Trajectory:
+        """Return samples of the angular velocity; see `core.systems.question.System`."""
+        return state_motion(self, question)
 
     def ranges(self, states: Floats) -> Mapping[str, Range]:
         """Return the ranges of energy and |L|, both times a power of two that brings them near one."""

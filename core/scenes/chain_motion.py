@@ -7,13 +7,14 @@ until then the logarithm of a ratio of e^(kt).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from core.scenes.answer import Columns, Event, UnbrokenMotion, finite
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, sign, square_root
+from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
 from core.scenes.quadratics import real_roots
 from core.systems.system import Floats, Model
 
@@ -115,7 +116,7 @@ class Slide:
             return gained / self.acceleration if turned else 2 * gone / total
         # x' + k (x - x_eq) grows as e^(kt), x' - k (x - x_eq) decays: the larger of the two tells the time.
         growing, decaying = self.acceleration + k * self.velocity, self.acceleration - k * self.velocity
-        if abs(growing) > abs(decaying) or sign(decaying) == 0:
+        if not abs(growing) < abs(decaying):
             return (k * (gained + k * gone) / growing).log1p() / k
         return -(-k * (gained - k * gone) / decaying).log1p() / k
 
@@ -181,7 +182,19 @@ class ChainMotion(UnbrokenMotion):
             return Model("heavy chain on a wedge", "constant acceleration", why, 1)
         return Model("heavy chain on a wedge", "hyperbolic", "the pull grows in proportion to the deviation", 1)
 
-    def sample(self, times: Floats) -> Columns:
+    def at(self, time: Ball) -> Mapping[str, Ball]:
+        """Return position, velocity and tension at one time."""
+        slide = self.slide
+        k, x0, v0, a0 = slide.rate, slide.position, slide.velocity, slide.acceleration
+        if k.is_zero():
+            x, v = x0 + time * (v0 + a0 * time / 2), v0 + a0 * time
+        else:
+            sinh, cosh = (k * time).sinh_cosh()
+            half = (k * time / 2).sinh()
+            x, v = x0 + v0 * sinh / k + 2 * a0 * half * half / (k * k), v0 * cosh + a0 * sinh / k
+        return {"position": x, "velocity": v, "apex_tension": slide.tension(x)}
+
+    def sample(self, times: Floats) -> Samples:
         """Evaluate by the form of the solution that cancels less at these times, column by column."""
         slide = self.slide
         with np.errstate(over="ignore", invalid="ignore", under="ignore"):
@@ -211,7 +224,7 @@ class ChainMotion(UnbrokenMotion):
             name: max(float(np.max(np.abs(values[name]), initial=0.0)), abs(float(ball)))
             for name, ball in zip(NAMES, given, strict=True)
         }
-        return Columns(values, errors, scales).without_underflow({"apex_tension": given[2]})
+        return Samples(values, errors, scales).without_underflow({"apex_tension": given[2]})
 
 
 def _evaluated(slide: Slide, times: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -9,9 +9,11 @@ from typing import Annotated, Any, ClassVar, Generic, Literal
 
 from core.errors import InvalidParameter
 from core.quantities import Acceleration, Length, LengthOrZero, Quantity, Slope, Unit, Velocity, check
-from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, outputs_of
 from core.scenes.chain_motion import ChainMotion, Slide
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
+from core.scenes.figures import MechanicalEnergy, N, SceneExample, outputs_of
+from core.scenes.motion import Motion
+from core.scenes.named_scene import NamedScene
 from core.systems.system import Model
 
 EndMass = Annotated[float, Quantity("kg", at_least=0)]
@@ -85,7 +87,7 @@ class ChainSamples(Generic[N]):
 
 
 @dataclass(frozen=True)
-class ChainOnWedge(ConstrainedSystem):
+class ChainOnWedge(NamedScene):
     """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end.
 
     Attributes
@@ -119,6 +121,21 @@ class ChainOnWedge(ConstrainedSystem):
     samples_type: ClassVar[type] = ChainSamples
     outputs: ClassVar[tuple[str, ...]] = outputs_of(ChainFigures)
     of_motion: ClassVar[tuple[str, ...]] = ("lift_off",)
+    examples: ClassVar[Mapping[str, SceneExample]] = {
+        "motion": SceneExample(
+            "a heavy chain that slides over the apex",
+            {
+                "masses": [1.0, 1.2],
+                "slopes": [0.6, 0.8],
+                "gravity": 9.81,
+                "length": 2.0,
+                "linear_density": 0.5,
+                "position": 1.0,
+                "velocity": 0.0,
+                "times": {"start": 0.0, "stop": 0.5, "count": 11},
+            },
+        )
+    }
 
     def __post_init__(self) -> None:
         check(self)

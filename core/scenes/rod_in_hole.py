@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Generic, Literal
 
 from core.balls import precision
 from core.errors import InvalidParameter
 from core.quantities import RADIANS, Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, Unit, check
-from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, Pair, outputs_of
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
+from core.scenes.figures import MechanicalEnergy, N, Pair, SceneExample, outputs_of
+from core.scenes.motion import Motion
+from core.scenes.named_scene import NamedScene
 from core.scenes.pendulum import Pendulum
 from core.scenes.rod_motion import Rod, RodMotion, contact_limits
 from core.systems.system import Model
 
 HalfTurn = Annotated[float, Quantity("rad", at_least=-math.pi, at_most=math.pi)]
 
+_GIVEN: Mapping[str, Any] = {"hole_radius": 1.0, "length": 1.0, "mass": 1.0, "gravity": 9.81}
 RIM_ROUNDING = 2.0**-50
 """Part of the rim's angle within which an angle means the rim, which no double hits."""
 
@@ -96,7 +100,7 @@ class RodSamples(Generic[N]):
 
 
 @dataclass(frozen=True)
-class RodInHole(ConstrainedSystem):
+class RodInHole(NamedScene):
     """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall.
 
     Angles are those of the line from the axis to the rod's centre, from the downward vertical; positive has end B
@@ -136,6 +140,31 @@ class RodInHole(ConstrainedSystem):
     samples_type: ClassVar[type] = RodSamples
     outputs: ClassVar[tuple[str, ...]] = outputs_of(RodFigures)
     of_motion: ClassVar[tuple[str, ...]] = ("angular_velocity_at_horizontal", "period", "contact")
+    functions: ClassVar[Literal["elementary", "elliptic"]] = "elliptic"
+    exact_defaults: ClassVar[Mapping[str, Fraction]] = {"inertia_factor": Fraction(1, 12)}
+    examples: ClassVar[Mapping[str, SceneExample]] = {
+        "horizontal": SceneExample(
+            "how fast the rod turns when it is horizontal",
+            {**_GIVEN, "outputs": ["angular_velocity_at_horizontal", "period", "contact"]},
+        ),
+        "motion": SceneExample(
+            "one swing with the forces of the wall", {**_GIVEN, "times": {"start": 0.0, "stop": 2.0, "count": 21}}
+        ),
+    }
+    # A rod that comes to rest upright, and never arrives.
+    warming: ClassVar[tuple[Mapping[str, Any], ...]] = (
+        {
+            "hole_radius": 5.0,
+            "length": 6.0,
+            "mass": 1.0,
+            "gravity": 25.0,
+            "inertia_factor": 0.25,
+            "hole": "cylinder",
+            "angle": 0.0,
+            "angular_velocity": 4.0,
+            "times": [1.0],
+        },
+    )
 
     def __post_init__(self) -> None:
         check(self)

@@ -12,14 +12,17 @@ elliptic integral.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from core.scenes.answer import Columns, Event, UnbrokenMotion, finite
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, angle_of, exact, sign
+from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
 from core.scenes.pendulum import Pendulum
+from core.scenes.pendulum_in_balls import pendulum_in_balls
 from core.systems.system import Floats, Model
 
 WHY = {
@@ -147,7 +150,21 @@ class RodMotion(UnbrokenMotion):
             (swing.passes(-s, c, -1), "end-a-leaves-wall"),
         ]
 
-    def sample(self, times: Floats) -> Columns:
+    @cached_property
+    def _swing(self) -> Callable[[Ball], tuple[Ball, Ball, Ball, Ball]]:
+        return pendulum_in_balls(self.pendulum)
+
+    def at(self, time: Ball) -> Mapping[str, Any]:
+        """Return angle, rate and the wall's forces on A and B at one time."""
+        c1, c2, c3 = self.rod.coefficients
+        sine, cosine, rate, angle = self._swing(time)
+        # A square as a product: the library returns NaN for the power of a ball that contains zero.
+        total = c1 * (cosine - sine) * (cosine + sine) + c2 * rate * rate
+        difference = 2 * c3 * sine * cosine
+        forces = ((total + difference) / 2, (total - difference) / 2)
+        return {"angle": angle, "angular_velocity": rate, "forces": forces}
+
+    def sample(self, times: Floats) -> Samples:
         """Evaluate angle, rate and the wall's forces on A and B."""
         s, c, rate, angle = self.pendulum.sample(times)
         c1, _, c3 = (float(ball) for ball in self.rod.coefficients)
@@ -174,4 +191,4 @@ class RodMotion(UnbrokenMotion):
         }
         scales = {name: max(float(np.max(np.abs(column), initial=0.0)), given[name]) for name, column in values.items()}
         weight = self.rod.mass * self.rod.gravity
-        return Columns(values, errors, scales).without_underflow({"forces": weight})
+        return Samples(values, errors, scales).without_underflow({"forces": weight})

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from core.errors import BudgetExceeded
-from core.scenes.answer import Event
 from core.scenes.bounces import Sequence
 from core.scenes.enclosure import ZERO, Ball, exact, sign, smaller
+from core.scenes.motion import Event
 from core.scenes.quadratics import exit_time
 from core.scenes.string_state import Constants, Drive, State
 from core.work import spend

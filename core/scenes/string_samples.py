@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from flint import arb
 
+from core.balls import Undetermined
 from core.notices import Notice
-from core.scenes.answer import Columns, Event, Motion, finite
 from core.scenes.bounces import Sequence
-from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, as_pair
+from core.scenes.enclosure import ONE, UNIT_ROUNDOFF, ZERO, Ball, as_pair, exact_pair
+from core.scenes.motion import Event, Motion, Samples, finite
 from core.scenes.string_phases import Phase, Phases
+from core.scenes.string_state import State
 from core.systems.system import Floats, Model
 
 WHY = {"taut": "the string is taut", "slack": "the string is slack", "stick": "both shafts roll on the string's track"}
@@ -48,7 +51,7 @@ class ShaftMotion(Motion):
     def __init__(
         self, phases: Phases, radii: tuple[float, float], given: Mapping[str, float], unresolved: float
     ) -> None:
-        self.phases, self._radii, self._given = phases, np.array(radii), given
+        self.phases, self._radii, self._given = phases, radii, given
         self._unresolved = unresolved + float(phases.cut)
 
     @property
@@ -72,11 +75,27 @@ class ShaftMotion(Motion):
         """Jerks, ends of slipping, and the end."""
         return self.phases.events
 
-    def sample(self, times: Floats) -> Columns:
+    def at(self, time: Ball) -> Mapping[str, Any]:
+        """Return positions, rates and lengths at one time, and the tension where it is determined."""
+        here = self.phases.phases[0]
+        for phase in self.phases.phases[1:]:
+            if not phase.start.time > time:
+                here = phase
+        state, radii = _within(here, time - here.start.time), exact_pair(self._radii)
+        found = {
+            "positions": state.positions,
+            "velocities": state.velocities,
+            "spins": (state.rates[0] / radii[0], state.rates[1] / radii[1]),
+            "unwound": state.unwound,
+        }
+        return found if here.drive.tension is None else {**found, "tension": here.drive.tension}
+
+    def sample(self, times: Floats) -> Samples:
         """Evaluate the phase in which each of the times lies: right after a jerk, not right before it."""
         phases = self.phases.phases
         starts = np.array([float(phase.start.time) for phase in phases])
         which = np.searchsorted(starts, times, side="right") - 1
+        radii = np.array(self._radii)
         x, v, s, r = (np.zeros((times.size, 2)) for _ in range(4))
         dx, dv, ds, dr = (np.zeros((times.size, 2)) for _ in range(4))
         tension = np.zeros(times.size)
@@ -102,11 +121,11 @@ class ShaftMotion(Motion):
                     tension[here] = float(phase.drive.tension)
             drift = self._unresolved
             elapsed = np.abs(times)[:, None]
-            values = {"positions": x, "velocities": v, "spins": r / self._radii, "unwound": s}
+            values = {"positions": x, "velocities": v, "spins": r / radii, "unwound": s}
             errors = {
                 "positions": dx + drift * elapsed,
                 "velocities": dv + drift,
-                "spins": (dr + drift + UNIT_ROUNDOFF * np.abs(r)) / self._radii,
+                "spins": (dr + drift + UNIT_ROUNDOFF * np.abs(r)) / radii,
                 "unwound": ds + drift * elapsed,
             }
         notices: tuple[Notice, ...] = ()
@@ -119,11 +138,35 @@ class ShaftMotion(Motion):
             name: max(float(np.max(np.abs(column), initial=0.0)), self._given.get(name, 0.0))
             for name, column in values.items()
         }
-        columns = Columns(values, errors, scales, notices)
+        columns = Samples(values, errors, scales, notices)
         if determinate:
             for phase in phases:
                 columns = columns.without_underflow({"tension": phase.drive.tension or ZERO})
         return columns
+
+
+def _within(phase: Phase, elapsed: Ball) -> State:
+    """Return the state at a time after the start of a phase; in a sequence of jerks, in the arc between two of them."""
+    if phase.sequence is None:
+        return phase.start.after(phase.drive, elapsed)
+    sequence = phase.sequence
+    n = _arcs(sequence, elapsed / sequence.first)
+    if phase.last_arc is not None:
+        n = min(n, phase.last_arc)
+    S = sequence.sum(n)
+    return sequence.at(S).after(phase.drive, elapsed - sequence.first * S)
+
+
+def _arcs(sequence: Sequence, firsts: Ball) -> int:
+    """Return the number of arcs completed after a time in units of the first arc's duration."""
+    e = sequence.restitution
+    count = firsts if sequence.limit is None else (ONE - (1 - e) * firsts).log() / e.log()
+    if not count.is_finite():
+        raise Undetermined
+    whole = count.floor().unique_fmpz()
+    if whole is None:
+        raise Undetermined
+    return max(0, int(whole))
 
 
 class _Clock:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-from typing import Annotated, Any, ClassVar, Generic, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from core.errors import InvalidParameter, NotApplicable
 from core.notices import Notice
@@ -18,118 +19,27 @@ from core.quantities import (
     Mass,
     Quantity,
     Slope,
-    Unit,
     Velocity,
     check,
 )
-from core.scenes.answer import ConstrainedSystem, MechanicalEnergy, Motion, N, Pair, outputs_of
 from core.scenes.bounces import as_answered
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
+from core.scenes.figures import SceneExample, outputs_of
 from core.scenes.friction import Friction, with_friction
+from core.scenes.motion import Motion
+from core.scenes.named_scene import NamedScene
+from core.scenes.shaft_figures import ShaftFigures, ShaftSamples
 from core.scenes.string_phases import Law, Limit, follow, settled
 from core.scenes.string_samples import ShaftMotion
 from core.scenes.string_state import Constants, Drive, State, frictionless
 from core.systems.system import Model
 
+_GIVEN: Mapping[str, Any] = {"masses": [2.0, 1.0], "radii": [0.1, 0.2], "slopes": [0.5, 0.9], "gravity": 9.81}
 Restitution = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
 
 @dataclass(frozen=True)
-class ShaftPhase(Generic[N]):
-    """A time in which the accelerations are constant but for jerks.
-
-    Attributes
-    ----------
-    kind : {"taut", "slack", "stick"}
-        State of the string, or both shafts sticking.
-    start, end : number
-        Measured from the given state; the end is null if nothing ends the phase.
-    impulse : number or None
-        Of its jerks along the string; null for infinitely many that do not accumulate.
-    jerks : int or None
-        How many, the one that began it included; null for infinitely many.
-    dissipated : number
-        Energy that its jerks cost.
-    """
-
-    kind: Literal["taut", "slack", "stick"]
-    start: Annotated[N, Unit("s")] | None
-    end: Annotated[N, Unit("s")] | None
-    impulse: Annotated[N, Unit("N s")] | None
-    jerks: int | None
-    dissipated: Annotated[N, Unit("J")] | None
-
-
-@dataclass(frozen=True)
-class ShaftFigures(Generic[N]):
-    """What two unwinding shafts answer; forces and accelerations are those right after t = 0.
-
-    Attributes
-    ----------
-    tension : number or None
-        Of the string; null where nothing determines it.
-    tension_range : pair of numbers or None
-        Least and largest tension that sticking shafts admit; null where the tension is determined.
-    accelerations : pair of numbers
-        Of the shafts down their slopes.
-    angular_accelerations : pair of numbers or None
-        Of the shafts, positive if the string unwinds; null where nothing determines them.
-    string_acceleration : number or None
-        Of the string towards shaft 1; null while it is slack.
-    reduced_masses : pair of numbers
-        Mass with which each shaft resists the tension.
-    normal_forces : pair of numbers
-        Of the slopes on the shafts.
-    friction_forces : pair of numbers or None
-        Of the slopes on the shafts, up the slope; null without friction.
-    energy : energies
-        Of the given state, heights from the apex.
-    phases : list of ShaftPhase
-        Of the motion, in order.
-    """
-
-    tension: Annotated[N, Unit("N")] | None
-    tension_range: Annotated[Pair[N | None], Unit("N")] | None
-    accelerations: Annotated[Pair[N | None], Unit("m s^-2")]
-    angular_accelerations: Annotated[Pair[N | None], Unit("rad s^-2")] | None
-    string_acceleration: Annotated[N, Unit("m s^-2")] | None
-    reduced_masses: Annotated[Pair[N | None], Unit("kg")]
-    normal_forces: Annotated[Pair[N | None], Unit("N")]
-    friction_forces: Annotated[Pair[N | None], Unit("N")] | None
-    energy: MechanicalEnergy[N]
-    phases: list[ShaftPhase[N]]
-
-
-@dataclass(frozen=True)
-class ShaftSamples(Generic[N]):
-    """Samples of the shafts' motion: one entry for each time.
-
-    Attributes
-    ----------
-    time : array
-        Measured from the given state, up to the end of the motion.
-    positions : array of pairs
-        Distances from the apex, down the slopes.
-    velocities : array of pairs
-        Down the slopes.
-    spins : array of pairs
-        Rates of rotation, positive if the string unwinds.
-    unwound : array of pairs
-        Length of string unwound from each shaft since t = 0.
-    tension : array
-        Of the string; left out where nothing determines it.
-    """
-
-    time: Annotated[list[N], Unit("s")]
-    positions: Annotated[list[Pair[N]], Unit("m")]
-    velocities: Annotated[list[Pair[N]], Unit("m s^-1")]
-    spins: Annotated[list[Pair[N]], Unit("rad s^-1")]
-    unwound: Annotated[list[Pair[N]], Unit("m")]
-    tension: Annotated[list[N], Unit("N")] | None = None
-
-
-@dataclass(frozen=True)
-class UnwindingShafts(ConstrainedSystem):
+class UnwindingShafts(NamedScene):
     """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound.
 
     Attributes
@@ -178,6 +88,16 @@ class UnwindingShafts(ConstrainedSystem):
     samples_type: ClassVar[type] = ShaftSamples
     outputs: ClassVar[tuple[str, ...]] = outputs_of(ShaftFigures)
     of_motion: ClassVar[tuple[str, ...]] = ("phases",)
+    examples: ClassVar[Mapping[str, SceneExample]] = {
+        "tension": SceneExample(
+            "the tension and accelerations of two solid shafts",
+            {**_GIVEN, "outputs": ["tension", "accelerations", "angular_accelerations"]},
+        ),
+        "motion": SceneExample(
+            "the motion until the string of one shaft has unwound",
+            {**_GIVEN, "positions": [1.0, 1.5], "wound": [0.5, 0.8], "times": {"start": 0.0, "stop": 2.0, "count": 21}},
+        ),
+    }
 
     def __post_init__(self) -> None:
         check(self)
@@ -214,7 +134,7 @@ class UnwindingShafts(ConstrainedSystem):
     def motion(self, horizon: float) -> ShaftMotion:
         """Return the motion from the given state to the event that ends it, or past the horizon (s)."""
         if self.positions is None:
-            raise InvalidParameter("positions", "be given when a motion is asked for")
+            raise InvalidParameter("positions", "be given when a motion is requested")
         if not self._constants.determinate:
             raise NotApplicable(
                 "with two shafts without inertia nothing fixes how fast each of them spins",
@@ -253,6 +173,24 @@ class UnwindingShafts(ConstrainedSystem):
                 for phase in motion.phases.phases
             ]
         }
+
+    def inexact(self, motion: Any) -> NotApplicable | None:
+        """Return the fault of velocities that fit a taut string only to rounding, and of jerks too weak to be seen."""
+        slips = [
+            Fraction(v) - Fraction(r) * Fraction(w)
+            for v, r, w in zip(self.velocities, self.radii, self.spins, strict=True)
+        ]
+        pairs = [(sum(slips), self._given.opening)]
+        if self.friction is not None:
+            pairs += list(zip(slips, self._given.slips, strict=True))
+        if sign(motion.phases.cut) > 0 or any(exactly != 0 and sign(ball) == 0 for exactly, ball in pairs):
+            return NotApplicable(
+                "velocities and spins agree with a taut string only to rounding, or jerks become too weak to be told "
+                "apart",
+                path=("digits",),
+                remedy='give velocities and spins that agree exactly, if need be as decimal strings ("0.1")',
+            )
+        return None
 
     def static_model(self) -> Model:
         """Return the model of a question about one instant."""

@@ -1,4 +1,4 @@
-"""The policy: from the accuracy that is asked for to the smallest model and the cheapest method that reaches it.
+"""The policy: from the accuracy that is requested to the smallest model and the cheapest method that reaches it.
 
 A closed form, where there is one, is both the cheapest and the most accurate. Otherwise the record of the methods is
 read: errors and times measured on problems with known solutions, generated and never typed. The record only says
@@ -18,7 +18,7 @@ from core.systems.budget import Budget
 from core.systems.error_statements import Errors, estimated, rest_of
 from core.systems.methods import DormandPrince853, Lsoda, Radau
 from core.systems.methods.method import AbstractMethod
-from core.systems.system import Floats, System
+from core.systems.system import Floats, InitialValueProblem
 from core.systems.trajectory import Work
 
 CANDIDATES: dict[str, type[DormandPrince853 | Lsoda | Radau]] = {
@@ -74,7 +74,7 @@ class Run(NamedTuple):
     work: Work
 
 
-def run_to_accuracy(system: System, times: Floats, accuracy: float, budget: Budget, spent: int = 0) -> Run:
+def run_to_accuracy(system: InitialValueProblem, times: Floats, accuracy: float, budget: Budget, spent: int = 0) -> Run:
     """Return the samples of the cheapest integrator that reaches `accuracy` on this question.
 
     It begins with the setting whose record meets the accuracy, and takes finer ones until its own estimate does; each

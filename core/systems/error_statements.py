@@ -18,7 +18,7 @@ from core.compiled import kernel
 from core.errors import AccuracyUnreachable, BudgetExceeded, NotApplicable
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Integration
-from core.systems.system import ClosedForm, Floats, System
+from core.systems.system import ClosedForm, Floats, InitialValueProblem
 
 SAFETY = 4.0
 """Factor between the estimate from a finer run and the error that is stated.
@@ -173,7 +173,7 @@ def bound_of(exact: ClosedForm, times: Floats) -> float:
     )
 
 
-def drifts(system: System, states: Floats) -> dict[str, float]:
+def drifts(system: InitialValueProblem, states: Floats) -> dict[str, float]:
     """Return the largest relative change of every conserved quantity from its value at the start.
 
     A quantity that is zero at the start is compared with the largest value it takes. One that leaves the double range
@@ -210,7 +210,7 @@ class Estimate(NamedTuple):
 
 def estimated(
     method: AbstractMethod,
-    system: System,
+    system: InitialValueProblem,
     times: Floats,
     run: Integration,
     budget: Budget,
@@ -223,7 +223,7 @@ def estimated(
 
     Parameters
     ----------
-    method, system, times : AbstractMethod, System, ndarray
+    method, system, times : AbstractMethod, InitialValueProblem, ndarray
         Of the run.
     run : Integration
     budget : Budget

@@ -14,7 +14,7 @@ import numpy as np
 
 from core.notices import Notice
 from core.systems.system import Floats
-from core.systems.trajectory import Accuracy
+from core.systems.trajectory import Trajectory
 from core.work import spend
 
 ROUND_TRIP = 17
@@ -104,28 +104,37 @@ def to_significant(values: Floats, digits: int) -> Floats:
     return np.where(np.isfinite(out), out, flat).reshape(values.shape)
 
 
-def unknown_share(stated: Accuracy) -> float:
-    """Return what is not known of samples, relative to the largest norm: all, where nothing bounds the inherited error.
+def shortened(trajectory: Trajectory, digits: Digits) -> Trajectory:
+    """Return a trajectory with fewer digits in every column, whose stated errors cover that.
 
-    A motion without inputs that are propagated (``inherited`` None, no norm) is known but for its own error.
+    Parameters
+    ----------
+    digits : int or "meaningful"
+        Significant digits; or the decimal places that the errors support, and the inherited ones where they are known.
     """
-    if stated.inherited is None:
-        return stated.error if stated.largest_norm is None else 1.0
-    return stated.error + stated.inherited
-
-
-def covering(stated: Accuracy, added: float) -> Accuracy:
-    """Return the statement of error of samples to which rounding added an error."""
-    final = None if stated.final_error is None else stated.final_error + added
-    return replace(stated, error=stated.error + added, final_error=final)
-
-
-def notices_of(stated: Accuracy, added: float) -> tuple[Notice, ...]:
-    """Return the warning that rounding took more than the accuracy that was asked for, if it did."""
-    if not stated.error <= stated.requested < stated.error + added:
-        return ()
-    detail = f"rounding leaves an error of {stated.error + added:.3g}, where {stated.requested:.3g} was asked for"
-    return (Notice("rounded-beyond-accuracy", detail, ("round",)),)
+    stated = trajectory.accuracy
+    norm, error, columns = stated.largest_norm, stated.error, {}
+    for name, column in trajectory.columns.items():
+        reach = min(column.largest, column.scale or inf) if norm is None else norm
+        if norm is None and reach == 0.0:
+            columns[name] = column
+            continue
+        if norm is None:
+            unknown = (column.error + (column.inherited or 0.0)) / reach
+        else:
+            # Nothing is known of a state of which nothing bounds the inherited error.
+            unknown = 1.0 if stated.inherited is None else stated.error + stated.inherited
+        values, added = rounded(column.values, digits, unknown, reach)
+        columns[name] = replace(column, values=values, error=column.error + added * reach)
+        scale = reach if column.scale is None else column.scale
+        error = max(error, stated.error + added if norm is not None else columns[name].error / scale if scale else 0.0)
+    final = None if stated.final_error is None else stated.final_error + (error - stated.error)
+    warnings = trajectory.warnings
+    if stated.error <= stated.requested < error:
+        detail = f"rounding leaves an error of {error:.3g}, where {stated.requested:.3g} was asked for"
+        warnings = (*warnings, Notice("rounded-beyond-accuracy", detail, ("round",)))
+    accuracy = replace(stated, error=error, final_error=final)
+    return replace(trajectory, columns=columns, accuracy=accuracy, warnings=warnings)
 
 
 def _by_decimals(values: Floats, shorten: Any) -> Floats:

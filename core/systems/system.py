@@ -1,4 +1,4 @@
-"""What can be solved: a system with an initial state at t = 0, an equation of motion, and perhaps a closed form."""
+"""Initial value problems: a state at t = 0, an equation of motion, and perhaps a closed form."""
 
 from __future__ import annotations
 
@@ -147,8 +147,12 @@ class ClosedForm(Protocol):
         """
 
 
-class System(Protocol):
-    """A motion to be computed."""
+class InitialValueProblem(Protocol):
+    """A state at t = 0 and an equation of motion: what methods integrate."""
+
+    @property
+    def state_column(self) -> tuple[str, str]:
+        """Name and unit of the state as a column."""
 
     @property
     def initial_state(self) -> Floats:

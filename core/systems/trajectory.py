@@ -2,24 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
+
+import numpy as np
 
 from core.notices import Notice
 from core.quantities import Duration
-from core.systems.system import Floats, Model
+from core.systems.system import Floats, Integers, Model
 
-How = Literal["closed form", "measured against closed form", "estimate (finer run)"]
-"""What a statement of error rests on: a bound, a difference with a bound added, an estimate that may be too small."""
+How = Literal["closed form", "measured against closed form", "measured against pairs", "estimate (finer run)"]
+"""What a statement of error rests on: a bound; a difference with a bound added; the difference from a run in pairs of
+doubles; an estimate, which may be too small."""
+
+HORIZON = "horizon"
+"""What ends a motion that no event ends."""
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """One quantity at every time.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n,) or (n, k)
+    unit : str
+    error : float
+        Largest error of any sample, in the unit of the column: of a vector its length, of several quantities that
+        share a column that of any of them.
+    how : str
+        What the error rests on.
+    inherited : float or None
+        Largest change of any sample by the uncertainty of the inputs, to first order; None where it is not known.
+    scale : float or None
+        What the error is relative to; None for the largest magnitude of a sample.
+    """
+
+    values: Floats
+    unit: str
+    error: float
+    how: How
+    inherited: float | None = None
+    scale: float | None = None
+
+    @property
+    def largest(self) -> float:
+        """Largest magnitude of a sample."""
+        size = np.abs(self.values) if self.values.ndim == 1 else np.linalg.norm(self.values, axis=1)
+        return float(np.max(size, initial=0.0))
 
 
 @dataclass(frozen=True)
 class Accuracy:
-    """How right an answer is; every error is relative to the largest norm of the state in the whole motion.
+    """How right an answer is.
 
-    Not of the samples: the whole motion's norm does not depend on the times asked for, and closed forms, methods and
-    inherited errors share it. Where there is no closed form it is the largest norm known, of the start and the samples.
+    Errors of a state are relative to its largest norm in the whole motion. Not of the samples: the whole motion's norm
+    does not depend on the times of the question, and closed forms, methods and inherited errors share it. Where there
+    is no closed form it is the largest norm known, of the start and the samples. Where the columns have scales of their
+    own, the error is the largest of any column relative to its scale.
 
     Attributes
     ----------
@@ -40,6 +81,11 @@ class Accuracy:
     drifts : mapping of str to float
         Largest relative change of each conserved quantity. A drift is not an error: it can be 1e-15 while the phase
         is wrong altogether.
+    horizon : float or None
+        Time until which the inherited error stays below the accuracy (s); None where it does all the time, or where
+        that is not known.
+    why : str or None
+        Why the inherited error or the horizon is not known, where it was requested.
     """
 
     requested: float
@@ -49,6 +95,8 @@ class Accuracy:
     inherited: float | None = None
     drifts: Mapping[str, float] = field(default_factory=dict)
     largest_norm: float | None = None
+    horizon: float | None = None
+    why: str | None = None
 
 
 @dataclass(frozen=True)
@@ -84,23 +132,44 @@ class Trajectory:
     Attributes
     ----------
     time : ndarray, shape (n,)
-        In the order that was asked for (s).
-    state : ndarray, shape (n, k)
-        One row per time.
+        In the order of the question, without those that the motion does not reach (s).
+    columns : mapping of str to Column
+    accuracy : Accuracy
+    model : Model or None
+        None where the parts of a scene have models of their own.
     method : str
         Kind of the method that made it.
+    work : Work
+    period : float or None
+        Of the state (s).
     ended : str
-        ``"horizon"``, or the event that ended the motion before it.
+        `HORIZON`, or the event that ended the motion before it.
+    rows : ndarray of int, shape (n,), or None
+        Which of the times of the question these are; None for all.
+    events : sequence
+        What happens in the motion, each with its `kind` and its `time`.
     warnings : tuple of Notice
         What the reader of the samples should know.
     """
 
     time: Floats
-    state: Floats
-    model: Model
-    method: str
+    columns: Mapping[str, Column]
     accuracy: Accuracy
+    model: Model | None
+    method: str
     work: Work
     period: float | None = None
-    ended: str = "horizon"
+    ended: str = HORIZON
+    rows: Integers | None = None
+    events: Sequence[Any] = ()
     warnings: tuple[Notice, ...] = ()
+
+    def __getitem__(self, name: str) -> Floats:
+        """Return the samples of a column, or the times."""
+        return self.time if name == "time" else self.columns[name].values
+
+    @property
+    def state(self) -> Floats:
+        """Samples of the only column, shape (n, k)."""
+        (only,) = self.columns.values()
+        return only.values

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, cached_property
 from importlib import resources
@@ -63,10 +63,13 @@ class CalibratedCost:
     ----------
     counts : callable
         Refuses what exceeds the budget.
+    unmeasured : mapping of str to float, optional
+        Costs of an operation that the table does not have.
     """
 
     operation: str
     counts: Callable[[Any, Budget], Counts]
+    unmeasured: Counts = field(default_factory=dict)
 
     @cached_property
     def _seconds(self) -> Counts:
@@ -74,7 +77,7 @@ class CalibratedCost:
         # A body is looked at in the same way for every question, and where it is small that does not stand out.
         points = seconds["mass_properties"]["points"]
         judging = seconds["rotation_trajectory"]["evaluations of dormand-prince-853"]
-        return {"points": points, "judging evaluations": judging, **seconds[self.operation]}
+        return {"points": points, "judging evaluations": judging, **seconds.get(self.operation, self.unmeasured)}
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""

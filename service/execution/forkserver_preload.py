@@ -1,10 +1,15 @@
 """Imported once by the fork server of the compute processes, which then inherit every kernel loaded and compiled."""
 
 import gc
+from importlib import import_module
 
-from service.execution.worker import handler_of, terms_of
-from service.routing import TABLE
-from service.settings import Settings
+# The server process begins with the methods at the same time. On empty caches, each compiles half and loads the rest.
+for compiling in ("core.elliptic.functions", "core.rotation.torque_free", "core.multibody.generic_equation"):
+    import_module(compiling)
+
+from service.execution.worker import handler_of, terms_of  # noqa: E402
+from service.routing import TABLE  # noqa: E402
+from service.settings import Settings  # noqa: E402
 
 # Settings come from the environment, which the fork server inherits like the server processes.
 handler_of(terms_of(Settings(), TABLE))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Coroutine, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
 from http import HTTPStatus
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import Body, FastAPI, Request
+from fastapi import FastAPI, Request
 from fastapi.routing import APIRoute
+from pydantic import TypeAdapter
 from starlette.responses import JSONResponse, Response
 from starlette.types import ASGIApp
 
@@ -94,6 +95,7 @@ def document_routes(
 def openapi(app: FastAPI) -> dict[str, Any]:
     """Return the OpenAPI document."""
     document = app.openapi()
+    document["components"] = {"schemas": _write_schemas(document, [*app.router.routes])}
     document["info"] |= {
         "license": {"name": "Apache License 2.0", "identifier": "Apache-2.0"},
         "contact": {"name": "The Polhode project"},
@@ -127,6 +129,40 @@ def openapi(app: FastAPI) -> dict[str, Any]:
     return document
 
 
+def _write_schemas(document: dict[str, Any], routes: Sequence[Any]) -> dict[str, Any]:
+    """Write the schemas of questions and answers into the paths, and return the components that they refer to.
+
+    FastAPI would make an adapter of every field of every model to collect the same; that takes a second more.
+    """
+    places = {
+        (route.entry.operation_id, part): (found, content)
+        for route in routes
+        if isinstance(route, _Route) and route.include_in_schema
+        for part, found, content in _typed_content(route.entry, document["paths"][route.path])
+    }
+    schemas, defined = TypeAdapter.json_schemas(
+        [(place, "validation", TypeAdapter(found)) for place, (found, _) in places.items()],
+        ref_template=components.PREFIX + "{model}",
+    )
+    for place, (_, content) in places.items():
+        content["schema"] = schemas[place, "validation"]
+    named: dict[str, Any] = defined["$defs"]
+    return named
+
+
+def _typed_content(route: Route, operations: dict[str, Any]) -> Iterator[tuple[str, Any, dict[str, Any]]]:
+    """Yield what has a type of its own in an operation: its part, the type, and where the schema belongs."""
+    operation = operations[route.method.lower()]
+    if isinstance(route, PostRoute):
+        yield "question", route.question, operation["requestBody"]["content"]["application/json"]
+    if route.answer is not None:
+        yield "answer", route.answer, operation["responses"][str(_status(route))]["content"]["application/json"]
+
+
+def _status(route: Route) -> int:
+    return 202 if isinstance(route, StudyRoute) else 200
+
+
 def _response_name(status: int) -> str:
     return HTTPStatus(status).phrase.title().replace(" ", "").replace("-", "")
 
@@ -141,7 +177,7 @@ class _Route(APIRoute):
     """One route of the table, as FastAPI sees it."""
 
     def __init__(self, route: Route, handler: ASGIApp) -> None:
-        self._handler = handler
+        self.entry, self._handler = route, handler
         super().__init__(
             route.path,
             _endpoint(route),
@@ -151,12 +187,13 @@ class _Route(APIRoute):
             summary=route.summary,
             description=route.description,
             tags=[route.tag],
-            status_code=202 if isinstance(route, StudyRoute) else 200,
+            status_code=_status(route),
             include_in_schema=isinstance(route, PostRoute) or route.documented,
-            response_model=route.answer,
+            response_model=None,
             response_description="The answer." if isinstance(route, PostRoute) else "The document.",
             response_class=_response_class(route),
             responses=_representations(route) | _problems(_problems_of(route)),
+            openapi_extra=_request_body(route),
         )
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
@@ -175,25 +212,25 @@ def _response_class(route: Route) -> type[Response]:
 
 
 def _endpoint(route: Route) -> Callable[..., Any]:
-    """Return a function of the signature that FastAPI is to document; it is never called."""
+    """Return a function whose signature has the parameters of the path; it is never called."""
 
     def endpoint(**arguments: Any) -> None:
         raise NotImplementedError
 
-    parameters = []
-    if isinstance(route, PostRoute):
-        examples: Any = {
-            name: {"summary": example.summary, "value": dict(example.question)}
-            for name, example in route.examples.items()
-        }
-        annotation: Any = Annotated.__class_getitem__((route.question, Body(openapi_examples=examples)))  # type: ignore[attr-defined]
-        parameters = [inspect.Parameter("question", inspect.Parameter.KEYWORD_ONLY, annotation=annotation)]
-    if isinstance(route, ResourceRoute):
-        names = re.findall(r"{(\w+)}", route.path)
-        parameters = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=str) for name in names]
+    names = re.findall(r"{(\w+)}", route.path)
+    parameters = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=str) for name in names]
     endpoint.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     endpoint.__doc__ = None
     return endpoint
+
+
+def _request_body(route: Route) -> dict[str, Any] | None:
+    if not isinstance(route, PostRoute):
+        return None
+    examples = {
+        name: {"summary": example.summary, "value": dict(example.question)} for name, example in route.examples.items()
+    }
+    return {"requestBody": {"content": {"application/json": {"examples": examples}}, "required": True}}
 
 
 def _representations(route: Route) -> dict[int | str, dict[str, Any]]:

@@ -1,5 +1,5 @@
 // Speed against accuracy: a named method with one setting, run beside the closed form.
-import { Refusal, Worker, ask, get } from "./api.js";
+import { Refusal, Worker, get } from "./api.js";
 import { $, make, written } from "./dom.js";
 import { tradeChart } from "./plots.js";
 import { power, tradeInWords } from "./words.js";
@@ -86,11 +86,11 @@ export class Integrator {
     $("setting-fields").setAttribute("aria-busy", "true");
     const question = { ...this.question, method: this.method };
     try {
-      await this.worker.run(async (signal) => {
-        const { answer, milliseconds } = await ask("/v1/rotation/trajectory", question, signal);
+      await this.worker.run(async (send) => {
+        const { answer, milliseconds } = await send("/v1/rotation/trajectory", question);
         $("trade").textContent = tradeInWords(answer, milliseconds);
         this.onRun(answer);
-        this.points ??= await this.ladder(signal);
+        this.points ??= await this.ladder(send);
         tradeChart($("trade-chart"), this.points, [answer.work.evaluations, answer.accuracy.error]);
         $("trade-chart").setAttribute("aria-label", `Error against evaluations: ${this.points.map(([n, e]) => `${n} evaluations, ${power(e)}`).join("; ")}`);
       });
@@ -104,10 +104,10 @@ export class Integrator {
   }
 
   /** Errors and evaluations of the method at settings over the whole slider. */
-  async ladder(signal) {
+  async ladder(send) {
     const { setting } = this.methods.get(this.kind);
     const methods = [10, 25, 40, 55, 70, 85].map((position) => ({ kind: this.kind, [setting]: this.settingOf(position) }));
-    const { answer } = await ask("/v1/work-precision", { ...this.question, methods }, signal);
+    const { answer } = await send("/v1/work-precision", { ...this.question, methods });
     return answer.curves.flatMap((curve) => curve.measurements).filter((m) => m.error).map((m) => [m.evaluations, m.error]);
   }
 }

@@ -1,5 +1,5 @@
 // The start page: one body, one spin, two pictures, the curves and the words.
-import { Refusal, Worker, ask } from "./api.js";
+import { Refusal, Worker } from "./api.js";
 import { BODIES, cuboidOf, pointsOf } from "./bodies.js";
 import { BodyView } from "./body_view.js";
 import { $, make, written } from "./dom.js";
@@ -97,16 +97,16 @@ async function answerState() {
     throw Object.assign(error, { field: "/body/points" });
   }
   const start = { body, angular_velocity: state.spin };
-  const result = await worker.run(async (signal) => {
+  const result = await worker.run(async (send) => {
     const surfaceQuestion = { ...start, separatrix: true, resolution: 1, points: 400 };
     const [surface, first, mass] = await Promise.all([
-      ask("/v1/rotation/energy-ellipsoid", surfaceQuestion, signal),
-      ask("/v1/rotation/trajectory", { ...start, times: [0] }, signal),
-      BODIES[state.body].own === "moments" ? null : ask("/v1/bodies/mass-properties", { body }, signal),
+      send("/v1/rotation/energy-ellipsoid", surfaceQuestion),
+      send("/v1/rotation/trajectory", { ...start, times: [0] }),
+      BODIES[state.body].own === "moments" ? null : send("/v1/bodies/mass-properties", { body }),
     ]);
     const stop = state.window ?? windowOf(first.answer, state.spin);
     const question = { ...start, attitude: [1, 0, 0, 0], times: { start: 0, stop, count: SAMPLES } };
-    const { answer } = await ask("/v1/rotation/trajectory", question, signal);
+    const { answer } = await send("/v1/rotation/trajectory", question);
     return { surface: surface.answer, answer, question, surfaceQuestion, stop, center: mass?.answer.center_of_mass || [0, 0, 0] };
   });
   if (!result) return complain([{ pointer: "", detail: "Cancelled: the picture is of the answer before" }]);

@@ -1,5 +1,5 @@
 // Scenes in motion: those of the catalogue, changed by sliders or as JSON.
-import { Refusal, Worker, ask, get } from "./api.js";
+import { Refusal, Worker, get } from "./api.js";
 import { $, make, written } from "./dom.js";
 import { NotJson, placeOf, readJson } from "./json_places.js";
 import { drawn, isNamed, movingQuestion } from "./named_scenes.js";
@@ -115,15 +115,15 @@ async function answerState() {
   const { value } = state.read, path = catalogue.get(state.scene).path;
   if (value === null || typeof value !== "object" || Array.isArray(value)) throw new Refusal({ detail: "a scene is an object" });
   const wanted = stopOf(value);
-  const result = await worker.run(async (signal) => {
+  const result = await worker.run(async (send) => {
     let stop = state.window ?? Math.min(wanted, LONGEST);
-    let text = questionText(stop), asked = await ask(path, text, signal);
+    let text = questionText(stop), asked = await send(path, text);
     const { period } = asked.answer;
     // A fast motion over a long time would be a blur: some periods are shown.
     if (state.window === null && period && stop > 12 * period) {
       stop = Number((12 * period).toPrecision(3));
       text = questionText(stop);
-      asked = await ask(path, text, signal);
+      asked = await send(path, text);
     }
     return { answer: asked.answer, text, path };
   });

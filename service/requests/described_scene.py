@@ -145,8 +145,8 @@ class SearchOutput(Request):
     )
 
 
-AskedOutput = Annotated[Output | SearchOutput, SkipValidation()]
-"""What may be asked for; core says what is wrong with it, with one place for each fault."""
+RequestedOutput = Annotated[Output | SearchOutput, SkipValidation()]
+"""What may be requested; core says what is wrong with it, with one place for each fault."""
 
 
 class SceneDescription(Request):
@@ -189,7 +189,7 @@ class SceneDescription(Request):
 
 
 class DescribedSceneRequest(SceneDescription):
-    """Bodies, what connects them, and what is asked about them."""
+    """Bodies, what connects them, and what is requested of them."""
 
     times: Times | None = Field(
         default=None, description="Measured from the given state, of either sign, in any order; none: no motion."
@@ -211,7 +211,7 @@ class DescribedSceneRequest(SceneDescription):
         "If it is given, accuracy.inherited says what it does to the samples. Formulas are exact.",
     )
     round: Rounding | None = ROUND
-    outputs: list[AskedOutput] | None = Field(
+    outputs: list[RequestedOutput] | None = Field(
         default=None,
         min_length=1,
         max_length=MOST_OUTPUTS,
@@ -220,7 +220,7 @@ class DescribedSceneRequest(SceneDescription):
         "the origin, angular momenta.",
     )
 
-    def asked(self) -> tuple[Output | When | ExtremesOf | RestOf, ...]:
+    def requested(self) -> tuple[Output | When | ExtremesOf | RestOf, ...]:
         """Return the outputs as core takes them."""
         outputs = DEFAULT_OUTPUTS if self.outputs is None else self.outputs
         return tuple(_searched(output, ("outputs", i)) for i, output in enumerate(outputs))
@@ -243,15 +243,15 @@ def _searched(output: Any, path: Path) -> Any:
     return When(**_fields(output["when"], WhenQuestion, (*path, "when")))
 
 
-def _fields(asked: Any, form: type[Request], path: Path) -> dict[str, Any]:
+def _fields(given: Any, form: type[Request], path: Path) -> dict[str, Any]:
     """Return the fields of a search, whose values core looks at."""
-    if not isinstance(asked, Mapping):
+    if not isinstance(given, Mapping):
         raise InvalidParameter(path, "be an object")
-    for key in asked:
+    for key in given:
         if key not in form.model_fields:
             known = ", ".join(form.model_fields)
             raise InvalidParameter(member(path, key), f"be left out; the fields here are {known}")
     for key, entry in form.model_fields.items():
-        if key not in asked and entry.is_required():
+        if key not in given and entry.is_required():
             raise InvalidParameter((*path, key), "be given")
-    return dict(asked)
+    return dict(given)

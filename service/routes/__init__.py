@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from core.scenes.named_scene import NamedScene
 from service.routes.assessments import assessing
 from service.routes.bodies import BODIES
 from service.routes.certified.answers import naming_certified
+from service.routes.certified.described import CERTIFIED_DESCRIBED
 from service.routes.certified.rotation import CERTIFIED_ROTATION
 from service.routes.certified.scenes import certified_scenes
 from service.routes.certified.surfaces import CERTIFIED_ELLIPSOID
@@ -18,19 +20,26 @@ from service.routes.rotation.precession import PRECESSION
 from service.routes.rotation.surfaces import SURFACES
 from service.routes.rotation.trajectory import ROTATION
 from service.routes.rotation.wobble import WOBBLE
-from service.routes.scenes import questions as about_scenes
+from service.routes.scenes import members, scene_routes
 from service.routes.studies import studying
 from service.routes.variants import varying
 from service.routes.work_precision import WORK_PRECISION
 from service.routing import PostRoute
 
 
-def questions() -> tuple[PostRoute, ...]:
-    """Return every route that takes a question, in the order of the documentation."""
-    certified = (*CERTIFIED_ROTATION, CERTIFIED_ELLIPSOID, *certified_scenes())
+def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostRoute, ...]:
+    """Return every route that takes a question, in the order of the documentation.
+
+    Parameters
+    ----------
+    scenes : tuple of type, optional
+        The named scenes; those of core's catalogue if omitted.
+    """
+    scenes = members() if scenes is None else scenes
+    certified = (*CERTIFIED_ROTATION, CERTIFIED_ELLIPSOID, *certified_scenes(scenes), CERTIFIED_DESCRIBED)
     paths = [route.path for route in certified]
     rotations = (*BODIES, *ROTATION, *ENSEMBLE, *PRECESSION, *SURFACES, *WOBBLE, *WORK_PRECISION)
-    ordinary = (*rotations, *about_scenes(), *DESCRIBED_SCENES)
+    ordinary = (*rotations, *scene_routes(scenes), *DESCRIBED_SCENES)
     in_doubles = tuple(naming_certified(route, paths) for route in ordinary)
     answering = (*in_doubles, *certified)
     studies = studying(answering)
@@ -40,4 +49,7 @@ def questions() -> tuple[PostRoute, ...]:
         varying(in_doubles, certified),
         studies,
     )
-    return tuple(replace(route, examples=examples()[route.operation_id]) for route in (*answering, *about_others))
+    shown = examples()
+    return tuple(
+        replace(route, examples=route.examples or shown[route.operation_id]) for route in (*answering, *about_others)
+    )

@@ -17,7 +17,7 @@ from core.systems.methods import Method
 from core.systems.methods.method import AbstractMethod, Family, Invariance
 from service.problems import registry
 from service.routes.described_scenes import described_examples
-from service.routes.scenes import SceneCatalogue, scenes
+from service.routes.scenes import SceneCatalogue, members, scene_entries
 from service.routing import GetRoute, Reply
 from service.schemas import SIGNATURE, Ratio, Signed, View
 
@@ -147,6 +147,6 @@ def catalogues() -> tuple[GetRoute, ...]:
             "list_scenes",
             "Every named scene and what it answers, and examples of described ones",
             SceneCatalogue,
-            lambda: [*scenes(), *described_examples()],
+            lambda: [*scene_entries(members()), *described_examples()],
         ),
     )

@@ -2,39 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Generic, Literal
 
 from pydantic import Field
 
-from core.multibody.answer import How
+from core.multibody.answer import MotionPhase, RestRange, SceneExtremes, SceneProblem
 from core.quantities import Unit
 from core.systems.trajectory import Work
-from service.schemas import Envelope, Joules, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
+from service.schemas import Envelope, Joules, N, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
 
 Metres = Annotated[list[float], Unit("m"), Field(min_length=2, max_length=3)]
+How = Literal["closed form", "measured against pairs", "measured against closed form"]
+"""How errors of described scenes are known."""
 OwnUnit = Unit("as in the field unit")
 
 
-class SmallMotion(View):
+class SmallMotion(View, Generic[N]):
     """One mode: q = exp(growth_rate t) cos(frequency t)."""
 
-    frequency: RadiansPerSecond[float]
-    growth_rate: PerSecond[float]
+    frequency: RadiansPerSecond[N]
+    growth_rate: PerSecond[N]
 
 
-class ScenePart(View):
+class ScenePart(View, Generic[N]):
     """A part of a scene that has no force or connection in common with the others, and its smallest model."""
 
     name: str
     why: str
     degrees_of_freedom: int
     coordinates: list[str] = Field(description="Those that remain.")
-    period: Seconds[float] | None = Field(description="Until it repeats, up to a turn about the vertical.")
-    precession: Radians[float] | None = Field(description="That turn in a period.")
-    modes: list[SmallMotion] = Field(description="Of a linear part.")
+    period: Seconds[N] | None = Field(description="Until it repeats, up to a turn about the vertical.")
+    precession: Radians[N] | None = Field(description="That turn in a period.")
+    modes: list[SmallMotion[N]] = Field(description="Of a linear part.")
 
 
-class DescribedModel(View):
+class DescribedModel(View, Generic[N]):
     """The smallest model of a scene, and what was noticed on the way."""
 
     name: str
@@ -44,34 +46,34 @@ class DescribedModel(View):
     coordinates: int = Field(description="Coordinates that remain.")
     rows: int = Field(description="Equations of constraint that remain.")
     described: tuple[int, int] = Field(description="Coordinates and equations of constraint before.")
-    apart: list[ScenePart]
+    apart: list[ScenePart[N]]
     noticed: list[str] = Field(description="Sentences.")
 
 
-class BodyAccelerations(View):
+class BodyAccelerations(View, Generic[N]):
     """Accelerations of a body at the start; null beyond the range of doubles."""
 
-    linear: list[Annotated[float, Unit("m s^-2")] | None] = Field(description="Of the centre of mass.")
-    angular: Annotated[float | list[float | None] | None, Unit("rad s^-2")] = Field(
+    linear: list[Annotated[N, Unit("m s^-2")] | None] = Field(description="Of the centre of mass.")
+    angular: Annotated[N | list[N | None] | None, Unit("rad s^-2")] = Field(
         description="A number in the plane, in body axes in space; null for particles and tops."
     )
 
 
-class ConnectionForce(View):
+class ConnectionForce(View, Generic[N]):
     """A force of a connection at the start."""
 
-    value: Annotated[float | None, OwnUnit] = Field(description="null if it is not determined.")
+    value: Annotated[N | None, OwnUnit] = Field(description="null if it is not determined.")
     unit: str
     determined: bool = Field(description="Whether the scene determines it.")
     shared_with: list[str] = Field(description="Connections that share what is not determined.")
 
 
-class StartEnergy(View):
+class StartEnergy(View, Generic[N]):
     """Energies at the start; the potential of gravity is zero at the origin."""
 
-    kinetic: Joules[float] | None
-    potential: Joules[float] | None
-    total: Joules[float] | None
+    kinetic: Joules[N] | None
+    potential: Joules[N] | None
+    total: Joules[N] | None
     conserved: bool = Field(
         description="Whether nothing works on the scene: until the last time no friction and no impact costs energy."
     )
@@ -114,34 +116,8 @@ class EndEvent(View):
     energy_loss: Joules[float] = Field(description="Of an impact; of several at once, it stands with the first.")
 
 
-class MotionPhase(View):
-    """A time in which no contact, stop or string changes its state."""
-
-    start: Seconds[float]
-    end: Seconds[float] | None = Field(description="null for the last.")
-    model: str
-    why: str
-    degrees_of_freedom: int
-    coordinates: int = Field(description="Coordinates that remain.")
-    states: dict[str, str] = Field(description="By contact, stop or string: open, closed, stick, slide, slide back.")
-
-
-class SceneProblem(View):
-    """Something that mechanics does not decide: the motion ends there."""
-
-    code: str = Field(
-        description="no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, "
-        "several-impacts, no-impact, energy-gain or no-progress."
-    )
-    explanation: str
-    time: Seconds[float]
-    connections: list[str] = Field(description="Between which it is undecided.")
-    candidates: list[dict[str, str]] = Field(description="What is possible.")
-    decided_by: str = Field(description="Which further assumption would decide it.")
-
-
 class SceneOccurrence(View):
-    """A time at which a quantity takes the value that was asked for."""
+    """A time at which a quantity takes the requested value."""
 
     quantity: str
     equals: Annotated[float, OwnUnit]
@@ -152,47 +128,13 @@ class SceneOccurrence(View):
     how: How = Field(description="How the error of the quantity is known.")
 
 
-class SceneExtremes(View):
-    """Least and largest value of a quantity."""
-
-    quantity: str
-    unit: str
-    least: Annotated[float, OwnUnit]
-    least_time: Seconds[float]
-    largest: Annotated[float, OwnUnit]
-    largest_time: Seconds[float] = Field(description="Near a smooth extreme known to half of the digits only.")
-    error: Annotated[float, OwnUnit] = Field(description="Of both values.")
-    until: Seconds[float] = Field(description="End of what was searched, from the start.")
-    periodic: bool = Field(description="Whether that is a period, so that the extremes are those of all time.")
-
-
-class RestEnd(View):
-    """One end of the range of a number in which a scene stays at rest."""
-
-    value: Annotated[float, OwnUnit]
-    error: Annotated[float, OwnUnit]
-    beyond: dict[str, str] | None = Field(
-        description="What the contacts that touch do just beyond; null where rest lasts up to the bound."
-    )
-    problem: str | None = Field(description="Code of what is undecided just beyond.")
-
-
-class RestRange(View):
-    """In which range of a number a scene stays at rest."""
-
-    vary: str = Field(description="JSON pointer of the number.")
-    written: Annotated[float, OwnUnit] = Field(description="Its value in the scene.")
-    lower: RestEnd | None = Field(description="null where the scene does not rest as it is written.")
-    upper: RestEnd | None
-
-
 class SceneEquilibrium(View):
     """A place where the scene can rest."""
 
     positions: dict[str, Metres] = Field(description="Of centres of mass.")
     angles: dict[str, Radians[float]] = Field(description="In the plane, where the direction of a body matters.")
     stable: bool | None = Field(description="null where the small motions do not decide.")
-    modes: list[SmallMotion]
+    modes: list[SmallMotion[float]]
     residual: Ratio[float] = Field(description="Largest force left over, relative to the forces of the scene.")
 
 
@@ -207,7 +149,7 @@ class DescribedAccuracy(View):
     )
     inherited: Ratio[float] | None = Field(
         description="Largest change of any column by input_uncertainty, to first order, relative "
-        "to the largest value in its unit; null where it is not asked for or not known."
+        "to the largest value in its unit; null where it is not requested or not known."
     )
     horizon: Seconds[float] | None = Field(
         description="Until when that change stays below the accuracy, one of 64 times up to the farthest; null where "
@@ -216,13 +158,18 @@ class DescribedAccuracy(View):
     why: str | None = Field(description="Why one of these is null, where an uncertainty was given.")
 
 
-class DescribedSceneAnswer(Envelope):
+class AtStart(Envelope, Generic[N]):
+    """What is answered about the model and the start of a scene."""
+
+    model: DescribedModel[N]
+    accelerations: dict[str, BodyAccelerations[N]] | None = Field(default=None, description="By body.")
+    forces: dict[str, ConnectionForce[N]] | None = Field(default=None, description="By connection.")
+    energy: StartEnergy[N] | None = None
+
+
+class DescribedSceneAnswer(AtStart[float]):
     """The requested answer about a scene."""
 
-    model: DescribedModel
-    accelerations: dict[str, BodyAccelerations] | None = Field(default=None, description="By body.")
-    forces: dict[str, ConnectionForce] | None = Field(default=None, description="By connection.")
-    energy: StartEnergy | None = None
     method: str | None = Field(default=None, description="Kind of the method that was named, if one was.")
     work: Work | None = Field(default=None, description="What that method cost.")
     period: Seconds[float] | None = Field(description="Of the motion, where a single part moves and repeats.")
@@ -235,8 +182,8 @@ class DescribedSceneAnswer(Envelope):
     )
     problem: SceneProblem | None = Field(default=None, description="If mechanics leaves something undecided.")
     trajectory: DescribedTrajectory | None = None
-    occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was asked for, in its order.")
-    extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were asked for.")
+    occurrences: list[SceneOccurrence] | None = Field(default=None, description="If when was requested, in its order.")
+    extremes: list[SceneExtremes] | None = Field(default=None, description="If extremes were requested.")
     equilibria: list[SceneEquilibrium] | None = None
-    thresholds: list[RestRange] | None = Field(default=None, description="If thresholds were asked for, in order.")
+    thresholds: list[RestRange] | None = Field(default=None, description="If thresholds were requested, in order.")
     accuracy: DescribedAccuracy | None = Field(default=None, description="If there is a trajectory.")

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import numpy as np
 
 from core.errors import InvalidParameter
 from service.responses.linear_svg import Line, Panel, panels
+from service.responses.motion_svg import Column, numbers, over_time
 from service.routing import Answer
-
-AXES = "xyz"
 
 
 def drawn(answer: Answer) -> bytes:
@@ -25,29 +21,15 @@ def drawn(answer: Answer) -> bytes:
     motion = answer.get("trajectory")
     if motion is None:
         raise InvalidParameter("times", "be given where a figure is wanted", remedy="give times, or accept JSON")
-    order = np.argsort(motion["time"], kind="stable")
-    time = motion["time"][order]
-    found: list[Panel] = []
+    order = np.argsort(numbers(motion["time"]), kind="stable")
+    samples = {name: numbers(column["values"]) for name, column in motion["columns"].items()}
+    places = {name: one for name, one in samples.items() if name.endswith(".position") and one.shape[1] == 2}
     paths = [
-        Line(name.removesuffix(".position"), column["values"][order, 0], column["values"][order, 1])
-        for name, column in motion["columns"].items()
-        if name.endswith(".position") and column["values"].shape[1] == 2
+        Line(name.removesuffix(".position"), values[order, 0], values[order, 1]) for name, values in places.items()
     ]
-    if paths:
-        found.append(Panel("x (m)", "y (m)", paths, one_scale=True))
-    by_unit: dict[str, list[Line]] = {}
-    for name, column in motion["columns"].items():
-        if not (paths and name.endswith(".position")):
-            by_unit.setdefault(column["unit"], []).extend(_over_time(name, time, column["values"][order]))
-    found.extend(Panel("time (s)", unit, lines) for unit, lines in by_unit.items())
-    return panels(f"Motion by {answer.get('method') or answer['model']['name']}", found).encode()
-
-
-def _over_time(name: str, time: Any, values: Any) -> Iterator[Line]:
-    if values.ndim == 1:
-        yield Line(name, time, values)
-        return
-    # Quaternions begin with their scalar part.
-    axes = AXES if values.shape[1] < 4 else "wxyz"
-    for k in range(values.shape[1]):
-        yield Line(f"{name}.{axes[k]}", time, values[:, k])
+    columns = [
+        Column(name, column["unit"], samples[name]) for name, column in motion["columns"].items() if name not in places
+    ]
+    shown = [Panel("x (m)", "y (m)", paths, one_scale=True)] if paths else []
+    title = f"Motion by {answer.get('method') or answer['model']['name']}"
+    return panels(title, [*shown, *over_time(motion["time"], columns)]).encode()

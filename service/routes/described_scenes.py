@@ -21,12 +21,12 @@ from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
-from service.routes.described_answer import DescribedSceneAnswer
+from service.routes.described_answer import DescribedAccuracy, DescribedSceneAnswer, SceneColumn
 from service.routes.described_figure import drawn
 from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
-from service.schemas import Request, fields_of, sample_count, sample_times
+from service.schemas import Request, View, fields_of, sample_count, sample_times
 
 PATH, OPERATION = "/v1/scenes", "described_scene"
 
@@ -38,15 +38,15 @@ vector of the plane may be `{"polar": [distance, angle]}`. Velocities that are l
 Forces that the scene does not determine are null. `outputs` may also ask when a quantity takes a value,
 `{"when": {"quantity": "rod.angle", "equals": 0, "nth": 2}}`, and how small and large it becomes,
 `{"extremes": "rod.force"}`, between the start and the latest of the times. Between which
-values of a number a scene stays at rest is asked by its JSON pointer,
+values of a number a scene stays at rest is requested by its JSON pointer,
 `{"thresholds": {"vary": "/connections/0/friction", "between": [0, 2]}}`.
 
-Contacts push and do not pull, with friction and restitution, in the plane; strings become slack and taut again. The
+Contacts push and do not pull, with friction and restitution; strings become slack and taut again. The
 answer lists the phases between the events, each with its own smallest model. What mechanics leaves undecided is an
 answer too: `problem` says what, and which assumption would decide it.
 
-Not covered yet: contacts in space, friction of held connections, connections with `from` and `until`. They are refused.
-It is not proven that all equilibria are found. A plan
+Not covered yet: friction of balls on one another in space, friction of held connections, connections with `from` and
+`until`. They are refused. It is not proven that all equilibria are found. A plan
 reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
 about three bodies. The paths of a motion in the plane, and its columns over time, are answered as a figure to
 `Accept: image/svg+xml`."""
@@ -81,7 +81,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     found = solve_scene(
         question.scene(),
         times,
-        question.asked(),
+        question.requested(),
         question.accuracy,
         method=question.method,
         input_uncertainty=question.input_uncertainty,
@@ -89,7 +89,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
         budget=budget,
     )
     motion = found.trajectory
-    answer: Answer = {"model": _model(found.model), "warnings": [] if motion is None else list(motion.warnings)}
+    answer: Answer = {"model": model_fields(found.model), "warnings": [] if motion is None else list(motion.warnings)}
     for name, start in (
         ("accelerations", {body: fields_of(one) for body, one in (found.accelerations or {}).items()}),
         ("forces", {force: fields_of(one) for force, one in (found.forces or {}).items()}),
@@ -97,7 +97,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     ):
         if getattr(found, name) is not None:
             answer[name] = _in_range(start, name, answer["warnings"])
-    if motion is not None and motion.method is not None:
+    if motion is not None and question.method is not None:
         answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
     answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
@@ -107,9 +107,9 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if found.problem is not None:
         answer["problem"] = fields_of(found.problem)
     if motion is not None:
-        columns = {name: fields_of(column) for name, column in motion.columns.items()}
+        columns = {name: _picked(column, SceneColumn) for name, column in motion.columns.items()}
         answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}
-        answer["accuracy"] = motion.accuracy
+        answer["accuracy"] = _picked(motion.accuracy, DescribedAccuracy)
     if found.occurrences is not None:
         answer |= {"occurrences": found.occurrences, "extremes": found.extremes}
     if found.equilibria is not None:
@@ -119,16 +119,22 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     return answer
 
 
+def _picked(found: Any, view: type[View]) -> dict[str, Any]:
+    """Return those fields of core's dataclass that a view has."""
+    return {name: getattr(found, name) for name in view.model_fields}
+
+
 def _of_rest(found: RestRange) -> dict[str, Any]:
     ends = {"lower": found.lower, "upper": found.upper}
     return fields_of(found) | {name: None if end is None else fields_of(end) for name, end in ends.items()}
 
 
-def _model(model: SceneModel) -> dict[str, Any]:
+def model_fields(model: SceneModel) -> dict[str, Any]:
+    """Return the fields of a model, its modes as objects."""
     return fields_of(model) | {"apart": [fields_of(part) | {"modes": _modes(part.modes)} for part in model.apart]}
 
 
-def _modes(modes: Sequence[tuple[float, float]]) -> list[dict[str, float]]:
+def _modes(modes: Sequence[tuple[Any, Any]]) -> list[dict[str, Any]]:
     return [{"frequency": frequency, "growth_rate": growth} for frequency, growth in modes]
 
 

@@ -47,7 +47,7 @@ class PlannedModel(View):
     coordinates: int | None = Field(default=None, description="Coordinates that remain of a described scene.")
     rows: int | None = Field(default=None, description="Equations of constraint that remain of it.")
     described: tuple[int, int] | None = Field(default=None, description="Coordinates and equations before.")
-    apart: list[ScenePart] | None = Field(default=None, description="Its parts.")
+    apart: list[ScenePart[float]] | None = Field(default=None, description="Its parts.")
     noticed: list[str] | None = Field(default=None, description="Sentences about it.")
 
 

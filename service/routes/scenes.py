@@ -11,16 +11,18 @@ from pydantic import Field, create_model
 
 from core.quantities import Tolerance, members_of
 from core.scenes import Scene
-from core.scenes.answer import HORIZON, ConstrainedSystem, SceneEvent
+from core.scenes.figures import SceneEvent
+from core.scenes.named_scene import NamedScene
 from core.systems.budget import Budget
 from core.systems.system import Model
-from core.systems.trajectory import Work
-from service.execution.cost_model import CalibratedCost, numbers
+from core.systems.trajectory import HORIZON, Work
+from service.execution.cost_model import CalibratedCost, calibration, numbers
+from service.responses.svg import SVG
 from service.routes.bodies import few_times
-from service.routes.examples import examples
+from service.routes.motion_figures import scene_drawing
 from service.routes.planning_probes import FEW, few_of
-from service.routes.rotation.trajectory import Accuracy
-from service.routing import Answer, PlanningProbe, PostRoute
+from service.routes.rotation.trajectory import Accuracy, accuracy_fields
+from service.routing import Answer, Example, PlanningProbe, PostRoute
 from service.schemas import (
     ROUND,
     Envelope,
@@ -35,6 +37,8 @@ from service.schemas import (
 )
 
 TIMES: Any = Field(default=None, description="Measured from the given state, of either sign, in any order.")
+SAMPLE_IN_BALLS = 1e-4
+"""Time of a sample that is evaluated in balls and not in doubles, as those of a new scene are at first (s)."""
 OUTPUTS: Any = Field(default=None, min_length=1, description="What to compute; by default everything.")
 
 
@@ -64,45 +68,27 @@ class SceneCatalogue(Signed):
     scenes: list[SceneEntry]
 
 
-WARMING: Mapping[str, tuple[Mapping[str, Any], ...]] = {
-    # A rod that comes to rest upright, and never arrives.
-    "rod-in-hole": (
-        {
-            "hole_radius": 5.0,
-            "length": 6.0,
-            "mass": 1.0,
-            "gravity": 25.0,
-            "inertia_factor": 0.25,
-            "hole": "cylinder",
-            "angle": 0.0,
-            "angular_velocity": 4.0,
-            "times": [1.0],
-        },
-    ),
-}
-
-
-def members() -> tuple[type[ConstrainedSystem], ...]:
+def members() -> tuple[type[NamedScene], ...]:
     """Return the scenes of core's catalogue."""
-    return cast(tuple[type[ConstrainedSystem], ...], members_of(Scene))
+    return cast(tuple[type[NamedScene], ...], members_of(Scene))
 
 
-def name_of(scene: type[ConstrainedSystem]) -> str:
+def name_of(scene: type[NamedScene]) -> str:
     """Return the name of a scene, the last step of its path."""
     return str(scene.__dict__["kind"])
 
 
-def operation_of(scene: type[ConstrainedSystem]) -> str:
+def operation_of(scene: type[NamedScene]) -> str:
     """Return the name of the operation that answers questions about a scene."""
     return "scene_" + name_of(scene).replace("-", "_")
 
 
-def summary_of(scene: type[ConstrainedSystem]) -> str:
+def summary_of(scene: type[NamedScene]) -> str:
     """Return the first sentence of a scene's documentation."""
     return (scene.__doc__ or "").splitlines()[0].rstrip(".")
 
 
-def request_model(scene: type[ConstrainedSystem], title: str, **own: Any) -> type[Request]:
+def request_model(scene: type[NamedScene], title: str, **own: Any) -> type[Request]:
     """Return the model of a question about a scene: fields of its own, and the outputs to choose from."""
     # Built by a call, because a type made of names that are only known here is no type to the checker.
     outputs: Any = list.__class_getitem__(Literal.__getitem__(tuple(scene.outputs)))
@@ -116,7 +102,7 @@ def request_model(scene: type[ConstrainedSystem], title: str, **own: Any) -> typ
     return made
 
 
-def answer_model(scene: type[ConstrainedSystem], base: type[View], title: str, number: type) -> type[View]:
+def answer_model(scene: type[NamedScene], base: type[View], title: str, number: type) -> type[View]:
     """Return the model of an answer: the figures and columns that the scene declares, in one kind of number."""
     hints = get_type_hints(scene.figures_type, include_extras=True)
     own: dict[str, Any] = {name: (_in(hint, number) | None, None) for name, hint in hints.items()}
@@ -138,7 +124,7 @@ class SceneAnswerInDoubles(SceneAnswer[float]):
     accuracy: Accuracy
 
 
-def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
+def request_of(scene: type[NamedScene]) -> type[Request]:
     """Return the request that has the scene's own fields, and beside them times and options."""
     hints = get_type_hints(scene, include_extras=True)
     own: dict[str, Any] = {
@@ -150,7 +136,7 @@ def request_of(scene: type[ConstrainedSystem]) -> type[Request]:
     return request_model(scene, "", **own)
 
 
-def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
+def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:
     """Return what answers a question about a scene."""
     names = tuple(entry.name for entry in fields(scene))
 
@@ -158,16 +144,18 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
         system = scene(**{name: getattr(question, name) for name in names})
         times = None if question.times is None else sample_times(question.times, budget)
         wanted = None if question.outputs is None else frozenset(question.outputs)
-        found = system.answer(times, wanted, question.accuracy)
-        if question.round is not None:
-            found = found.rounded(question.round)
-        return answer_of(found, found.accuracy, found.work, found.requested_samples)
+        found = system.answer(times, wanted, question.accuracy, question.round)
+        motion = found.trajectory
+        samples = None if motion is None else {name: motion[name] for name in ("time", *motion.columns)}
+        return answer_of(found, accuracy_fields(found.accuracy), found.work, found.requested_samples, samples)
 
     return answer
 
 
-def answer_of(found: Any, accuracy: Any, work: Work, requested_samples: int) -> Answer:
-    """Return the fields of an answer that core has found, in either kind of number."""
+def answer_of(
+    found: Any, accuracy: Answer, work: Work, requested_samples: int, samples: Mapping[str, Any] | None
+) -> Answer:
+    """Return the fields of an answer that core has found, in either kind of number; `samples` are by column."""
     return {
         "model": found.model,
         "accuracy": accuracy,
@@ -176,7 +164,7 @@ def answer_of(found: Any, accuracy: Any, work: Work, requested_samples: int) -> 
         "ended": found.ended,
         **found.figures,
         "warnings": found.warnings,
-        **({} if found.trajectory is None else {"trajectory": dict(found.trajectory)}),
+        **({} if samples is None else {"trajectory": samples}),
     }
 
 
@@ -216,28 +204,42 @@ def scene_probe(
     return PlanningProbe(handle(question.model_copy(update={"times": few}), budget), growth)
 
 
+def price_of(scene: type[NamedScene]) -> CalibratedCost:
+    """Return the price of questions about a scene; as long as it is not measured, that of the costliest that is."""
+    operation, measured = operation_of(scene), calibration().seconds
+    if operation in measured:
+        return CalibratedCost(operation, scene_counts)
+    known = [costs for name, costs in measured.items() if name.startswith("scene_")]
+    highest = {name: max(costs.get(name, 0.0) for costs in known) for costs in known for name in costs}
+    return CalibratedCost(operation, scene_counts, highest | {"times": SAMPLE_IN_BALLS})
+
+
 @cache
-def questions() -> tuple[PostRoute, ...]:
+def scene_routes(scenes: tuple[type[NamedScene], ...]) -> tuple[PostRoute, ...]:
     """Return one route for each scene."""
-    return tuple(
-        PostRoute(
-            f"/v1/scenes/{name_of(scene)}",
-            operation_of(scene),
-            summary_of(scene),
-            "scenes",
-            request_of(scene),
-            answer_model(scene, SceneAnswerInDoubles, "", float),
-            answering(scene),
-            CalibratedCost(operation_of(scene), scene_counts),
-            lambda question: question.times is None or few_times(question.times),
-            partial(scene_probe, answering(scene), sample_times, FEW),
-            warming=WARMING.get(name_of(scene), ()),
-        )
-        for scene in members()
+    return tuple(map(_route, scenes))
+
+
+def _route(scene: type[NamedScene]) -> PostRoute:
+    answer = answer_model(scene, SceneAnswerInDoubles, "", float)
+    return PostRoute(
+        f"/v1/scenes/{name_of(scene)}",
+        operation_of(scene),
+        summary_of(scene),
+        "scenes",
+        request_of(scene),
+        answer,
+        answering(scene),
+        price_of(scene),
+        lambda question: question.times is None or few_times(question.times),
+        partial(scene_probe, answering(scene), sample_times, FEW),
+        examples={name: Example(one.summary, one.question) for name, one in scene.examples.items()},
+        warming=scene.warming,
+        representations={SVG: scene_drawing(answer)},
     )
 
 
-def scenes() -> list[dict[str, Any]]:
+def scene_entries(scenes: tuple[type[NamedScene], ...]) -> list[dict[str, Any]]:
     """Return the catalogue of scenes as it is published."""
     return [
         {
@@ -245,7 +247,7 @@ def scenes() -> list[dict[str, Any]]:
             "path": f"/v1/scenes/{name_of(scene)}",
             "summary": summary_of(scene),
             "outputs": list(scene.outputs),
-            "example": dict(next(iter(examples()[operation_of(scene)].values())).question),
+            "example": dict(next(iter(scene.examples.values())).question),
         }
-        for scene in members()
+        for scene in scenes
     ]

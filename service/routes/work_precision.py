@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from core.bodies import Body
-from core.errors import InvalidParameter
+from core.errors import InvalidParameter, inside_field
 from core.multibody.generic_equation import weight_of
 from core.multibody.modelling import system_of
 from core.notices import Notice
@@ -18,8 +18,7 @@ from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Method, Radau
-from core.systems.solve import inside_field
-from core.systems.system import System
+from core.systems.system import InitialValueProblem
 from core.work_precision import (
     DEFAULT_RUNS,
     SCIPY_TOLERANCES,
@@ -139,7 +138,7 @@ def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Ans
     if question.scene is not None:
         require_one(question, "body", "scene")
         with inside_field("scene"):
-            system: System = system_of(question.scene.scene())
+            system: InitialValueProblem = system_of(question.scene.scene())
     else:
         body, rates = question.rotation()
         system = turning = TorqueFree(properties_of(body), np.array(rates))

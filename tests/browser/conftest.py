@@ -62,7 +62,9 @@ def opened(browser: Any, base: str) -> Iterator[Callable[..., Any]]:
     """Open a page and wait until it has answered; at the end, whatever it wrote to its console fails the test."""
     contexts, messages = [], []
 
-    def open_page(path: str = "/", *, expected: tuple[str, ...] = (), watch: Any = None, **options: Any) -> Any:
+    def open_page(
+        path: str = "/", *, expected: tuple[str, ...] = (), watch: Any = None, before: Any = None, **options: Any
+    ) -> Any:
         options = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"} | options
         context = browser.new_context(**options)
         contexts.append(context)
@@ -71,6 +73,8 @@ def opened(browser: Any, base: str) -> Iterator[Callable[..., Any]]:
         page.on("pageerror", lambda error: messages.append(str(error)))
         if watch is not None:
             page.on("response", watch)
+        if before is not None:
+            before(page)
         page.goto(base + path)
         page.wait_for_selector("body[data-ready]", timeout=60_000)
         return page

@@ -58,6 +58,13 @@ def test_touch_scrolls_over_the_pictures(opened, path):
     assert page.evaluate("scrollY") > 80
 
 
+def counting(page):
+    """Return a session with the browser that counts the processor time of the page's main thread."""
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+    return session
+
+
 @pytest.mark.parametrize("path", ["/", "/scenes", "/docs"])
 def test_weight_and_time(opened, base, path):
     sizes: dict[str, int] = {}
@@ -65,15 +72,22 @@ def test_weight_and_time(opened, base, path):
     def weigh(response):
         sizes[response.url] = len(gzip.compress(response.body(), 9))
 
-    start = time.perf_counter()
-    page = opened(path, watch=weigh)
-    seconds = time.perf_counter() - start
-    page.wait_for_load_state("networkidle")
+    # Each time in a new context, whose cache is empty; the least time is the one that others disturbed least.
+    seconds, busy = [], []
+    for _ in range(3):
+        sessions = []
+        start = time.perf_counter()
+        page = opened(path, watch=weigh, before=lambda page, found=sessions: found.append(counting(page)))
+        seconds.append(time.perf_counter() - start)
+        metrics = sessions[0].send("Performance.getMetrics")["metrics"]
+        busy += [metric["value"] for metric in metrics if metric["name"] == "TaskDuration"]
+        page.wait_for_load_state("networkidle")
     files = {url: size for url, size in sizes.items() if "/v1/" not in url}
     assert all(urlsplit(url).netloc == urlsplit(base).netloc for url in sizes)
     assert 50_000 < sum(files.values()) <= 700_000
     FIGURES.append(
-        f"{path}: {len(files)} files, {sum(files.values()) / 1e3:.0f} kB gzipped, ready after {seconds:.2f} s"
+        f"{path}: {len(files)} files, {sum(files.values()) / 1e3:.0f} kB gzipped, ready after {min(seconds):.2f} s, "
+        f"of which {min(busy):.2f} s of processor time in the page"
     )
 
 

@@ -230,6 +230,8 @@ def test_long_work_shows_progress_and_can_be_cancelled(opened):
     progress = page.locator("#progress")
     progress.wait_for(state="visible", timeout=10_000)
     assert "computing" in progress.inner_text()
+    # The service's plan says how long it will take.
+    page.wait_for_function("document.getElementById('progress').innerText.includes('of about 1 s')")
     progress.locator("button").click()
     progress.wait_for(state="hidden")
     assert "Cancelled" in page.locator("#problem").inner_text()

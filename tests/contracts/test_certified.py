@@ -13,6 +13,7 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
+from service.routes.scene_catalogue import scene_catalogue
 
 ALL = {route.path: route for route in questions()}
 CERTIFIED = "/v1/certified/"
@@ -20,7 +21,7 @@ ROUTES = {
     path: route for path, route in ALL.items() if path.replace("/v1/", CERTIFIED) in ALL and CERTIFIED not in path
 }
 ANSWERING = RequestHandler(ALL.values(), Budget(), Limits())
-FREE = "/v1/rotation/"
+FREE, DESCRIBED = "/v1/rotation/", "/v1/scenes"
 EXACT = Context(prec=60)
 
 BODIES: dict[str, dict[str, Any]] = {
@@ -191,7 +192,29 @@ def shape(value: Any) -> Any:
     return [shape(entry) for entry in value] if isinstance(value, list) else isinstance(value, bool)
 
 
+SCENES = ("massive-pulley", "yo-yo", "bead-on-hoop", "lagrange-top", "two-masses-two-springs", "dumbbell")
+FOR_ALL_OF_IT = {"period", "phases", "events"}
+"""What is answered about described scenes in doubles alone."""
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_described_scenes_with_proven_digits_are_the_doubles(name: str) -> None:
+    question = dict(scene_catalogue()[name].question) | {"times": [0.0, 0.01, -0.005]}
+    question.pop("outputs", None)
+    few, many = answered(DESCRIBED, question), answered(CERTIFIED + "scenes", question | {"digits": 25})
+    assert set(few) - FOR_ALL_OF_IT == set(many)
+    for figure in ("accelerations", "forces", "energy"):
+        compare(many[figure], few[figure], 1e-15, figure)
+    assert many["trajectory"]["rows"] == few["trajectory"]["rows"]
+    for column, found in few["trajectory"]["columns"].items():
+        proven = many["trajectory"]["columns"][column]
+        assert proven["unit"] == found["unit"]
+        for row, rough in zip(proven["values"], found["values"], strict=True):
+            pairs = zip(row, rough, strict=True) if isinstance(rough, list) else [(row, rough)]
+            assert max(abs(number(x) - Decimal(y)) for x, y in pairs) <= Decimal(found["error"])
+
+
 def test_every_certified_question_is_sent() -> None:
-    assert {param.values[0] for param in asking()} == set(ROUTES)
+    assert {param.values[0] for param in asking()} | {DESCRIBED} == set(ROUTES)
     assert {path.replace("/v1/", CERTIFIED) for path in ROUTES} == {path for path in ALL if CERTIFIED in path}
-    assert len(ROUTES) == 7
+    assert len(ROUTES) == 8

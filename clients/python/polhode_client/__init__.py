@@ -2,6 +2,7 @@
 
 from polhode_client.client import AsyncClient, Client
 from polhode_client.operations import Operation
+from polhode_client.progress import Progress, bar
 from polhode_client.refused import Refused
 
-__all__ = ["AsyncClient", "Client", "Operation", "Refused"]
+__all__ = ["AsyncClient", "Client", "Operation", "Progress", "Refused", "bar"]

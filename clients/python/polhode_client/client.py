@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Any, Self, TypeVar, Unpack
 
@@ -14,6 +14,7 @@ from polhode_client import documents
 from polhode_client.arrays import ARCHIVE
 from polhode_client.exchange import Received, Sent, exchange
 from polhode_client.operations import OPERATIONS, AsyncOperations, Operation, Operations
+from polhode_client.progress import Progress, Reporting
 from polhode_client.study import Study
 
 C = TypeVar("C", httpx.Client, httpx.AsyncClient)
@@ -32,10 +33,21 @@ class Settings:
         Of one request, from sending it to the end of its answer (s). The service gives up what nobody waits for.
     patience : float
         How long to wait, in all, until a busy service may be sent a request again (s).
+    progress : callable, optional
+        Called with a `Progress` every quarter of a second while a request takes longer than a second, from another
+        thread. `polhode_client.bar` shows a bar on standard error. Each request is then planned first.
     """
 
-    def __init__(self, url: str, *, key: str | None = None, timeout: float = 60.0, patience: float = 60.0) -> None:
-        self.url, self.timeout, self.patience = url, timeout, patience
+    def __init__(
+        self,
+        url: str,
+        *,
+        key: str | None = None,
+        timeout: float = 60.0,
+        patience: float = 60.0,
+        progress: Callable[[Progress], object] | None = None,
+    ) -> None:
+        self.url, self.timeout, self.patience, self.progress = url, timeout, patience, progress
         self.headers = {} if key is None else {"authorization": f"Bearer {key}"}
 
     @property
@@ -65,9 +77,10 @@ class Client(Settings, Operations):
         key: str | None = None,
         timeout: float = 60.0,
         patience: float = 60.0,
+        progress: Callable[[Progress], object] | None = None,
         transport: httpx.BaseTransport | None = None,
     ) -> None:
-        super().__init__(url, key=key, timeout=timeout, patience=patience)
+        super().__init__(url, key=key, timeout=timeout, patience=patience, progress=progress)
         self._http = httpx.Client(base_url=url, headers=self.headers, transport=transport)
 
     def __enter__(self) -> Self:
@@ -92,12 +105,15 @@ class Client(Settings, Operations):
         return found
 
     def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
-        steps = exchange(OPERATIONS[name].at(**places), question, media, self.patience)
+        steps = exchange(
+            OPERATIONS[name].at(**places), question, media, self.patience, planned=self.progress is not None
+        )
         step = next(steps)
         while True:
             received = None
             if isinstance(step, Sent):
-                received = self._received(step)
+                with Reporting(self.progress, step.path, step.expected):
+                    received = self._received(step)
             else:
                 time.sleep(step)
             try:
@@ -129,9 +145,10 @@ class AsyncClient(Settings, AsyncOperations):
         key: str | None = None,
         timeout: float = 60.0,
         patience: float = 60.0,
+        progress: Callable[[Progress], object] | None = None,
         transport: httpx.AsyncBaseTransport | None = None,
     ) -> None:
-        super().__init__(url, key=key, timeout=timeout, patience=patience)
+        super().__init__(url, key=key, timeout=timeout, patience=patience, progress=progress)
         self._http = httpx.AsyncClient(base_url=url, headers=self.headers, transport=transport)
 
     async def __aenter__(self) -> Self:
@@ -147,12 +164,15 @@ class AsyncClient(Settings, AsyncOperations):
         await self._http.aclose()
 
     async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
-        steps = exchange(OPERATIONS[name].at(**places), question, media, self.patience)
+        steps = exchange(
+            OPERATIONS[name].at(**places), question, media, self.patience, planned=self.progress is not None
+        )
         step = next(steps)
         while True:
             received = None
             if isinstance(step, Sent):
-                received = await self._received(step)
+                with Reporting(self.progress, step.path, step.expected):
+                    received = await self._received(step)
             else:
                 await anyio.sleep(step)
             try:

@@ -665,7 +665,7 @@ class StabilityAnswer(TypedDict):
 
 
 class Equilibrium(TypedDict):
-    """Equilibrium"""
+    """A constant angular velocity, and what becomes of one near it."""
 
     axis: Floats | None
     moment: float | None
@@ -681,7 +681,7 @@ class Equilibrium(TypedDict):
 
 
 class Flip(TypedDict):
-    """Flip"""
+    """What becomes of a disturbed rotation about the middle axis."""
 
     disturbance: Floats
     interval: float | None
@@ -741,7 +741,7 @@ class EllipsoidAnswer(TypedDict):
 
 
 class SurfaceMesh(TypedDict):
-    """SurfaceMesh"""
+    """Triangles, counter-clockwise seen from outside."""
 
     vertices: Floats
     faces: Integers
@@ -749,7 +749,7 @@ class SurfaceMesh(TypedDict):
 
 
 class MeshQuality(TypedDict):
-    """MeshQuality"""
+    """How well the triangles stand for the ellipsoid."""
 
     watertight: bool
     euler_characteristic: int
@@ -759,7 +759,7 @@ class MeshQuality(TypedDict):
 
 
 class SurfaceGrid(TypedDict):
-    """SurfaceGrid"""
+    """Coordinates over longitude (down) and colatitude (along), both ends included."""
 
     x: Floats
     y: Floats
@@ -767,7 +767,7 @@ class SurfaceGrid(TypedDict):
 
 
 class Polhode(TypedDict):
-    """Polhode"""
+    """One curve; the last point is the first if it is closed."""
 
     regime: str
     closed: bool
@@ -1342,7 +1342,7 @@ class SceneEntry(TypedDict):
 
 
 class DescribedSceneRequest(TypedDict):
-    """Bodies, what connects them, and what is asked about them."""
+    """Bodies, what connects them, and what is requested of them."""
 
     gravity: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
     bodies: Mapping[str, SceneBody]
@@ -1506,7 +1506,7 @@ class MotionPhase(TypedDict):
 
 
 class SceneProblem(TypedDict):
-    """Something that mechanics does not decide: the motion ends there."""
+    """Something that mechanics does not decide, or that is not followed any further: the motion ends there."""
 
     code: str
     explanation: str
@@ -1535,7 +1535,7 @@ class SceneColumn(TypedDict):
 
 
 class SceneOccurrence(TypedDict):
-    """A time at which a quantity takes the value that was asked for."""
+    """A time at which a quantity takes the requested value."""
 
     quantity: str
     equals: float
@@ -1755,7 +1755,7 @@ class CertifiedStabilityAnswer(TypedDict):
 
 
 class CertifiedEquilibrium(TypedDict):
-    """CertifiedEquilibrium"""
+    """A constant angular velocity, and what becomes of one near it."""
 
     axis: list[str] | None
     moment: str | None
@@ -1771,7 +1771,7 @@ class CertifiedEquilibrium(TypedDict):
 
 
 class CertifiedFlip(TypedDict):
-    """CertifiedFlip"""
+    """What becomes of a disturbed rotation about the middle axis."""
 
     disturbance: list[str]
     interval: str | None
@@ -1808,7 +1808,7 @@ class CertifiedEllipsoidAnswer(TypedDict):
 
 
 class CertifiedSurfaceMesh(TypedDict):
-    """CertifiedSurfaceMesh"""
+    """Triangles, counter-clockwise seen from outside."""
 
     vertices: list[list[str]]
     faces: Integers
@@ -1816,7 +1816,7 @@ class CertifiedSurfaceMesh(TypedDict):
 
 
 class CertifiedMeshQuality(TypedDict):
-    """CertifiedMeshQuality"""
+    """How well the triangles stand for the ellipsoid."""
 
     watertight: bool
     euler_characteristic: int
@@ -1826,7 +1826,7 @@ class CertifiedMeshQuality(TypedDict):
 
 
 class CertifiedSurfaceGrid(TypedDict):
-    """CertifiedSurfaceGrid"""
+    """Coordinates over longitude (down) and colatitude (along), both ends included."""
 
     x: list[list[str]]
     y: list[list[str]]
@@ -1834,7 +1834,7 @@ class CertifiedSurfaceGrid(TypedDict):
 
 
 class CertifiedPolhode(TypedDict):
-    """CertifiedPolhode"""
+    """One curve; the last point is the first if it is closed."""
 
     regime: str
     closed: bool
@@ -2089,6 +2089,106 @@ class CertifiedChainSamples(TypedDict):
     position: list[str]
     velocity: list[str]
     apex_tension: NotRequired[list[str] | None]
+
+
+class CertifiedSceneRequest(TypedDict):
+    """Bodies, what connects them, and to how many digits they are asked about."""
+
+    gravity: NotRequired[Sequence[float | str | AngleInDegrees] | PolarVector]
+    bodies: Mapping[str, SceneBody]
+    connections: NotRequired[Sequence[SceneConnection]]
+    let: NotRequired[Mapping[str, float | str | AngleInDegrees]]
+    numbers: NotRequired[Literal["decimals", "doubles"]]
+    times: NotRequired[DecimalSpan | Sequence[float | str] | None]
+    outputs: NotRequired[Sequence[Literal["accelerations", "forces", "energy", "trajectory"]] | None]
+    digits: int
+
+
+class CertifiedDescribedAnswer(TypedDict):
+    """The requested answer about a scene, numbers as decimal strings."""
+
+    signature: Signature
+    warnings: list[Notice]
+    model: CertifiedDescribedModel
+    accelerations: NotRequired[dict[str, CertifiedBodyAccelerations] | None]
+    forces: NotRequired[dict[str, CertifiedConnectionForce] | None]
+    energy: NotRequired[CertifiedStartEnergy | None]
+    accuracy: CertifiedAccuracy
+    ended: str | None
+    trajectory: NotRequired[CertifiedMotion | None]
+
+
+class CertifiedDescribedModel(TypedDict):
+    """The smallest model of a scene, and what was noticed on the way."""
+
+    name: str
+    why: str
+    degrees_of_freedom: int
+    mobility: int
+    coordinates: int
+    rows: int
+    described: Integers
+    apart: list[CertifiedScenePart]
+    noticed: list[str]
+
+
+class CertifiedScenePart(TypedDict):
+    """A part of a scene that has no force or connection in common with the others, and its smallest model."""
+
+    name: str
+    why: str
+    degrees_of_freedom: int
+    coordinates: list[str]
+    period: str | None
+    precession: str | None
+    modes: list[CertifiedSmallMotion]
+
+
+class CertifiedSmallMotion(TypedDict):
+    """One mode: q = exp(growth_rate t) cos(frequency t)."""
+
+    frequency: str
+    growth_rate: str
+
+
+class CertifiedBodyAccelerations(TypedDict):
+    """Accelerations of a body at the start; null beyond the range of doubles."""
+
+    linear: list[str | None]
+    angular: str | list[str | None] | None
+
+
+class CertifiedConnectionForce(TypedDict):
+    """A force of a connection at the start."""
+
+    value: str | None
+    unit: str
+    determined: bool
+    shared_with: list[str]
+
+
+class CertifiedStartEnergy(TypedDict):
+    """Energies at the start; the potential of gravity is zero at the origin."""
+
+    kinetic: str | None
+    potential: str | None
+    total: str | None
+    conserved: bool
+
+
+class CertifiedMotion(TypedDict):
+    """Columns by name, such as rod.angle, at the times that the motion reaches."""
+
+    time: list[str]
+    rows: Integers
+    columns: dict[str, CertifiedColumn]
+
+
+class CertifiedColumn(TypedDict):
+    """One quantity at every time."""
+
+    values: list[str | list[str]]
+    unit: str
 
 
 class PlanRequest(TypedDict):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -13,6 +14,7 @@ from polhode_client.operations import Operation
 from polhode_client.refused import Refused
 
 BUSY = (429, 503)
+PLAN = "/v1/plan"
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,8 @@ class Sent:
     path: str
     headers: Mapping[str, str]
     body: bytes | None
+    expected: float | None = None
+    """Predicted time of the answer (s), if it was planned."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,12 @@ Step = Sent | float
 
 
 def exchange(
-    operation: Operation, question: Mapping[str, Any] | None, media: str | None, patience: float
+    operation: Operation,
+    question: Mapping[str, Any] | None,
+    media: str | None,
+    patience: float,
+    *,
+    planned: bool = False,
 ) -> Generator[Step, Received | None, Any]:
     """Yield what is to be done, and return the answer.
 
@@ -49,6 +58,8 @@ def exchange(
         Media type of a text; None for a document.
     patience : float
         Longest sum of the waits before a request is sent again (s).
+    planned : bool
+        Whether to have the question planned first, if it is sent as JSON.
 
     Raises
     ------
@@ -60,8 +71,13 @@ def exchange(
     body = None
     if question is not None:
         body, headers["content-type"] = body_of(question)
+    expected = None
+    if planned and body is not None and headers["content-type"] != ARCHIVE and operation.path != PLAN:
+        plan = b'{"path": "%s", "request": %s}' % (operation.path.encode(), body)
+        received = yield Sent("POST", PLAN, {"content-type": "application/json"}, plan)
+        expected = _expected(received)
     while True:
-        received = yield Sent(operation.method, operation.path, headers, body)
+        received = yield Sent(operation.method, operation.path, headers, body, expected)
         assert received is not None
         if received.status < 400:
             kind = received.headers.get("content-type", "").partition(";")[0]
@@ -71,6 +87,14 @@ def exchange(
             raise Refused.read(received.status, received.body, wait)
         patience -= max(wait, 0.01)
         yield wait
+
+
+def _expected(received: Received | None) -> float | None:
+    """Return the predicted time of a plan (s), None if there is none."""
+    if received is None or received.status != 200:
+        return None
+    cost = json.loads(received.body)["cost"]
+    return None if cost is None else float(cost["milliseconds"]) / 1000.0
 
 
 def _seconds(header: str | None) -> float | None:

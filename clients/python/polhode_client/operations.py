@@ -119,6 +119,11 @@ OPERATIONS: Mapping[str, Operation] = {
         "/v1/certified/scenes/chain-on-wedge",
         "An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven",
     ),
+    "certified_described_scene": Operation(
+        "POST",
+        "/v1/certified/scenes",
+        "A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven",
+    ),
     "plan": Operation(
         "POST", "/v1/plan", "Model, method, cost, error and refusals of any other question, which is not answered"
     ),
@@ -155,6 +160,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "get_openapi": Operation("GET", "/openapi.json", "The OpenAPI document"),
     "get_start_page": Operation("GET", "/", "A rotating body beside its energy ellipsoid, to look at and to change"),
     "get_scenes_page": Operation("GET", "/scenes", "Every scene of the catalogue in motion, and your own"),
+    "get_studies_page": Operation("GET", "/studies", "Studies with their progress, maps, histograms and results"),
     "get_documentation": Operation("GET", "/docs", "The reference of the API, to read and to try"),
 }
 
@@ -178,9 +184,19 @@ class Operations(ABC):
         found: documents.TrajectoryAnswer = self._ask("rotation_trajectory", question, None)
         return found
 
+    def rotation_trajectory_svg(self, **question: Unpack[documents.TrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times, as a drawing."""
+        found: str = self._ask("rotation_trajectory", question, "image/svg+xml")
+        return found
+
     def rotation_ensemble(self, **question: Unpack[documents.EnsembleRequest]) -> documents.EnsembleAnswer:
         """Many free rotations of one body, from given starts or a sample of one energy."""
         found: documents.EnsembleAnswer = self._ask("rotation_ensemble", question, None)
+        return found
+
+    def rotation_ensemble_svg(self, **question: Unpack[documents.EnsembleRequest]) -> str:
+        """Many free rotations of one body, from given starts or a sample of one energy, as a drawing."""
+        found: str = self._ask("rotation_ensemble", question, "image/svg+xml")
         return found
 
     def precession(self, **question: Unpack[documents.PrecessionRequest]) -> documents.PrecessionAnswer:
@@ -230,14 +246,29 @@ class Operations(ABC):
         found: documents.UnwindingShaftsAnswer = self._ask("scene_unwinding_shafts", question, None)
         return found
 
+    def scene_unwinding_shafts_svg(self, **question: Unpack[documents.UnwindingShaftsRequest]) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound, as a drawing."""
+        found: str = self._ask("scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     def scene_rod_in_hole(self, **question: Unpack[documents.RodInHoleRequest]) -> documents.RodInHoleAnswer:
         """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall."""
         found: documents.RodInHoleAnswer = self._ask("scene_rod_in_hole", question, None)
         return found
 
+    def scene_rod_in_hole_svg(self, **question: Unpack[documents.RodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall, as a drawing."""
+        found: str = self._ask("scene_rod_in_hole", question, "image/svg+xml")
+        return found
+
     def scene_chain_on_wedge(self, **question: Unpack[documents.ChainOnWedgeRequest]) -> documents.ChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
         found: documents.ChainOnWedgeAnswer = self._ask("scene_chain_on_wedge", question, None)
+        return found
+
+    def scene_chain_on_wedge_svg(self, **question: Unpack[documents.ChainOnWedgeRequest]) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end, as a drawing."""
+        found: str = self._ask("scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
     def list_scenes(self) -> documents.SceneCatalogue:
@@ -260,6 +291,11 @@ class Operations(ABC):
     ) -> documents.CertifiedTrajectoryAnswer:
         """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven."""
         found: documents.CertifiedTrajectoryAnswer = self._ask("certified_rotation_trajectory", question, None)
+        return found
+
+    def certified_rotation_trajectory_svg(self, **question: Unpack[documents.CertifiedTrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven, as a drawing."""
+        found: str = self._ask("certified_rotation_trajectory", question, "image/svg+xml")
         return found
 
     def certified_precession(
@@ -295,6 +331,13 @@ class Operations(ABC):
         found: documents.CertifiedUnwindingShaftsAnswer = self._ask("certified_scene_unwinding_shafts", question, None)
         return found
 
+    def certified_scene_unwinding_shafts_svg(
+        self, **question: Unpack[documents.CertifiedUnwindingShaftsRequest]
+    ) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven, as a drawing."""
+        found: str = self._ask("certified_scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     def certified_scene_rod_in_hole(
         self, **question: Unpack[documents.CertifiedRodInHoleRequest]
     ) -> documents.CertifiedRodInHoleAnswer:
@@ -302,11 +345,33 @@ class Operations(ABC):
         found: documents.CertifiedRodInHoleAnswer = self._ask("certified_scene_rod_in_hole", question, None)
         return found
 
+    def certified_scene_rod_in_hole_svg(self, **question: Unpack[documents.CertifiedRodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven, as a drawing."""
+        found: str = self._ask("certified_scene_rod_in_hole", question, "image/svg+xml")
+        return found
+
     def certified_scene_chain_on_wedge(
         self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
     ) -> documents.CertifiedChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven."""
         found: documents.CertifiedChainOnWedgeAnswer = self._ask("certified_scene_chain_on_wedge", question, None)
+        return found
+
+    def certified_scene_chain_on_wedge_svg(self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven, as a drawing."""
+        found: str = self._ask("certified_scene_chain_on_wedge", question, "image/svg+xml")
+        return found
+
+    def certified_described_scene(
+        self, **question: Unpack[documents.CertifiedSceneRequest]
+    ) -> documents.CertifiedDescribedAnswer:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven."""
+        found: documents.CertifiedDescribedAnswer = self._ask("certified_described_scene", question, None)
+        return found
+
+    def certified_described_scene_svg(self, **question: Unpack[documents.CertifiedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven, as a drawing."""
+        found: str = self._ask("certified_described_scene", question, "image/svg+xml")
         return found
 
     def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
@@ -399,6 +464,11 @@ class Operations(ABC):
         found: str = self._ask("get_scenes_page", None, "text/html")
         return found
 
+    def get_studies_page(self) -> str:
+        """Studies with their progress, maps, histograms and results."""
+        found: str = self._ask("get_studies_page", None, "text/html")
+        return found
+
     def get_documentation(self) -> str:
         """The reference of the API, to read and to try."""
         found: str = self._ask("get_documentation", None, "text/html")
@@ -426,9 +496,19 @@ class AsyncOperations(ABC):
         found: documents.TrajectoryAnswer = await self._ask("rotation_trajectory", question, None)
         return found
 
+    async def rotation_trajectory_svg(self, **question: Unpack[documents.TrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times, as a drawing."""
+        found: str = await self._ask("rotation_trajectory", question, "image/svg+xml")
+        return found
+
     async def rotation_ensemble(self, **question: Unpack[documents.EnsembleRequest]) -> documents.EnsembleAnswer:
         """Many free rotations of one body, from given starts or a sample of one energy."""
         found: documents.EnsembleAnswer = await self._ask("rotation_ensemble", question, None)
+        return found
+
+    async def rotation_ensemble_svg(self, **question: Unpack[documents.EnsembleRequest]) -> str:
+        """Many free rotations of one body, from given starts or a sample of one energy, as a drawing."""
+        found: str = await self._ask("rotation_ensemble", question, "image/svg+xml")
         return found
 
     async def precession(self, **question: Unpack[documents.PrecessionRequest]) -> documents.PrecessionAnswer:
@@ -478,9 +558,19 @@ class AsyncOperations(ABC):
         found: documents.UnwindingShaftsAnswer = await self._ask("scene_unwinding_shafts", question, None)
         return found
 
+    async def scene_unwinding_shafts_svg(self, **question: Unpack[documents.UnwindingShaftsRequest]) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound, as a drawing."""
+        found: str = await self._ask("scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     async def scene_rod_in_hole(self, **question: Unpack[documents.RodInHoleRequest]) -> documents.RodInHoleAnswer:
         """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall."""
         found: documents.RodInHoleAnswer = await self._ask("scene_rod_in_hole", question, None)
+        return found
+
+    async def scene_rod_in_hole_svg(self, **question: Unpack[documents.RodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall, as a drawing."""
+        found: str = await self._ask("scene_rod_in_hole", question, "image/svg+xml")
         return found
 
     async def scene_chain_on_wedge(
@@ -488,6 +578,11 @@ class AsyncOperations(ABC):
     ) -> documents.ChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
         found: documents.ChainOnWedgeAnswer = await self._ask("scene_chain_on_wedge", question, None)
+        return found
+
+    async def scene_chain_on_wedge_svg(self, **question: Unpack[documents.ChainOnWedgeRequest]) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end, as a drawing."""
+        found: str = await self._ask("scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
     async def list_scenes(self) -> documents.SceneCatalogue:
@@ -512,6 +607,11 @@ class AsyncOperations(ABC):
     ) -> documents.CertifiedTrajectoryAnswer:
         """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven."""
         found: documents.CertifiedTrajectoryAnswer = await self._ask("certified_rotation_trajectory", question, None)
+        return found
+
+    async def certified_rotation_trajectory_svg(self, **question: Unpack[documents.CertifiedTrajectoryRequest]) -> str:
+        """The free rotation of a body: angular velocity and, if requested, attitude at given times; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_rotation_trajectory", question, "image/svg+xml")
         return found
 
     async def certified_precession(
@@ -549,6 +649,13 @@ class AsyncOperations(ABC):
         )
         return found
 
+    async def certified_scene_unwinding_shafts_svg(
+        self, **question: Unpack[documents.CertifiedUnwindingShaftsRequest]
+    ) -> str:
+        """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_scene_unwinding_shafts", question, "image/svg+xml")
+        return found
+
     async def certified_scene_rod_in_hole(
         self, **question: Unpack[documents.CertifiedRodInHoleRequest]
     ) -> documents.CertifiedRodInHoleAnswer:
@@ -556,11 +663,35 @@ class AsyncOperations(ABC):
         found: documents.CertifiedRodInHoleAnswer = await self._ask("certified_scene_rod_in_hole", question, None)
         return found
 
+    async def certified_scene_rod_in_hole_svg(self, **question: Unpack[documents.CertifiedRodInHoleRequest]) -> str:
+        """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_scene_rod_in_hole", question, "image/svg+xml")
+        return found
+
     async def certified_scene_chain_on_wedge(
         self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
     ) -> documents.CertifiedChainOnWedgeAnswer:
         """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven."""
         found: documents.CertifiedChainOnWedgeAnswer = await self._ask("certified_scene_chain_on_wedge", question, None)
+        return found
+
+    async def certified_scene_chain_on_wedge_svg(
+        self, **question: Unpack[documents.CertifiedChainOnWedgeRequest]
+    ) -> str:
+        """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_scene_chain_on_wedge", question, "image/svg+xml")
+        return found
+
+    async def certified_described_scene(
+        self, **question: Unpack[documents.CertifiedSceneRequest]
+    ) -> documents.CertifiedDescribedAnswer:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven."""
+        found: documents.CertifiedDescribedAnswer = await self._ask("certified_described_scene", question, None)
+        return found
+
+    async def certified_described_scene_svg(self, **question: Unpack[documents.CertifiedSceneRequest]) -> str:
+        """A scene of your own: bodies and what connects them, answered by the smallest model that suffices; every digit proven, as a drawing."""
+        found: str = await self._ask("certified_described_scene", question, "image/svg+xml")
         return found
 
     async def plan(self, **question: Unpack[documents.PlanRequest]) -> documents.PlanAnswer:
@@ -651,6 +782,11 @@ class AsyncOperations(ABC):
     async def get_scenes_page(self) -> str:
         """Every scene of the catalogue in motion, and your own."""
         found: str = await self._ask("get_scenes_page", None, "text/html")
+        return found
+
+    async def get_studies_page(self) -> str:
+        """Studies with their progress, maps, histograms and results."""
+        found: str = await self._ask("get_studies_page", None, "text/html")
         return found
 
     async def get_documentation(self) -> str:

@@ -9,7 +9,7 @@ from core.errors import NotApplicable
 from core.quantities import check
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Family, Integration
-from core.systems.system import Floats, System
+from core.systems.system import Floats, InitialValueProblem
 from core.systems.trajectory import Work
 from core.work import spend
 
@@ -32,7 +32,7 @@ class ClosedFormEvaluation(AbstractMethod):
     def __post_init__(self) -> None:
         check(self)
 
-    def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
+    def integrate(self, system: InitialValueProblem, times: Floats, budget: Budget | None = None) -> Integration:
         """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""
         exact = system.closed_form()
         if exact is None:

@@ -19,42 +19,31 @@ from core.compiled import kernel
 from core.double_double import two_sum
 from core.errors import NotApplicable
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import NO_CONVERGENCE, OVERFLOW, FixedStep, keep, march_by, replace
+from core.systems.methods.fixed_step import NO_CONVERGENCE, FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
-from core.systems.system import DISCRETE_STEP, Floats, Integers, System
+from core.systems.system import DISCRETE_STEP, Floats, InitialValueProblem, Integers
 
 
-@kernel(march_by(DISCRETE_STEP))
-def _march(
+@kernel(steps_by(DISCRETE_STEP))
+def _advance(
     advance: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
-    increment, tail = np.empty_like(state), np.zeros_like(state)
-    grid, grid_tail = np.empty_like(state), np.empty_like(state)
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            replace(grid_tail, tail)
-            for _ in range(count[i, run]):
-                if not advance(step[i, run], state, parameters, increment):
-                    tally[1] = NO_CONVERGENCE
-                    return i
-                for k in range(state.size):
-                    # The rounding of the sum is carried on, which keeps the first integrals from drifting.
-                    state[k], tail[k] = two_sum(state[k], increment[k] + tail[k])
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-        replace(tail, grid_tail)
-    return len(count)
+    state, tail, increment = carried[0], carried[1], work[0]
+    for _ in range(count):
+        if not advance(h, state, parameters, increment):
+            return NO_CONVERGENCE
+        for k in range(state.size):
+            # The rounding of the sum is carried on, which keeps the first integrals from drifting.
+            state[k], tail[k] = two_sum(state[k], increment[k] + tail[k])
+    return 0
 
 
 @dataclass(frozen=True)
@@ -71,6 +60,7 @@ class DiscreteMoserVeselov(FixedStep):
     kind: Literal["discrete-moser-veselov"] = "discrete-moser-veselov"
 
     order: ClassVar[int] = 2
+    work_vectors: ClassVar[int] = 1
     family: ClassVar[Family] = "structure-preserving"
     preserves: ClassVar[tuple[Invariance, ...]] = ("every first integral", "time symmetry")
     when_to_use: ClassVar[str] = (
@@ -81,14 +71,17 @@ class DiscreteMoserVeselov(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         self._law(system)
         return 1
 
     def _compiled(self) -> Any:
-        return _march
+        return _advance
 
-    def _law(self, system: System) -> Any:
+    def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
+        return np.stack([start, np.zeros_like(start)]), 0
+
+    def _law(self, system: InitialValueProblem) -> Any:
         discrete = system.structure.discrete
         if discrete is None:
             raise NotApplicable(

@@ -34,7 +34,7 @@ from core.systems.methods.dormand_prince_tableau import ERROR_3 as E3
 from core.systems.methods.dormand_prince_tableau import ERROR_5 as E5
 from core.systems.methods.dormand_prince_tableau import INTERPOLANT, STAGES, A, B, C
 from core.systems.methods.method import PROJECTED, Family, Leg, Marching, Units
-from core.systems.system import PROJECTION, VECTOR_FIELD, Floats, Integers, System, unconstrained
+from core.systems.system import PROJECTION, VECTOR_FIELD, Floats, InitialValueProblem, Integers, unconstrained
 
 SMALLEST_TOLERANCE = 1e-16
 """Below this the estimate sees nothing but round-off; the samples stop improving from about 1e-15 on."""
@@ -280,7 +280,7 @@ class DormandPrince853(Marching):
         """Return the same method with sixteen times the tolerance, None where that says nothing any more."""
         return replace(self, tolerance=self.tolerance * 16) if self.tolerance < 1 / 16 else None
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         samples = np.empty((targets.size, start.size))
         tally, reached = np.zeros(3, np.int64), np.zeros(1)
         project = system.structure.projection

@@ -5,44 +5,34 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
 from core.compiled import kernel
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import ONE_STEP, OVERFLOW, FixedStep, keep, march_by, replace
+from core.systems.methods.fixed_step import ONE_STEP, FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 
-@kernel(march_by(VECTOR_FIELD))
-def _march(
+@kernel(steps_by(VECTOR_FIELD))
+def _advance(
     field: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
-    slope, grid = np.empty_like(state), np.empty_like(state)
-    constrained = tally[3] == 1
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            h = step[i, run]
-            for j in range(count[i, run]):
-                field(begin[i, run] + j * h, state, parameters, slope)
-                for k in range(state.size):
-                    state[k] += h * slope[k]
-                if constrained:
-                    project(state, parameters)
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-    return len(count)
+    state, slope = carried[0], work[0]
+    constrained = tally[2] == 1
+    for j in range(count):
+        field(start + j * h, state, parameters, slope)
+        for k in range(state.size):
+            state[k] += h * slope[k]
+        if constrained:
+            project(state, parameters)
+    return 0
 
 
 @dataclass(frozen=True)
@@ -59,6 +49,7 @@ class ExplicitEuler(FixedStep):
     kind: Literal["explicit-euler"] = "explicit-euler"
 
     order: ClassVar[int] = 1
+    work_vectors: ClassVar[int] = 1
     family: ClassVar[Family] = "explicit"
     between_steps: ClassVar[str] = ONE_STEP + " For this method that is the straight line to the next grid point."
     on_constraints: ClassVar[str] = PROJECTED
@@ -70,8 +61,8 @@ class ExplicitEuler(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 1
 
     def _compiled(self) -> Any:
-        return _march
+        return _advance

@@ -28,7 +28,16 @@ from core.double_double import two_prod
 from core.errors import InvalidParameter
 from core.quantities import Duration
 from core.systems.methods.method import Leg, Marching, Units
-from core.systems.system import PROJECTION, Floats, Integers, System, unconstrained
+from core.systems.system import (
+    DISCRETE_STEP,
+    PART_FLOW,
+    PROJECTION,
+    VECTOR_FIELD,
+    Floats,
+    InitialValueProblem,
+    Integers,
+    unconstrained,
+)
 
 _doubles = types.float64[::1]
 _integers = types.int64[::1]
@@ -36,30 +45,42 @@ _table = types.float64[:, ::1]
 _counts = types.int64[:, ::1]
 
 
-def march_by(law: Any) -> Any:
-    """Return the signature of a compiled march by a law of motion that is itself compiled with the signature `law`.
+def steps_by(law: Any) -> Any:
+    """Return the signature of a method's compiled steps by a law of motion that is compiled with the signature `law`.
 
-    Its arguments are (law, projection, begin, step, count, state, parameters, samples to be filled in, tally). The
-    projection puts the state onto the constraints after each step, if ``tally[3]`` says there are any. `begin`, `step`
-    and `count`, shape (n, 2), hold for each sample the start, the signed length and the number of two runs of steps:
-    along the grid, and from the grid to the sample. The march goes on from the state between the two. The result is the
-    number of samples that were reached. ``tally[0]`` holds the evaluations that are left beyond the declared ones, and
-    is counted down by methods that need such; ``tally[1]`` says why a march stopped early; ``tally[2]`` holds the
-    declared evaluations of each step.
-
-    Every method has the loops of its march to itself: handing a step and its arrays to a common march was measured to
-    cost 5 to 30 ns a step, where a step of forward Euler takes 9.
+    Its arguments are (law, projection, start, step, count, carried, work, parameters, tally): `count` steps of the
+    signed length `step` from the time `start`. The rows of `carried` go from step to step, the first of them is the
+    state; those of `work` are scratch. The projection puts the state onto the constraints after each step, if
+    ``tally[2]`` says there are any. ``tally[0]`` holds the evaluations that are left beyond the declared ones, and is
+    counted down by methods that need such; ``tally[1]`` holds the declared evaluations of each step. The result is 0,
+    or why the steps end early.
     """
-    samples = types.float64[:, ::1]
     return types.int64(
+        types.FunctionType(law),
+        types.FunctionType(PROJECTION),
+        types.float64,
+        types.float64,
+        types.int64,
+        _table,
+        _table,
+        _doubles,
+        _integers,
+    )
+
+
+def _march_by(law: Any) -> Any:
+    """Return the signature of the march whose steps go by a law of motion of the signature `law`."""
+    return types.int64(
+        types.FunctionType(steps_by(law)),
         types.FunctionType(law),
         types.FunctionType(PROJECTION),
         _table,
         _table,
         _counts,
+        _table,
+        _table,
         _doubles,
-        _doubles,
-        samples,
+        _table,
         _integers,
     )
 
@@ -98,21 +119,44 @@ def lay_out(targets: Floats, step: float, parts: int, begin: Floats, length: Flo
     return parts * done + further
 
 
-@kernel(types.void(_doubles, _doubles))
-def replace(target: Floats, source: Floats) -> None:
-    """Copy a state over another."""
-    for k in range(target.size):
-        target[k] = source[k]
+@kernel(*(_march_by(law) for law in (VECTOR_FIELD, PART_FLOW, DISCRETE_STEP)))
+def _march(
+    advance: Any,
+    law: Any,
+    project: Any,
+    begin: Floats,
+    step: Floats,
+    count: Integers,
+    carried: Floats,
+    work: Floats,
+    parameters: Floats,
+    samples: Floats,
+    tally: Integers,
+) -> int:
+    """March over the samples and return how many were reached; ``tally[3]`` says why it stopped early.
 
-
-@kernel(types.boolean(_doubles, types.int64, types.float64[:, ::1]))
-def keep(state: Floats, i: int, samples: Floats) -> bool:
-    """Store a state as a sample and tell whether all of it is finite."""
-    finite = True
-    for k in range(state.size):
-        samples[i, k] = state[k]
-        finite = finite and math.isfinite(state[k])
-    return finite
+    `begin`, `step` and `count`, shape (n, 2), hold for each sample the start, the signed length and the number of two
+    runs of steps: along the grid, and from the grid to the sample. The march goes on from the state between the two.
+    """
+    grid = np.empty_like(carried)
+    for i in range(len(count)):
+        tally[3] = advance(law, project, begin[i, 0], step[i, 0], count[i, 0], carried, work, parameters, tally)
+        if tally[3]:
+            return i
+        grid[:] = carried
+        if count[i, 1]:
+            tally[3] = advance(law, project, begin[i, 1], step[i, 1], count[i, 1], carried, work, parameters, tally)
+            if tally[3]:
+                return i
+        finite = True
+        for k in range(samples.shape[1]):
+            samples[i, k] = carried[0, k]
+            finite = finite and math.isfinite(carried[0, k])
+        if not finite:
+            tally[3] = OVERFLOW
+            return i
+        carried[:] = grid
+    return len(count)
 
 
 ONE_STEP = (
@@ -125,13 +169,15 @@ ONE_STEP = (
 class FixedStep(Marching):
     """Base of the methods with a fixed step.
 
-    A subclass gives its compiled march and the evaluations that each step needs at least; the base lays out the steps,
+    A subclass gives its compiled steps and the evaluations that each step needs at least; the base lays out the steps,
     refuses what is over the budget before running it, and counts.
     """
 
     step: Duration
     setting: ClassVar[str] = "step"
     between_steps: ClassVar[str] = ONE_STEP
+    work_vectors: ClassVar[int] = 0
+    """How many vectors of the state's size a step needs as scratch."""
 
     @property
     def grid_step(self) -> float:
@@ -147,15 +193,19 @@ class FixedStep(Marching):
         return Halved(self)
 
     @abstractmethod
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         """Return the evaluations that every step needs, as long as iterations need no more."""
 
     @abstractmethod
     def _compiled(self) -> Any:
-        """Return the compiled march, to be called as `march_by` says."""
+        """Return the compiled steps, to be called as `steps_by` says."""
 
-    def _law(self, system: System) -> Any:
-        """Return what the march evaluates: the equation of motion, unless the method goes by another law.
+    def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
+        """Return what the first step starts from, with the state as its first row, and the evaluations it took."""
+        return start[None].copy(), 0
+
+    def _law(self, system: InitialValueProblem) -> Any:
+        """Return what the steps evaluate: the equation of motion, unless the method goes by another law.
 
         Raises
         ------
@@ -164,11 +214,11 @@ class FixedStep(Marching):
         """
         return system.equation
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         return self._march_divided(system, start, targets, limit, units, 1)
 
     def _march_divided(
-        self, system: System, start: Floats, targets: Floats, limit: int, units: Units, parts: int
+        self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units, parts: int
     ) -> Leg:
         """March as `_march` does, with every step divided into `parts`."""
         shape = (targets.size, 2)
@@ -180,12 +230,16 @@ class FixedStep(Marching):
         declared = int(total) * each
         samples = np.empty((targets.size, start.size))
         projection = system.structure.projection
-        tally = np.array([limit - declared, 0, each, projection is not unconstrained])
-        march, law = self._compiled(), self._law(system)
-        reached = march(law, projection, begin, length, count, start.copy(), system.parameters, samples, tally)
-        if tally[1]:
+        advance, law = self._compiled(), self._law(system)
+        carried, spent = self._carried(system, start)
+        work = np.empty((self.work_vectors, start.size))
+        tally = np.array([limit - declared - spent, each, projection is not unconstrained, 0])
+        reached = _march(
+            advance, law, projection, begin, length, count, carried, work, system.parameters, samples, tally
+        )
+        if tally[3]:
             time = units.given_time(float(targets[reached]))
-            raise self._failure(int(tally[1]), time, int(count[:reached].sum()) / total, limit)
+            raise self._failure(int(tally[3]), time, int(count[:reached].sum()) / total, limit)
         return Leg(samples, limit - int(tally[0]), int(count[:, 0].sum()), 0)
 
     def _failure(self, why: int, time: float, fraction: float, limit: int) -> Exception:
@@ -215,5 +269,5 @@ class Halved(Marching):
         """Return None: it is there to compare with, not to go on from."""
         return None
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         return self.method._march_divided(system, start, targets, limit, units, 2)

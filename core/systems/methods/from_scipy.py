@@ -21,7 +21,7 @@ import numpy as np
 from core.errors import InvalidParameter
 from core.quantities import Quantity
 from core.systems.methods.method import Leg, Marching, Units
-from core.systems.system import Floats, System
+from core.systems.system import Floats, InitialValueProblem
 
 SMALLEST_TOLERANCE = 2.3e-14
 """SciPy works with no relative tolerance below 100 units of round-off."""
@@ -36,7 +36,7 @@ class _LimitMet(Exception):
 class _Scaled:
     """The equation of motion in units of `size` and `horizon`, which counts how often it is evaluated."""
 
-    def __init__(self, system: System, size: float, horizon: float, limit: int) -> None:
+    def __init__(self, system: InitialValueProblem, size: float, horizon: float, limit: int) -> None:
         self.equation, self.parameters = system.equation, system.parameters
         self.size, self.horizon, self.limit = size, horizon, limit
         self.evaluations = 0
@@ -76,7 +76,7 @@ class FromSciPy(Marching):
     def _solver(self) -> Any:
         """Import and return SciPy's class, a subclass of `scipy.integrate.OdeSolver`."""
 
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         horizon = _power_of_two(abs(float(targets[-1])))
         size = _power_of_two(float(np.abs(start).max()))
         equation = _Scaled(system, size, horizon, limit)

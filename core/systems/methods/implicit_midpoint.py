@@ -18,74 +18,56 @@ import numpy as np
 from core.compiled import kernel
 from core.double_double import two_sum
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, OVERFLOW, FixedStep, keep, march_by, replace
+from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family, Invariance
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 ITERATIONS = 100
 
 
-@kernel(march_by(VECTOR_FIELD))
-def _march(
+@kernel(steps_by(VECTOR_FIELD))
+def _advance(
     field: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
-    slope, new, middle = np.empty_like(state), np.empty_like(state), np.empty_like(state)
-    tail = np.zeros_like(state)
-    grid, grid_tail, grid_slope = np.empty_like(state), np.empty_like(state), np.empty_like(state)
-    constrained = tally[3] == 1
-    # The slope of the last step is the first guess; for the first step it is the one at the start.
-    field(begin[0, 0], state, parameters, slope)
-    tally[0] -= 1
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            replace(grid_tail, tail)
-            replace(grid_slope, slope)
-            h = step[i, run]
-            for j in range(count[i, run]):
-                t = begin[i, run] + (j + 0.5) * h
-                last, spent = np.inf, 0
-                while True:
-                    for k in range(state.size):
-                        middle[k] = state[k] + 0.5 * h * slope[k]
-                    field(t, middle, parameters, new)
-                    spent += 1
-                    change, size = 0.0, 0.0
-                    for k in range(state.size):
-                        change = max(change, abs(h * (new[k] - slope[k])))
-                        size = max(size, abs(state[k]), abs(middle[k]))
-                        slope[k] = new[k]
-                    # Beside the round-off of the state, a change that no longer falls is round-off and nothing else.
-                    if change == 0.0 or (change >= last and change <= 1e-13 * size):
-                        break
-                    if spent >= ITERATIONS or not change < np.inf:
-                        tally[1] = NO_CONVERGENCE
-                        return i
-                    last = change
-                tally[0] -= spent - 1
-                if tally[0] < 0:
-                    tally[1] = OUT_OF_BUDGET
-                    return i
-                for k in range(state.size):
-                    # The rounding of the sum is carried on, which keeps the invariants from drifting.
-                    state[k], tail[k] = two_sum(state[k], h * slope[k] + tail[k])
-                if constrained:
-                    project(state, parameters)
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-        replace(tail, grid_tail)
-        replace(slope, grid_slope)
-    return len(count)
+    state, tail, slope = carried[0], carried[1], carried[2]
+    new, middle = work[0], work[1]
+    constrained = tally[2] == 1
+    for j in range(count):
+        t = start + (j + 0.5) * h
+        last, spent = np.inf, 0
+        while True:
+            for k in range(state.size):
+                middle[k] = state[k] + 0.5 * h * slope[k]
+            field(t, middle, parameters, new)
+            spent += 1
+            change, size = 0.0, 0.0
+            for k in range(state.size):
+                change = max(change, abs(h * (new[k] - slope[k])))
+                size = max(size, abs(state[k]), abs(middle[k]))
+                slope[k] = new[k]
+            # Beside the round-off of the state, a change that no longer falls is round-off and nothing else.
+            if change == 0.0 or (change >= last and change <= 1e-13 * size):
+                break
+            if spent >= ITERATIONS or not change < np.inf:
+                return NO_CONVERGENCE
+            last = change
+        tally[0] -= spent - 1
+        if tally[0] < 0:
+            return OUT_OF_BUDGET
+        for k in range(state.size):
+            # The rounding of the sum is carried on, which keeps the invariants from drifting.
+            state[k], tail[k] = two_sum(state[k], h * slope[k] + tail[k])
+        if constrained:
+            project(state, parameters)
+    return 0
 
 
 @dataclass(frozen=True)
@@ -102,6 +84,7 @@ class ImplicitMidpoint(FixedStep):
     kind: Literal["implicit-midpoint"] = "implicit-midpoint"
 
     order: ClassVar[int] = 2
+    work_vectors: ClassVar[int] = 2
     family: ClassVar[Family] = "implicit"
     preserves: ClassVar[tuple[Invariance, ...]] = ("quadratic invariants", "time symmetry")
     on_constraints: ClassVar[str] = PROJECTED
@@ -113,8 +96,15 @@ class ImplicitMidpoint(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 1
 
     def _compiled(self) -> Any:
-        return _march
+        return _advance
+
+    def _carried(self, system: InitialValueProblem, start: Floats) -> tuple[Floats, int]:
+        # The slope of the last step is the first guess; for the first step it is the one at the start.
+        carried = np.zeros((3, start.size))
+        carried[0] = start
+        system.equation(0.0, start, system.parameters, carried[2])
+        return carried, 1

@@ -13,7 +13,7 @@ from numba import types
 from core.compiled import kernel
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.systems.budget import Budget
-from core.systems.system import PROJECTION, Floats, System, unconstrained
+from core.systems.system import PROJECTION, Floats, InitialValueProblem, unconstrained
 from core.systems.trajectory import Work
 from core.work import WorkLimitReached, remaining, spend
 
@@ -82,12 +82,12 @@ class AbstractMethod(ABC):
     when_to_use: ClassVar[str]
 
     @abstractmethod
-    def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
+    def integrate(self, system: InitialValueProblem, times: Floats, budget: Budget | None = None) -> Integration:
         """Return the states of `system` at `times`.
 
         Parameters
         ----------
-        system : System
+        system : InitialValueProblem
         times : ndarray, shape (n,)
             Measured from the initial state, of either sign, in any order, repeated or not (s).
         budget : Budget, optional
@@ -143,7 +143,7 @@ class Units(NamedTuple):
     time: int = 0
 
     @classmethod
-    def of(cls, system: System, start: Floats) -> Units:
+    def of(cls, system: InitialValueProblem, start: Floats) -> Units:
         """Return the units for a start: those in which its largest component is about one, where it is extreme."""
         exponent = math.frexp(float(np.abs(start).max()))[1]
         degree = system.structure.degree
@@ -189,7 +189,7 @@ class Marching(AbstractMethod):
         """Length of the steps (s), None for methods that choose them."""
         return None
 
-    def integrate(self, system: System, times: Floats, budget: Budget | None = None) -> Integration:
+    def integrate(self, system: InitialValueProblem, times: Floats, budget: Budget | None = None) -> Integration:
         """Return the states of `system` at `times`; see `AbstractMethod.integrate`."""
         budget = budget or Budget()
         start = np.ascontiguousarray(system.initial_state, dtype=np.float64)
@@ -224,7 +224,7 @@ class Marching(AbstractMethod):
             units.given_states(states), Work(times.size, evaluations, steps, rejected, step=self.grid_step)
         )
 
-    def _limited(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _limited(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         """March within the work that may be done here as well as within the budget."""
         weight = system.structure.weight
         left = remaining() / weight
@@ -238,10 +238,10 @@ class Marching(AbstractMethod):
         return leg
 
     @abstractmethod
-    def _march(self, system: System, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
+    def _march(self, system: InitialValueProblem, start: Floats, targets: Floats, limit: int, units: Units) -> Leg:
         """Return the states at `targets`, which have one sign, differ, and grow in magnitude; all are in `units`."""
 
-    def _require_finite_start(self, system: System, start: Floats) -> None:
+    def _require_finite_start(self, system: InitialValueProblem, start: Floats) -> None:
         slope = np.empty_like(start)
         system.equation(0.0, start, system.parameters, slope)
         if not np.isfinite(slope).all():

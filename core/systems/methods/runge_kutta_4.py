@@ -11,55 +11,45 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
 from core.compiled import kernel
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
+from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family
-from core.systems.system import VECTOR_FIELD, Floats, Integers, System
+from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
 
 
-@kernel(march_by(VECTOR_FIELD))
-def _march(
+@kernel(steps_by(VECTOR_FIELD))
+def _advance(
     field: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
-    k1, k2, k3, k4 = np.empty_like(state), np.empty_like(state), np.empty_like(state), np.empty_like(state)
-    stage, grid = np.empty_like(state), np.empty_like(state)
-    constrained = tally[3] == 1
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            h = step[i, run]
-            for j in range(count[i, run]):
-                t = begin[i, run] + j * h
-                field(t, state, parameters, k1)
-                for k in range(state.size):
-                    stage[k] = state[k] + 0.5 * h * k1[k]
-                field(t + 0.5 * h, stage, parameters, k2)
-                for k in range(state.size):
-                    stage[k] = state[k] + 0.5 * h * k2[k]
-                field(t + 0.5 * h, stage, parameters, k3)
-                for k in range(state.size):
-                    stage[k] = state[k] + h * k3[k]
-                field(t + h, stage, parameters, k4)
-                for k in range(state.size):
-                    state[k] += h * ((k1[k] + k4[k]) + 2 * (k2[k] + k3[k])) / 6
-                if constrained:
-                    project(state, parameters)
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-    return len(count)
+    state, stage = carried[0], work[0]
+    k1, k2, k3, k4 = work[1], work[2], work[3], work[4]
+    constrained = tally[2] == 1
+    for j in range(count):
+        t = start + j * h
+        field(t, state, parameters, k1)
+        for k in range(state.size):
+            stage[k] = state[k] + 0.5 * h * k1[k]
+        field(t + 0.5 * h, stage, parameters, k2)
+        for k in range(state.size):
+            stage[k] = state[k] + 0.5 * h * k2[k]
+        field(t + 0.5 * h, stage, parameters, k3)
+        for k in range(state.size):
+            stage[k] = state[k] + h * k3[k]
+        field(t + h, stage, parameters, k4)
+        for k in range(state.size):
+            state[k] += h * ((k1[k] + k4[k]) + 2 * (k2[k] + k3[k])) / 6
+        if constrained:
+            project(state, parameters)
+    return 0
 
 
 @dataclass(frozen=True)
@@ -76,6 +66,7 @@ class RungeKutta4(FixedStep):
     kind: Literal["runge-kutta-4"] = "runge-kutta-4"
 
     order: ClassVar[int] = 4
+    work_vectors: ClassVar[int] = 5
     family: ClassVar[Family] = "explicit"
     on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
@@ -86,8 +77,8 @@ class RungeKutta4(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 4
 
     def _compiled(self) -> Any:
-        return _march
+        return _advance

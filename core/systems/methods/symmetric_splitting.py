@@ -12,46 +12,36 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
 from core.compiled import kernel
 from core.errors import NotApplicable
 from core.quantities import Duration, check
-from core.systems.methods.fixed_step import OVERFLOW, FixedStep, keep, march_by, replace
+from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
-from core.systems.system import PART_FLOW, Floats, Integers, Splitting, System
+from core.systems.system import PART_FLOW, Floats, InitialValueProblem, Integers, Splitting
 
 
-@kernel(march_by(PART_FLOW))
-def _march(
+@kernel(steps_by(PART_FLOW))
+def _advance(
     flow: Any,
     project: Any,
-    begin: Floats,
-    step: Floats,
-    count: Integers,
-    state: Floats,
+    start: float,
+    h: float,
+    count: int,
+    carried: Floats,
+    work: Floats,
     parameters: Floats,
-    samples: Floats,
     tally: Integers,
 ) -> int:
     # A step of n parts takes 2 n - 1 flows.
-    last = (tally[2] - 1) // 2
-    grid = np.empty_like(state)
-    for i in range(len(count)):
-        for run in range(2):
-            replace(grid, state)
-            h = step[i, run]
-            for _ in range(count[i, run]):
-                for part in range(last):
-                    flow(part, 0.5 * h, state, parameters)
-                flow(last, h, state, parameters)
-                for part in range(last - 1, -1, -1):
-                    flow(part, 0.5 * h, state, parameters)
-        if not keep(state, i, samples):
-            tally[1] = OVERFLOW
-            return i
-        replace(state, grid)
-    return len(count)
+    last = (tally[1] - 1) // 2
+    state = carried[0]
+    for _ in range(count):
+        for part in range(last):
+            flow(part, 0.5 * h, state, parameters)
+        flow(last, h, state, parameters)
+        for part in range(last - 1, -1, -1):
+            flow(part, 0.5 * h, state, parameters)
+    return 0
 
 
 @dataclass(frozen=True)
@@ -78,16 +68,16 @@ class SymmetricSplitting(FixedStep):
     def __post_init__(self) -> None:
         check(self)
 
-    def _evaluations_per_step(self, system: System) -> int:
+    def _evaluations_per_step(self, system: InitialValueProblem) -> int:
         return 2 * self._splitting(system).parts - 1
 
     def _compiled(self) -> Any:
-        return _march
+        return _advance
 
-    def _law(self, system: System) -> Any:
+    def _law(self, system: InitialValueProblem) -> Any:
         return self._splitting(system).flow
 
-    def _splitting(self, system: System) -> Splitting:
+    def _splitting(self, system: InitialValueProblem) -> Splitting:
         splitting = system.structure.splitting
         if splitting is None:
             raise NotApplicable(

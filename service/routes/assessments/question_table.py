@@ -47,7 +47,7 @@ class QuestionTable:
         if question.path not in self._routes:
             near = nearest_path(question.path, self._routes)
             remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
-            fault = Fault("/question/path", "must be the path of a question that can be assessed", remedy)
+            fault = Fault("/question/path", "must be the path of a question", remedy)
             raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
         return self._routes[question.path]
 

@@ -20,8 +20,10 @@ from service.requests.decimal_models import (
     body_of,
     instants,
 )
+from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, notices, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable, summing
+from service.routes.motion_figures import draw_rotation
 from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routes.rotation.precession import DISTURBANCE, PRECESSION, RATE, Equilibria, PrecessionFigures
 from service.routes.rotation.trajectory import (
@@ -174,6 +176,7 @@ CERTIFIED_ROTATION = (
         handle=answer_trajectory,
         price=trajectory_cost,
         planning_probe=trajectory_probe,
+        representations={SVG: draw_rotation},
     ),
     certified_route(
         PRECESSION[0],

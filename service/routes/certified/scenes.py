@@ -10,7 +10,7 @@ import numpy as np
 
 from core.certified.scenes import certified_scene, exact_scene
 from core.errors import InvalidParameter
-from core.scenes.answer import ConstrainedSystem
+from core.scenes.named_scene import NamedScene
 from core.systems.budget import Budget
 from core.systems.trajectory import Work
 from service.requests.decimal_models import (
@@ -20,21 +20,21 @@ from service.requests.decimal_models import (
     fields_in_numerals,
     instants,
 )
+from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP, PerSample, affordable
+from service.routes.motion_figures import scene_drawing
 from service.routes.planning_probes import FEW_CERTIFIED
 from service.routes.scenes import (
     TIMES,
     SceneAnswer,
     answer_model,
     answer_of,
-    members,
-    name_of,
-    questions,
     request_model,
     scene_probe,
+    scene_routes,
 )
-from service.routing import Answer, PostRoute
+from service.routing import Answer, Example, PostRoute
 from service.schemas import DecimalString
 
 COLUMNS = 8
@@ -43,12 +43,14 @@ COLUMNS = 8
 QUESTION = ("times", "outputs", "digits")
 """Fields of a question that are not the scene's own."""
 
-ELEMENTARY = PerSample(1.1e-5, 3e-8, 1e-10)
-SAMPLES: Mapping[str, PerSample] = {"rod-in-hole": PerSample(4.5e-5, 1.5e-7, 1.5e-9)}
-"""Scenes with elliptic functions; the others are elementary."""
+SAMPLES = {"elementary": PerSample(1.1e-5, 3e-8, 1e-10), "elliptic": PerSample(4.5e-5, 1.5e-7, 1.5e-9)}
+"""By the functions that the motion of a scene is made of."""
+
+SHOWN_DIGITS = 50
+"""Digits of the examples."""
 
 
-def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]:
+def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:
     """Return what answers a question about a scene."""
 
     def answer(question: Any, budget: Budget) -> Answer:
@@ -65,10 +67,9 @@ def answering(scene: type[ConstrainedSystem]) -> Callable[[Any, Budget], Answer]
                 raise InvalidParameter("times", fault.rule, remedy=fault.remedy) from None
             raise
         work = Work(0 if found.trajectory is None else len(found.trajectory["time"]))
-        fields = answer_of(found, accuracy(digits), work, samples)
-        if found.trajectory is not None:
-            fields["trajectory"]["time"] = times_written(found.trajectory["time"], digits)
-        return fields
+        motion = found.trajectory
+        shown = None if motion is None else {**motion, "time": times_written(motion["time"], digits)}
+        return answer_of(found, accuracy(digits), work, samples, shown)
 
     return answer
 
@@ -86,23 +87,38 @@ class CertifiedSceneAnswer(Certified, SceneAnswer[DecimalString]):
 
 
 @cache
-def certified_scenes() -> tuple[PostRoute, ...]:
+def certified_scenes(scenes: tuple[type[NamedScene], ...]) -> tuple[PostRoute, ...]:
     """Return one route for each scene."""
-    return tuple(map(_route, questions(), members()))
+    return tuple(map(_route, scene_routes(scenes), scenes))
 
 
-def _route(ordinary: PostRoute, scene: type[ConstrainedSystem]) -> PostRoute:
-    each = SAMPLES.get(name_of(scene), ELEMENTARY)
+def _route(ordinary: PostRoute, scene: type[NamedScene]) -> PostRoute:
+    each = SAMPLES[scene.functions]
+    *_, shown = scene.examples.values()
 
     def cost(question: Any, budget: Budget) -> float:
         return SET_UP + _samples(question, budget) * each.seconds(question.digits)
 
     own = fields_in_numerals(scene) | {"times": (DecimalTimes | None, TIMES), "digits": (DigitCount, ...)}
+    answer = answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString)
     return certified_route(
         ordinary,
         question=request_model(scene, "Certified", **own),
-        answer=answer_model(scene, CertifiedSceneAnswer, "Certified", DecimalString),
+        answer=answer,
         handle=answering(scene),
         price=cost,
         planning_probe=partial(scene_probe, answering(scene), _instants, FEW_CERTIFIED),
+        examples={
+            "digits": Example(f"{SHOWN_DIGITS} proven digits", in_decimals(shown.question) | {"digits": SHOWN_DIGITS})
+        },
+        representations={SVG: scene_drawing(answer)},
     )
+
+
+def in_decimals(value: Any) -> Any:
+    """Return a question with its doubles as the shortest decimal strings that read as them."""
+    if isinstance(value, Mapping):
+        return {name: in_decimals(entry) for name, entry in value.items()}
+    if isinstance(value, list):
+        return [in_decimals(entry) for entry in value]
+    return repr(value).removesuffix(".0") if isinstance(value, float) else value

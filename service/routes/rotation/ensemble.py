@@ -20,10 +20,12 @@ from core.systems.methods import Method
 from core.systems.system import Model
 from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, effort, judged, numbers, speed_of
+from service.responses.svg import SVG
 from service.routes.bodies import counts, few_times, is_small, moments_to_foresee, properties_of, speed_to_follow
+from service.routes.motion_figures import draw_ensemble
 from service.routes.planning_probes import few_of, in_closed_form, probe_in_samples
 from service.routes.rotation.surfaces import Count, Seed
-from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy
+from service.routes.rotation.trajectory import ACCURACY, METHOD, TIMES, Accuracy, accuracy_fields
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
     ROUND,
@@ -97,17 +99,21 @@ def answer_ensemble(question: EnsembleRequest, budget: Budget) -> Answer:
     body = properties_of(question.body)
     times = sample_times(question.times, budget)
     many = ensemble(
-        body, _starts(question, body), times, accuracy=question.accuracy, method=question.method, budget=budget
+        body,
+        _starts(question, body),
+        times,
+        accuracy=question.accuracy,
+        method=question.method,
+        digits=question.round,
+        budget=budget,
     )
-    if question.round is not None:
-        many = many.rounded(question.round)
     outside: list[Notice] = []
     members = [
         {
             "model": member.model,
             "method": member.method,
             "period": in_range("period", member.period, outside),
-            "accuracy": member.accuracy,
+            "accuracy": accuracy_fields(member.accuracy),
             "work": member.work,
             "ended": member.ended,
         }
@@ -189,5 +195,6 @@ ENSEMBLE = (
         CalibratedCost("rotation_ensemble", ensemble_counts),
         is_small_ensemble,
         ensemble_probe,
+        representations={SVG: draw_ensemble},
     ),
 )

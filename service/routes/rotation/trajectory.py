@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic
+from typing import Any, Generic, Literal
 
 from pydantic import Field
 
@@ -12,9 +12,12 @@ from core.rotation.sampled_rotation import Output, sample_rotation, wanted_outpu
 from core.systems.budget import Budget
 from core.systems.methods import Method
 from core.systems.system import Model
-from core.systems.trajectory import How, Work
+from core.systems.trajectory import Accuracy as StatedAccuracy
+from core.systems.trajectory import Work
 from service.execution.cost_model import CalibratedCost, effort, judged, numbers, speed_of
+from service.responses.svg import SVG
 from service.routes.bodies import counts, few_times, is_small, properties_of, speed_to_follow
+from service.routes.motion_figures import draw_rotation
 from service.routes.planning_probes import in_closed_form, probe_in_samples
 from service.routing import Answer, PostRoute
 from service.schemas import (
@@ -98,7 +101,7 @@ class Accuracy(View):
         "the largest such quotient of any column. What it rests on is said in how."
     )
     final_error: Ratio[float] | None = Field(description="The same at the time farthest from the start.")
-    how: How = Field(
+    how: Literal["closed form", "measured against closed form", "estimate (finer run)"] = Field(
         description="closed form: a bound. measured against closed form: the difference from it, with its bound added. "
         "Neither is below the true error. estimate (finer run): four times the difference from a finer run of the same "
         "method, which is no bound."
@@ -159,6 +162,13 @@ class TrajectoryAnswer(RotationSamples[float]):
     accuracy: Accuracy
 
 
+def accuracy_fields(stated: StatedAccuracy) -> Answer:
+    """Return what is said of the error of a state, or of a scene in closed form."""
+    found = fields_of(stated)
+    del found["horizon"], found["why"]
+    return found
+
+
 def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
     """Answer with samples of the motion."""
     times = sample_times(question.times, budget)
@@ -174,10 +184,10 @@ def trajectory(question: TrajectoryRequest, budget: Budget) -> Answer:
         outputs=question.outputs,
         budget=budget,
     )
-    accuracy, uncertain = fields_of(found.accuracy), "input_uncertainty" in question.model_fields_set
+    accuracy, uncertain = accuracy_fields(found.motion.accuracy), "input_uncertainty" in question.model_fields_set
     if uncertain:
         accuracy["horizon"] = found.closed_form.horizon_of(question.input_uncertainty)
-    samples = {"time": found.motion.time, "angular_velocity": found.angular_velocity}
+    samples = {"time": found.motion.time, "angular_velocity": found.motion.state}
     if found.attitude is not None:
         samples["attitude"] = found.attitude.quaternions
         accuracy |= {"attitude_error": found.attitude.error, "attitude_inherited": found.attitude.inherited}
@@ -248,5 +258,6 @@ ROTATION = (
         is_small_trajectory,
         lambda question, budget: probe_in_samples(trajectory, question, _speed(question), budget),
         warming=(RESTING, STEADY, NEARLY_SYMMETRIC),
+        representations={SVG: draw_rotation},
     ),
 )

@@ -19,8 +19,8 @@ from core.studies.statistics import BINS, PROBABILITIES, STATISTICS, Statistic
 from core.studies.study_input import StudyInput
 from core.systems.budget import Budget
 from service.problems import Refusal
-from service.routes.assessments.declared_units import unit_at
 from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, within_question
+from service.routes.declared_units import unit_at
 from service.routes.studies.members import Members, number_of
 from service.routes.studies.views import STATE, StudyState
 from service.routing import Answer, PlanningProbe, PostRoute, StudyRoute

@@ -38,10 +38,10 @@ def outcome(kind: str, digits: int | None, seed: int) -> str:
 
 @pytest.mark.parametrize("kind", [*FIXED, *SOLVERS])
 def test_methods_are_found_with_their_setting_and_none_falsely(kind: str) -> None:
-    full = Counter(outcome(kind, None, seed) for seed in range(12))
-    assert full["right"] >= (12 if kind in FIXED else 10)
+    full = Counter(outcome(kind, None, seed) for seed in range(6))
+    assert full["right"] >= (6 if kind in FIXED else 5)
     assert not full["wrong"]
-    rounded = Counter(outcome(kind, digits, seed) for digits in (6, 5, 4) for seed in range(8))
+    rounded = Counter(outcome(kind, digits, seed) for digits in (6, 5, 4) for seed in range(4))
     assert not rounded["wrong"]
     # What shows in the digits is found.
     assert rounded["right"] >= rounded["none"]

@@ -1,6 +1,7 @@
 import pytest
 from flint import arb, ctx
 
+from core.balls import Undetermined
 from core.certified.adaptive_precision import (
     MOST_BITS,
     bits_for,
@@ -9,7 +10,7 @@ from core.certified.adaptive_precision import (
     until_determined,
     working_bits,
 )
-from core.certified.decimals import Undetermined, decimal
+from core.certified.decimals import decimal
 from core.errors import BudgetExceeded, InvalidParameter
 
 

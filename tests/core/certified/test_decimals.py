@@ -6,8 +6,8 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.balls import precision
-from core.certified.decimals import Undetermined, decimal, decimal_of_fraction, floor_below, numeral, place_of
+from core.balls import Undetermined, precision
+from core.certified.decimals import decimal, decimal_of_fraction, floor_below, numeral, place_of
 from core.certified.exact_inputs import enclosed
 
 anything = st.builds(

@@ -7,8 +7,8 @@ from flint import arb
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.balls import precision
-from core.certified.decimals import FLOOR_IN_DIGITS, Undetermined
+from core.balls import Undetermined, precision
+from core.certified.decimals import FLOOR_IN_DIGITS
 from core.certified.directions import TIE_BITS, floor_of_directions, oriented
 
 component = st.integers(-5, 5)

@@ -16,6 +16,7 @@ from tests.core.multibody.contact_judge import (
 )
 
 ENDS = {"horizon", "simultaneous-impacts", "several-motions", "no-motion", "energy-gain", "no-progress"}
+ENDS |= {"event-limit", "lost-event"}
 
 
 @pytest.mark.parametrize("kind", range(len(KINDS)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any
 
@@ -218,3 +219,67 @@ def test_ball_hits_a_stick_that_lies_on_ice() -> None:
     assert event.impulses["normal"] == pytest.approx(push, rel=1e-14)
     assert column(answer, "stick.angular_velocity").values[0] == pytest.approx(-push * 0.9, rel=1e-14)
     assert event.energy_loss == pytest.approx(2 - 2 + push * 2 - push**2 / 2 * (1 + 1 / 3 + 0.81), rel=1e-13)
+
+
+def box(angle: float, spin: float, *, ordered: bool) -> dict[str, Any]:
+    places = {"l": [-0.3, -0.2], "r": [0.3, -0.2]}
+    law = {"restitution": 0.3, "friction": 0.4}
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "box": {
+                "mass": 1,
+                "inertia": 0.05,
+                "at": [0, 1],
+                "angle": angle,
+                "angular_velocity": spin,
+                "places": places,
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": name, "place": f"box.{name}", "on": {"at": [0, 0]}, **law}
+            | ({"order": i} if ordered else {})
+            for i, name in enumerate(places)
+        ],
+    }
+
+
+def test_a_dropped_box_bounces_on_its_corners_in_turn_until_it_rests() -> None:
+    """The bounces of both corners end together; then the box slides to rest at mu g, flat on the floor."""
+    answer = solve_scene(read(box(0.2, 1.0, ordered=True)), np.linspace(0, 3, 7), ("trajectory", "energy-in-time"))
+    assert answer.ended is None
+    assert states(answer)[-1] == {"l": "stick", "r": "stick"}
+    found = column(answer, "box.position")
+    assert found.values[-1, 1] == pytest.approx(0.2, abs=found.error)
+    assert found.error < 1e-9
+    assert column(answer, "box.angle").values[-1] == pytest.approx(0.0, abs=column(answer, "box.angle").error)
+    # What the impacts take is what was there, but for the friction of sliding.
+    assert 7.8 < sum(event.energy_loss for event in answer.events) < 9.81 * 0.8 + 0.025
+
+
+def test_undecided_candidates_say_nothing_of_rounding() -> None:
+    answer = solve_scene(read(box(0.3, 0.0, ordered=False)), [0.5, 3.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "simultaneous-impacts"
+    words = {candidate[name] for candidate in answer.problem.candidates for name in ("l", "r")}
+    assert "stays closed" in words
+    assert not any("e-" in word for word in words)
+
+
+def test_more_events_than_are_followed_end_the_answer_and_lose_nothing() -> None:
+    """An elastic ball bounces every 2 sqrt(2 h/g) s for ever: 500 impacts are followed, and what they say is kept."""
+    scene = json.loads(BALL)
+    scene["connections"][0]["restitution"] = 1
+    answer = solve_scene(read(scene), [0.0, 1.0, 400.0, 1000.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "event-limit"
+    assert answer.ended is not None
+    assert answer.ended.time == pytest.approx((2 * 500 + 1) * math.sqrt(2.5 / 9.81), rel=1e-13)
+    assert answer.trajectory is not None
+    assert answer.trajectory.rows.tolist() == [0, 1, 2]
+    with mpmath.workdps(40):
+        fall = mpmath.sqrt(mpmath.mpf("2.5") / mpmath.mpf("9.81"))
+        late = (400 + fall) % (2 * fall)
+        height = mpmath.mpf("9.81") * late * (2 * fall - late) / 2
+    found = column(answer, "ball.position")
+    assert abs(found.values[2, 1] - float(height)) <= found.error

@@ -9,9 +9,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from core.multibody.answer import SceneAccuracy
 from core.multibody.columns import apart
 from core.multibody.solve import solve_scene
+from core.systems.trajectory import Accuracy
 from tests.core.multibody.random_scenes import any_scene
 from tests.core.multibody.worked_examples import LAGRANGE_TOP, MASSIVE_PULLEY, column, read
 
@@ -27,7 +27,7 @@ DOUBLE: dict[str, Any] = {
 HALF_ULP = 2.0**-53
 
 
-def stated(scene: Any, times: Any, uncertainty: float = HALF_ULP, accuracy: float = 1e-9) -> tuple[Any, SceneAccuracy]:
+def stated(scene: Any, times: Any, uncertainty: float = HALF_ULP, accuracy: float = 1e-9) -> tuple[Any, Accuracy]:
     answer = solve_scene(read(scene), times, ("trajectory",), accuracy, input_uncertainty=uncertainty)
     assert answer.trajectory is not None
     return answer, answer.trajectory.accuracy

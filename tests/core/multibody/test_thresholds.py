@@ -88,9 +88,9 @@ def test_cone_of_friction() -> None:
     one = {**INCLINE, "connections": [{**INCLINE["connections"][0], "friction": 0.7}]}  # type: ignore[index]
     coefficient = ranged(one, "/connections/0/friction", 0, 5)
     require(coefficient.lower, least, {"face": "slide back"})
-    assert coefficient.upper == RestEnd(5.0, 0.0, None)
+    assert coefficient.upper == RestEnd(5.0, 0.0, None, None)
     weight = ranged(INCLINE, "/bodies/block/mass", 0.001, 1000)
-    assert (weight.lower, weight.upper) == (RestEnd(0.001, 0.0, None), RestEnd(1000.0, 0.0, None))
+    assert (weight.lower, weight.upper) == (RestEnd(0.001, 0.0, None, None), RestEnd(1000.0, 0.0, None, None))
 
 
 def test_the_steepest_slope_is_the_same_in_degrees() -> None:
@@ -112,7 +112,7 @@ def test_ladder() -> None:
         least = 1 / (2 * turn + wall)
     found = ranged(LADDER, "/let/slope", 0.2, 1.5)
     require(found.lower, flattest, {"floor": "slide back", "wall": "slide back"})
-    assert found.upper == RestEnd(1.5, 0.0, None)
+    assert found.upper == RestEnd(1.5, 0.0, None, None)
     rough = ranged(LADDER, "/connections/0/friction", 0, 1)
     require(rough.lower, least, {"floor": "slide back", "wall": "slide back"})
 
@@ -147,7 +147,7 @@ def test_block_pulled_by_a_force(component: int) -> None:
         require(found.lower, -across, {"floor": "slide back"})
     else:
         require(found.upper, up, {"floor": "slide"})
-        assert found.lower == RestEnd(-40.0, 0.0, None)
+        assert found.lower == RestEnd(-40.0, 0.0, None, None)
 
 
 def test_block_lifted_straight_up() -> None:

@@ -37,11 +37,12 @@ def test_an_attitude_is_wanted_where_one_is_given_or_it_is_named(
 def test_the_angular_momentum_does_not_turn_in_space() -> None:
     found = sample_rotation(BODY, START, TIMES, attitude=TURNED)
     assert found.attitude is not None
-    momentum = found.angular_velocity * np.array([1.0, 2.0, 3.0])
+    momentum = found.motion.state * np.array([1.0, 2.0, 3.0])
     w, v = found.attitude.quaternions[:, :1], found.attitude.quaternions[:, 1:]
     in_space = momentum + 2.0 * np.cross(v, np.cross(v, momentum) + w * momentum)
     size = np.linalg.norm(in_space[0])
-    assert np.abs(in_space - in_space[0]).max() <= 2.0 * (found.attitude.error + found.accuracy.error) * size + 1e-14
+    error = found.attitude.error + found.motion.accuracy.error
+    assert np.abs(in_space - in_space[0]).max() <= 2.0 * error * size + 1e-14
 
 
 def test_without_an_attitude_it_is_none_and_a_named_one_starts_without_a_turn() -> None:
@@ -56,9 +57,9 @@ def test_rounding_is_covered_by_the_errors_that_are_stated() -> None:
     short = sample_rotation(BODY, START, TIMES, attitude=TURNED, digits=3)
     assert exact.attitude is not None
     assert short.attitude is not None
-    size = np.linalg.norm(exact.angular_velocity, axis=1).max()
-    moved = np.linalg.norm(short.angular_velocity - exact.angular_velocity, axis=1).max() / size
-    assert 0.0 < moved <= short.accuracy.error
+    size = np.linalg.norm(exact.motion.state, axis=1).max()
+    moved = np.linalg.norm(short.motion.state - exact.motion.state, axis=1).max() / size
+    assert 0.0 < moved <= short.motion.accuracy.error
     # A quaternion's error is half that of the attitude.
     turned = np.linalg.norm(short.attitude.quaternions - exact.attitude.quaternions, axis=1).max()
     assert 0.0 < 2.0 * turned <= short.attitude.error
@@ -67,7 +68,7 @@ def test_rounding_is_covered_by_the_errors_that_are_stated() -> None:
 
 def test_what_is_not_wanted_is_not_rounded() -> None:
     found = sample_rotation(BODY, START, TIMES, digits=3, outputs=["attitude"])
-    assert found.accuracy.error == sample_rotation(BODY, START, TIMES).accuracy.error
+    assert found.motion.accuracy.error == sample_rotation(BODY, START, TIMES).motion.accuracy.error
 
 
 def test_attitudes_are_refused_beside_an_integrator_and_beyond_their_bound() -> None:
@@ -77,7 +78,7 @@ def test_attitudes_are_refused_beside_an_integrator_and_beyond_their_bound() -> 
     assert sample_rotation(BODY, START, TIMES, attitude=TURNED, method=ClosedFormEvaluation()).attitude is not None
     bound = sample_rotation(BODY, START, TIMES, attitude=TURNED).attitude
     assert bound is not None
-    rates = sample_rotation(BODY, START, TIMES).accuracy.error
+    rates = sample_rotation(BODY, START, TIMES).motion.accuracy.error
     assert rates < bound.error
     with pytest.raises(AccuracyUnreachable) as refused:
         sample_rotation(BODY, START, TIMES, attitude=TURNED, accuracy=0.5 * (rates + bound.error))

@@ -11,6 +11,8 @@ import numpy as np
 from scipy.special import ellipj
 
 from core.compiled import kernel
+from core.systems.question import MotionQuestion
+from core.systems.state_motion import state_motion
 from core.systems.system import (
     DISCRETE_STEP,
     PART_FLOW,
@@ -22,6 +24,7 @@ from core.systems.system import (
     Splitting,
     Structure,
 )
+from core.systems.trajectory import Trajectory
 
 MODEL = Model("test system", "regular", "the test asks for it", 1)
 
@@ -64,9 +67,13 @@ class Given:
     conserved: Callable[[Floats], Mapping[str, Floats]] = field(default=lambda states: {})
     structure: Structure = field(default_factory=Structure)
     model: Model = MODEL
+    state_column: tuple[str, str] = ("state", "1")
 
     def closed_form(self) -> ClosedForm | None:
         return self.exact
+
+    def trajectory(self, question: MotionQuestion) -> Trajectory:
+        return state_motion(self, question)
 
     def invariants(self, states: Floats) -> Mapping[str, Floats]:
         return self.conserved(states)

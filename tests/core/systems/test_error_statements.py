@@ -22,7 +22,8 @@ from core.systems.methods import (
     RungeKutta4,
     SymmetricSplitting,
 )
-from core.systems.solve import UNCONVERGED, solve
+from core.systems.solve import solve
+from core.systems.state_motion import UNCONVERGED
 from core.work_precision import work_precision
 from tests.core.systems.systems import (
     elliptic_functions,

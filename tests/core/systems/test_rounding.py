@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.systems.rounding import Digits, notices_of, rounded, to_places, to_significant
-from core.systems.trajectory import Accuracy
+from core.systems.rounding import Digits, rounded, shortened, to_places, to_significant
+from core.systems.trajectory import Accuracy, Column, Trajectory, Work
 from tests.service.conftest import client_of, inline_service
 
 SERVICE = inline_service()
@@ -81,8 +81,27 @@ def test_places_left_of_the_point() -> None:
 
 def test_a_rounding_that_overtakes_the_accuracy_is_reported() -> None:
     stated = Accuracy(1e-9, 1e-12, "closed form")
-    assert [notice.code for notice in notices_of(stated, 1e-3)] == ["rounded-beyond-accuracy"]
-    assert notices_of(stated, 1e-12) == ()
+    column = Column(np.array([1.0 / 3.0, 0.7]), "m", 1e-12, "closed form")
+    whole = Trajectory(np.array([0.0, 1.0]), {"x": column}, stated, None, "closed-form", Work(2))
+    short = shortened(whole, 3)
+    assert [notice.code for notice in short.warnings] == ["rounded-beyond-accuracy"]
+    assert short["x"].tolist() == [0.333, 0.7]
+    assert short.accuracy.error >= 5e-3
+    assert shortened(whole, 12).warnings == ()
+
+
+def test_columns_are_rounded_to_the_places_of_their_own_errors() -> None:
+    columns = {
+        "far": Column(np.array([123.456789, 2.0]), "m", 1e-3, "closed form", scale=200.0),
+        "near": Column(np.array([0.123456789, 0.0]), "m", 1e-6, "closed form", inherited=1e-5, scale=200.0),
+        "nowhere": Column(np.zeros(2), "m", 0.0, "closed form"),
+    }
+    whole = Trajectory(np.zeros(2), columns, Accuracy(1e-3, 1e-3 / 200, "closed form"), None, "closed-form", Work(2))
+    short = shortened(whole, "meaningful")
+    assert short["far"].tolist() == [123.457, 2.0]
+    assert short["near"].tolist() == [0.12346, 0.0]
+    assert short["nowhere"] is columns["nowhere"].values
+    assert short.accuracy.error == pytest.approx(1.5e-3 / 200)
 
 
 async def asked(path: str, question: dict[str, Any]) -> Any:

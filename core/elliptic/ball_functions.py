@@ -15,7 +15,7 @@ from functools import cached_property
 
 from flint import acb, arb
 
-from core.certified.decimals import Undetermined
+from core.balls import Undetermined
 
 ONE, HALF, ZERO = arb(1), arb(1) / 2, arb(0)
 

@@ -6,7 +6,7 @@ from flint import acb, arb
 from mpmath import mp, mpf
 
 from core.balls import precision
-from core.certified.elliptic_functions import EllipticFunctions, PhaseOfTheta, split
+from core.elliptic.ball_functions import EllipticFunctions, PhaseOfTheta, split
 from tests.oracles.elliptic import Periodic
 
 DIGITS = 60

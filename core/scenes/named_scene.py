@@ -1,0 +1,333 @@
+"""A named scene: parameters, figures that follow from them, and a motion in closed form.
+
+The one way in which every scene is answered: only what is requested is computed.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, ClassVar, Literal, NamedTuple, get_type_hints
+
+import numpy as np
+
+from core.balls import precision
+from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
+from core.notices import Notice
+from core.quantities import Tolerance, Unit, check_value
+from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding
+from core.scenes.figures import MOTION, SceneEvent, SceneExample
+from core.scenes.motion import Event, Motion
+from core.systems.budget import Budget
+from core.systems.methods.closed_form import ClosedFormEvaluation
+from core.systems.question import MotionQuestion
+from core.systems.rounding import Digits, shortened
+from core.systems.solve import checked_times
+from core.systems.system import Floats, Model
+from core.systems.trajectory import HORIZON, Accuracy, Trajectory, Work
+from core.work import spend
+
+WORK_OF_A_SCENE = 100
+"""Units of work (`core.work`): the set-up of a scene and of its motion in balls, at one precision."""
+_NOT_KNOWN = "what the uncertainty of the inputs does is not followed in this scene"
+
+
+@dataclass(frozen=True, eq=False)
+class SceneAnswer:
+    """Answer to a question about a scene.
+
+    Attributes
+    ----------
+    model : Model
+        The smallest model that suffices for the question.
+    figures : mapping
+        The requested outputs by name: numbers, lists, mappings, None where a double cannot hold the number.
+    trajectory : Trajectory or None
+    ended : str or None
+        `HORIZON`, or the event that ended the motion before it; None if nothing ends it or no motion was requested.
+    accuracy : Accuracy
+        Bound of the error: of figures relative to themselves, of samples to the scale of their column.
+    notices : tuple of Notice
+        What the reader of the figures must know.
+    work : Work
+        Samples computed.
+    requested_samples : int
+        Samples requested; `work` counts those that exist.
+    """
+
+    model: Model
+    figures: Mapping[str, Any]
+    trajectory: Trajectory | None
+    ended: str | None
+    accuracy: Accuracy
+    notices: tuple[Notice, ...]
+    work: Work
+    requested_samples: int
+
+    @property
+    def warnings(self) -> tuple[Notice, ...]:
+        """What the reader must know."""
+        return self.notices if self.trajectory is None else (*self.notices, *self.trajectory.warnings)
+
+
+class Outline(NamedTuple):
+    """What is computed of a scene beside its samples; see `SceneAnswer`. Events are those up to the horizon."""
+
+    model: Model
+    figures: Mapping[str, Any]
+    motion: Motion | None
+    ended: str | None
+    events: list[Event]
+
+
+@dataclass(frozen=True)
+class NamedScene(ABC):
+    """A member of the catalogue of scenes; a subclass is all that a scene is, and one file."""
+
+    outputs: ClassVar[tuple[str, ...]]
+    """Names of everything that can be requested: the fields of `figures_type`, and `MOTION`."""
+    figures_type: ClassVar[type]
+    """Dataclass, generic in the kind of number, that declares the figures: names, units, meanings."""
+    samples_type: ClassVar[type]
+    """Dataclass that declares the columns of the trajectory likewise, ``time`` first."""
+    examples: ClassVar[Mapping[str, SceneExample]]
+    """Questions, by a short name; the last is shown with certified digits too."""
+    of_motion: ClassVar[tuple[str, ...]] = ()
+    """Outputs that follow from the motion, beside `MOTION`."""
+    functions: ClassVar[Literal["elementary", "elliptic"]] = "elementary"
+    """What the motion is made of: samples with many digits are priced by it."""
+    exact_defaults: ClassVar[Mapping[str, Fraction]] = {}
+    """Defaults that are no doubles."""
+    warming: ClassVar[tuple[Mapping[str, Any], ...]] = ()
+    """Further questions, by which kernels are compiled that no example reaches."""
+
+    @abstractmethod
+    def figures(self) -> Mapping[str, Callable[[], Any]]:
+        """Return the figures that need no motion, by name, each to be computed only when it is called."""
+
+    @abstractmethod
+    def motion(self, horizon: float) -> Motion:
+        """Return the motion at least up to `horizon` (s)."""
+
+    @abstractmethod
+    def static_model(self) -> Model:
+        """Return the model of a question that needs no motion."""
+
+    @property
+    def has_motion(self) -> bool:
+        """Whether the parameters suffice for a motion; if not, what needs one is left out unless it is requested."""
+        return True
+
+    def motion_figures(self, motion: Any) -> Mapping[str, Callable[[], Any]]:
+        """Return figures of the motion beside its events, by name."""
+        return {}
+
+    def notices(self, wanted: frozenset[str]) -> tuple[Notice, ...]:
+        """Return what the reader of the wanted outputs must know."""
+        return ()
+
+    def inexact(self, motion: Any) -> NotApplicable | None:
+        """Return why a motion has no proven digits: it takes something as zero that is not exactly zero."""
+        return None
+
+    @classmethod
+    def units(cls) -> dict[str, str]:
+        """Return the units of the columns."""
+        hints = get_type_hints(cls.samples_type, include_extras=True)
+        return {
+            name: next(mark.unit for mark in _marks(hint) if isinstance(mark, Unit)) for name, hint in hints.items()
+        }
+
+    def trajectory(self, question: MotionQuestion) -> Trajectory:
+        """Return samples up to the end of the motion; see `core.systems.question.System`.
+
+        Raises
+        ------
+        NotApplicable
+            For a method that steps.
+        """
+        if question.integrator is not None:
+            raise NotApplicable(
+                "a named scene is answered in closed form, and no method steps it",
+                path=("method",),
+                remedy="leave the method out, or describe the scene to POST /v1/scenes",
+            )
+        found = self._answered(question, frozenset({"trajectory"}), question.accuracy).trajectory
+        assert found is not None
+        return found
+
+    def answer(
+        self,
+        times: Floats | None = None,
+        outputs: frozenset[str] | None = None,
+        accuracy: float = 1e-9,
+        digits: Digits | None = None,
+    ) -> SceneAnswer:
+        """Compute what is requested and nothing else.
+
+        Parameters
+        ----------
+        times : ndarray, shape (n,), optional
+            Instants of the trajectory, measured from the given state, in any order (s).
+        outputs : frozenset of str, optional
+            Names out of `outputs`; by default all, the trajectory if there are times.
+        accuracy : float
+            Largest error that is tolerated.
+        digits : int or "meaningful", optional
+            Of the samples.
+
+        Raises
+        ------
+        InvalidParameter
+            For an unknown output, a trajectory without times, times that are not finite or before the beginning.
+        AccuracyUnreachable
+            If the bound of the error is larger than `accuracy`.
+        """
+        check_value("accuracy", Tolerance, accuracy)
+        wanted = self.wanted(outputs, timed=times is not None)
+        question = None if times is None else MotionQuestion(checked_times(times, Budget()), accuracy)
+        found = self._answered(question, wanted, accuracy)
+        if digits is None or found.trajectory is None:
+            return found
+        short = shortened(replace(found.trajectory, accuracy=found.accuracy), digits)
+        return replace(found, trajectory=short, accuracy=short.accuracy)
+
+    def _answered(self, question: MotionQuestion | None, wanted: frozenset[str], accuracy: float) -> SceneAnswer:
+        with precision(BITS):
+            found, sharp = self._computed(question, wanted, accuracy)
+        if not sharp:
+            # What was computed so far is cached with the object, so a new one starts again.
+            with precision(MORE_BITS):
+                found, _ = replace(self)._computed(question, wanted, accuracy)
+        if found.accuracy.error > accuracy:
+            raise AccuracyUnreachable(
+                accuracy,
+                found.accuracy.error,
+                "the samples are differences of far larger numbers",
+                remedy="ask for fewer digits",
+            )
+        return found
+
+    def _computed(
+        self, question: MotionQuestion | None, wanted: frozenset[str], accuracy: float
+    ) -> tuple[SceneAnswer, bool]:
+        """Return the answer at the present precision, and whether that precision was enough."""
+        spend(WORK_OF_A_SCENE)
+        horizon = math.inf if question is None else max(0.0, float(np.max(question.times)))
+        rounded = Rounding()
+        found = self.outline(wanted, horizon, lambda time: float(time) <= horizon, rounded)
+        trajectory = None
+        if found.motion is not None and question is not None and "trajectory" in wanted:
+            trajectory = self._sampled(found, question)
+        answer = SceneAnswer(
+            model=found.model,
+            figures=found.figures,
+            trajectory=trajectory,
+            ended=found.ended,
+            accuracy=Accuracy(
+                accuracy, max(rounded.error, trajectory.accuracy.error if trajectory else 0.0), "closed form"
+            ),
+            notices=(*rounded.notices, *self.notices(wanted)),
+            work=Work(0 if trajectory is None else trajectory.time.size),
+            requested_samples=0 if question is None else question.times.size,
+        )
+        # A time that is a quotient by what may be zero is decided with more digits.
+        decided = found.motion is None or all(event.time.is_finite() for event in found.motion.events())
+        return answer, rounded.sharp and decided
+
+    def outline(
+        self, wanted: frozenset[str], horizon: float, happened: Callable[[Ball], bool], written: Callable[..., Any]
+    ) -> Outline:
+        """Return what is requested beside the samples, at the present precision.
+
+        Parameters
+        ----------
+        horizon : float
+            Up to which the motion is needed; infinite without one (s).
+        happened : callable
+            Whether a time is not beyond it.
+        written : callable
+            From a figure and its path to the same with numbers in place of balls.
+        """
+        table, events = dict(self.figures()), list[Event]()
+        motion, ended = None, None
+        if wanted & {*MOTION, *self.of_motion}:
+            motion = self.motion(horizon)
+            over = motion.end is not None and happened(motion.end.time)
+            ended = motion.end.kind if over and motion.end else HORIZON if math.isfinite(horizon) else None
+            events += [event for event in motion.events() if happened(event.time)]
+            table |= self.motion_figures(motion)
+            table["events"] = lambda: [{"kind": event.kind, "time": event.time} for event in events]
+        figures = {name: written(table[name](), (name,)) for name in self.outputs if name in wanted and name in table}
+        return Outline(self.static_model() if motion is None else motion.model, figures, motion, ended, events)
+
+    def _sampled(self, found: Outline, question: MotionQuestion) -> Trajectory:
+        """Return the samples that exist."""
+        motion = found.motion
+        assert motion is not None
+        rows = _existing(motion, question.times)
+        times = question.times[rows]
+        samples = motion.sample(times)
+        columns = samples.columns(self.units())
+        error = max((_relative(column.error, column.scale or 0.0) for column in columns.values()), default=0.0)
+        why = None if question.input_uncertainty is None else _NOT_KNOWN
+        return Trajectory(
+            times,
+            columns,
+            Accuracy(question.accuracy, error, "closed form", why=why),
+            motion.model,
+            ClosedFormEvaluation().kind,
+            Work(times.size),
+            ended=found.ended or HORIZON,
+            rows=rows,
+            events=[SceneEvent(event.kind, float(event.time)) for event in found.events],
+            warnings=samples.notices,
+        )
+
+    def wanted(self, outputs: frozenset[str] | None, *, timed: bool) -> frozenset[str]:
+        """Return the outputs that a question is about.
+
+        Parameters
+        ----------
+        outputs : frozenset of str or None
+            Those requested by name; None for all that can be given.
+        timed : bool
+            Whether the question has times, without which there is no trajectory.
+
+        Raises
+        ------
+        InvalidParameter
+            For an unknown output, or a trajectory without times.
+        """
+        if outputs is None:
+            names = frozenset(self.outputs) - (frozenset() if timed else frozenset({"trajectory"}))
+            return names if timed or self.has_motion else names - {*MOTION, *self.of_motion}
+        for name in sorted(outputs - set(self.outputs)):
+            raise InvalidParameter("outputs", f"name known outputs, not {name!r}", remedy=f"one of {self.outputs}")
+        if "trajectory" in outputs and not timed:
+            raise InvalidParameter("times", "be given when a trajectory is requested")
+        return outputs
+
+
+def _marks(hint: Any) -> tuple[Any, ...]:
+    """Return the marks of an annotation, at any depth."""
+    inner = tuple(mark for part in getattr(hint, "__args__", ()) for mark in _marks(part))
+    return (*getattr(hint, "__metadata__", ()), *inner)
+
+
+def _relative(error: float, scale: float) -> float:
+    return error / scale if scale > 0.0 else 0.0 if error == 0.0 else math.inf
+
+
+def _existing(motion: Motion, instants: Floats) -> Any:
+    """Return the rows of the instants at which there is a motion; samples past its end are not invented."""
+    if float(np.min(instants, initial=0.0)) < motion.valid_from:
+        raise InvalidParameter(
+            "times",
+            f"be at least {motion.valid_from:.17g} s",
+            remedy="the model does not hold earlier; start from an earlier state",
+        )
+    return np.flatnonzero(instants <= (math.inf if motion.end is None else float(motion.end.time)))

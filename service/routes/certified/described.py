@@ -1,0 +1,139 @@
+"""Described scenes to any number of digits: the start, and the motion where it can be proven."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from core.certified.adaptive_precision import check_digits
+from core.multibody.proven_answer import PROVEN_OUTPUTS, proven_answer
+from core.systems.budget import Budget
+from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants
+from service.requests.described_scene import SceneDescription
+from service.responses.svg import SVG
+from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
+from service.routes.certified.cost import SET_UP
+from service.routes.described_answer import AtStart, OwnUnit
+from service.routes.described_figure import drawn
+from service.routes.described_scenes import DESCRIBED_SCENES, model_fields
+from service.routes.planning_probes import FEW_CERTIFIED, few_of
+from service.routing import Answer, PlanningProbe
+from service.schemas import DecimalString, Seconds, View, fields_of, sample_count
+
+NUMBERS_OF_A_BODY = 8
+"""Numbers in a sample of a body, about."""
+PER_SECOND = 0.7
+"""Time to prove a second of the motion of a pendulum to 28 digits (s)."""
+NEAR = 1e-4
+"""How far (s) a motion is followed when it is planned: one step, most often."""
+LONGEST = 20.0
+"""Time after which the steps that core allows are used up, about (s)."""
+
+Output = Literal["accelerations", "forces", "energy", "trajectory"]
+
+
+class CertifiedSceneRequest(SceneDescription):
+    """Bodies, what connects them, and to how many digits they are asked about."""
+
+    times: DecimalTimes | None = Field(
+        default=None,
+        description="Measured from the given state, of either sign, in any order. Constant accelerations and modes are "
+        "proven at any time, other motions for some seconds.",
+    )
+    outputs: list[Output] | None = Field(
+        default=None, min_length=1, description=f"What to answer; default: {', '.join(PROVEN_OUTPUTS)}."
+    )
+    digits: DigitCount
+
+
+class CertifiedColumn(View):
+    """One quantity at every time."""
+
+    values: Annotated[list[DecimalString | list[DecimalString]], OwnUnit] = Field(description="One row per time.")
+    unit: str
+
+
+class CertifiedMotion(View):
+    """Columns by name, such as rod.angle, at the times that the motion reaches."""
+
+    time: list[Seconds[DecimalString]]
+    rows: list[int] = Field(description="Which of the times of the question these are, from 0.")
+    columns: dict[str, CertifiedColumn]
+
+
+class CertifiedDescribedAnswer(Certified, AtStart[DecimalString]):
+    """The requested answer about a scene, numbers as decimal strings."""
+
+    ended: str | None = Field(description="horizon, or the kind of the event that ends the motion; null without times.")
+    trajectory: CertifiedMotion | None = None
+
+
+def answer_certified_scene(question: CertifiedSceneRequest, budget: Budget) -> Answer:
+    """Answer a question about a described scene with proven digits."""
+    digits = question.digits
+    _samples(question, budget)
+    times = () if question.times is None else instants(question.times)
+    found = proven_answer(question.scene(), digits, times, question.outputs or PROVEN_OUTPUTS)
+    answer: Answer = {
+        "model": model_fields(found.model),
+        "accuracy": accuracy(digits),
+        "ended": found.ended,
+        "warnings": found.warnings,
+    }
+    for name in ("accelerations", "forces"):
+        figures = getattr(found, name)
+        if figures is not None:
+            answer[name] = {key: fields_of(one) for key, one in figures.items()}
+    if found.energy is not None:
+        answer["energy"] = fields_of(found.energy)
+    if found.columns is not None and found.rows is not None:
+        answer["trajectory"] = {
+            "time": times_written([times[row] for row in found.rows], digits),
+            "rows": found.rows,
+            "columns": {name: fields_of(column) for name, column in found.columns.items()},
+        }
+    return answer
+
+
+def _samples(question: CertifiedSceneRequest, budget: Budget) -> int:
+    if question.times is None:
+        return 0
+    samples = sample_count(question.times, budget)
+    check_digits(question.digits, NUMBERS_OF_A_BODY * len(question.bodies) * samples)
+    return samples
+
+
+def certified_scene_cost(question: CertifiedSceneRequest, budget: Budget) -> float:
+    """Return the predicted time (s); that of a motion is an upper one, as few have a closed form."""
+    samples, bodies = _samples(question, budget), float(max(1, len(question.bodies)))
+    set_up = SET_UP + 2e-3 * (bodies + len(question.connections))
+    if question.times is None:
+        return set_up
+    first, last = (float(time) for time in ends(question.times))
+    seconds = min(LONGEST, max(0.0, last) - min(0.0, first))
+    moving = float(PER_SECOND * seconds * bodies**2.5 * (question.digits / 28.0) ** 1.5)
+    return set_up + min(LONGEST, moving) + 1e-4 * samples * bodies
+
+
+def certified_scene_probe(question: CertifiedSceneRequest, budget: Budget) -> PlanningProbe:
+    """Answer the question at few times near the start, where the rows are as long."""
+    if question.times is None:
+        return PlanningProbe(answer_certified_scene(question, budget))
+    times = instants(question.times)
+    few = [float(times[k]) for k in few_of(len(times), FEW_CERTIFIED)]
+    reach = max(map(abs, few))
+    near = [time * min(1.0, NEAR / reach) for time in few] if reach else few
+    fields = answer_certified_scene(question.model_copy(update={"times": near}), budget)
+    return PlanningProbe(fields, {"trajectory": len(times) / len(few)})
+
+
+CERTIFIED_DESCRIBED = certified_route(
+    DESCRIBED_SCENES[0],
+    question=CertifiedSceneRequest,
+    answer=CertifiedDescribedAnswer,
+    handle=answer_certified_scene,
+    price=certified_scene_cost,
+    planning_probe=certified_scene_probe,
+    representations={SVG: drawn},
+)

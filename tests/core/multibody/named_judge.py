@@ -1,0 +1,208 @@
+"""Named scenes with events, described anew: unwinding shafts, smooth and rough, and a rod that leaves its hole.
+
+    python -m tests.core.multibody.named_judge 1000
+
+The named scenes have closed forms of their own, and share no code with described ones. Whatever differs is printed.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from core.multibody.answer import SceneAnswer
+from core.multibody.solve import solve_scene
+from core.scenes.friction import Friction
+from core.scenes.rod_in_hole import RodInHole
+from core.scenes.unwinding_shafts import UnwindingShafts
+from tests.core.multibody.random_scenes import decimal
+from tests.core.multibody.worked_examples import column, read
+
+OWN = 2e-15
+"""Relative error of the named scenes' samples."""
+
+
+def shafts(named: UnwindingShafts) -> dict[str, Any]:
+    """Return the same scene in bodies and connections, the apex at the origin."""
+    bodies, connections = {}, []
+    assert named.positions is not None
+    for i, (name, side) in enumerate((("one", -1), ("two", 1))):
+        mass, radius, slope = named.masses[i], named.radii[i], named.slopes[i]
+        x, v, w = named.positions[i], named.velocities[i], named.spins[i]
+        bodies[name] = {
+            "mass": mass,
+            "radius": radius,
+            "inertia": f"{mass}*{radius}*{radius}/2",
+            "at": [
+                f"{side}*({x}*cos({slope}) + {radius}*sin({slope}))",
+                f"{radius}*cos({slope}) - {x}*sin({slope})",
+            ],
+            "velocity": [f"{side}*({v})*cos({slope})", f"-({v})*sin({slope})"],
+            "angular_velocity": -side * w,
+        }
+        if named.friction is None:
+            rail = {"at": [f"{side}*{radius}*sin({slope})", f"{radius}*cos({slope})"], "slope": -side * slope}
+            connections.append({"kind": "track", "name": f"face-{name}", "place": name, "on": rail})
+        else:
+            law = [named.friction.static[i], named.friction.kinetic[i]]
+            face = {"at": [0, 0], "slope": -side * slope}
+            connections.append({"kind": "contact", "name": f"face-{name}", "place": name, "on": face, "friction": law})
+    string = {
+        "kind": "string",
+        "name": "s",
+        "through": ["one", [0, 0], "two"],
+        "sides": {"one": "below", "two": "below"},
+        "restitution": named.restitution,
+    }
+    return {
+        # Named scenes take their numbers as doubles.
+        "numbers": "doubles",
+        "gravity": [0, f"-{named.gravity}"],
+        "bodies": bodies,
+        "connections": [*connections, string],
+    }
+
+
+def random_shafts(seed: int, *, rough: bool = False) -> UnwindingShafts:
+    random = np.random.default_rng(seed)
+    drawn = UnwindingShafts(
+        masses=(decimal(random, 0.5, 4), decimal(random, 0.5, 4)),
+        radii=(decimal(random, 0.05, 0.3), decimal(random, 0.05, 0.3)),
+        slopes=(decimal(random, 0.2, 1.2), decimal(random, 0.2, 1.2)),
+        gravity=9.81,
+        positions=(50.0, 50.0),
+        wound=(40.0, 40.0),
+        velocities=(decimal(random, -1, 2), decimal(random, -1, 2)),
+        spins=(decimal(random, -10, 20), decimal(random, -10, 20)),
+        restitution=(0.0, 0.3, 0.7)[seed % 3],
+        friction=None
+        if not rough
+        else Friction(
+            static=(decimal(random, 0.2, 0.6), decimal(random, 0.2, 0.6)),
+            kinetic=(decimal(random, 0.05, 0.2), decimal(random, 0.05, 0.2)),
+        ),
+    )
+    return drawn
+
+
+def require_same_shafts(named: UnwindingShafts, described: dict[str, Any] | None = None) -> SceneAnswer:
+    """Raise `AssertionError` unless described shafts move as named ones; return the answer about the described."""
+    times = np.linspace(0.0, 1.5, 16)
+    theirs = named.answer(times)
+    assert theirs.trajectory is not None
+    answer = solve_scene(read(described or shafts(named)), times)
+    assert answer.problem is None, answer.problem
+    jerks = [event for event in answer.events if event.kind == "taut"]
+    phases = theirs.figures["phases"]
+    starts = [phase["start"] for phase in phases if phase["kind"] == "taut" and 0.0 < phase["start"] < 1.5]
+    ends = [event for event in answer.events if event.kind == "settle"] or jerks[-1:]
+    if starts and named.friction is None:
+        own = 1e-14 * starts[-1]
+        assert abs(ends[-1].time - starts[-1]) <= ends[-1].error + own, ("jerks end", ends[-1], starts[-1])
+    for i, (name, side) in enumerate((("one", -1), ("two", 1))):
+        down = np.array([side * np.cos(named.slopes[i]), -np.sin(named.slopes[i])])
+        place = column(answer, f"{name}.position")
+        expected = place.values[0] + (theirs.trajectory["positions"][:, i] - 50.0)[:, None] * down
+        away = float(np.linalg.norm(place.values - expected, axis=1).max())
+        assert away <= place.error + OWN * 60, (name, away, place.error)
+        spin = column(answer, f"{name}.angular_velocity")
+        away = float(np.abs(spin.values + side * theirs.trajectory["spins"][:, i]).max())
+        assert away <= spin.error + 1e-13, (name, "spin", away, spin.error)
+    return answer
+
+
+def rod(named: RodInHole) -> dict[str, Any]:
+    """Return the rod with both ends in a round hollow."""
+    a, length, angle, rate = named.hole_radius, named.length, named.angle, named.angular_velocity
+    return {
+        "numbers": "doubles",
+        "gravity": [0, f"-{named.gravity}"],
+        "let": {
+            "k": f"sqrt((2*{a} - {length})*(2*{a} + {length}))/2",
+            "c": f"cos({angle})",
+            "s": f"sin({angle})",
+        },
+        "bodies": {
+            "rod": {
+                "mass": named.mass,
+                "inertia": f"{named.inertia_factor}*{named.mass}*{length}*{length}",
+                "at": ["k*s", "-k*c"],
+                "velocity": [f"k*c*({rate})", f"k*s*({rate})"],
+                "angle": angle,
+                "angular_velocity": rate,
+                "places": {"a": [f"-{length}/2", 0], "b": [f"{length}/2", 0]},
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": end, "place": f"rod.{end}", "on": {"at": [0, 0], "radius": -a}} for end in "ab"
+        ],
+    }
+
+
+def random_rod(seed: int) -> RodInHole:
+    random = np.random.default_rng(seed)
+    radius = decimal(random, 0.5, 2)
+    return RodInHole(
+        hole_radius=radius,
+        length=float(f"{radius * random.uniform(0.3, 1.8):.4g}"),
+        mass=decimal(random, 0.5, 3),
+        gravity=9.81,
+        angle=decimal(random, -2.5, 2.5),
+        angular_velocity=decimal(random, -6, 6),
+        inertia_factor=decimal(random, 0.05, 0.25),
+        hole="cylinder",
+    )
+
+
+def require_same_rod(named: RodInHole) -> SceneAnswer:
+    """Raise `AssertionError` unless the described rod turns and leaves the wall as the named one."""
+    times = np.linspace(0.0, 2.0, 11)
+    theirs = named.answer(times)
+    assert theirs.trajectory is not None
+    answer = solve_scene(read(rod(named)), times, ("trajectory",))
+    told = next((event for event in theirs.figures["events"] if event["time"] >= 0.0), None)
+    if told is not None and told["time"] == 0.0:
+        assert answer.phases is not None
+        assert answer.phases[0].states[told["kind"][4]] == "open", told
+        return answer
+    mine = next((event for event in answer.events if event.kind == "lift-off"), None)
+    if told is None or told["time"] > 2.0:
+        assert mine is None, mine
+    else:
+        assert mine is not None, told
+        assert abs(mine.time - told["time"]) <= mine.error + 1e-14 * max(1.0, told["time"]), (mine, told)
+        assert told["kind"] == f"end-{mine.name}-leaves-wall", (mine, told)
+    count = len(theirs.trajectory["angle"])
+    angle = column(answer, "rod.angle")
+    away = float(np.abs(angle.values[:count] - theirs.trajectory["angle"]).max())
+    assert away <= angle.error + 4 * OWN * max(1.0, float(np.abs(angle.values).max())), (away, angle.error)
+    return answer
+
+
+JUDGES: dict[str, Callable[[int], SceneAnswer]] = {
+    "shafts": lambda seed: require_same_shafts(random_shafts(seed)),
+    "rough shafts": lambda seed: require_same_shafts(random_shafts(seed, rough=True)),
+    "rod": lambda seed: require_same_rod(random_rod(seed)),
+}
+
+
+def main(count: int) -> None:
+    """Judge random scenes of every kind, and print what differs."""
+    for kind, judged in JUDGES.items():
+        found: Counter[str] = Counter()
+        for seed in range(count):
+            try:
+                events = judged(seed).events
+                found["with events" if events else "without"] += 1
+            except Exception as fault:
+                found["differ"] += 1
+                sys.stdout.write(f"{kind} {seed} {type(fault).__name__}: {str(fault)[:300]}\n")
+        sys.stdout.write(f"{kind}: {dict(found)}\n")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))
