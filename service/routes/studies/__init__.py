@@ -87,7 +87,7 @@ same bits whatever the number of processes, and after any interruption. `/v1/pla
 
 def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     """Return the route of studies of questions to `routes`."""
-    table = QuestionTable(routes, ())
+    table = QuestionTable(routes, (), "have studies")
 
     def plan(question: StudyRequest, budget: Budget) -> Answer:
         route, design = table.route(question.question), question.all_members()
