@@ -32,8 +32,10 @@ class Value:
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
         vector = {"type": "array", "items": {"type": "number", "x-unit": "1"}}
-        plain = ({"type": "number", "x-unit": "1"}, {"type": "string"}, {"type": "boolean"}, {"type": "object"})
-        return {"anyOf": [*plain, vector]}
+        plain = ({"type": "number", "x-unit": "1"}, {"type": "string"}, {"type": "boolean"})
+        # Such as a whole method.
+        composed = {"type": "object", "title": "ComposedValue"}
+        return {"anyOf": [*plain, composed, vector]}
 
 
 @dataclass(frozen=True)

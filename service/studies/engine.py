@@ -28,7 +28,7 @@ from service.studies.summary import summary
 from service.studies.task import Computed, compute, end_process, without_answer
 
 CHUNK_SECONDS = 0.5
-"""Processor time that a stretch should take."""
+"""Processor time that a stretch should take, and time after which it begins no further member."""
 
 LEAST_SECONDS = 0.05
 """Processor time below which a stretch is not divided among processes."""
@@ -185,7 +185,9 @@ class Engine:
             self._submit(work, work.next_stretch(self._processes))
 
     def _submit(self, work: Work, stretch: Stretch) -> None:
-        future = self._cluster.client.submit(compute, self._terms, work.study.request, *stretch, pure=False)
+        future = self._cluster.client.submit(
+            compute, self._terms, work.study.request, *stretch, CHUNK_SECONDS, pure=False
+        )
         work.in_flight[future] = stretch, time.monotonic()
         future.add_done_callback(self._done.put)
 
@@ -243,17 +245,20 @@ class Engine:
         self._store.end(work.study.id, FAILED, message)
 
     def _keep(self, work: Work, stretch: Stretch, found: Computed) -> None:
+        start, stop = stretch[0], stretch[0] + found.count
         try:
-            self._files.write(work.study.id, *stretch, found.data)
-            self._store.add_chunk(work.study.id, *stretch, found.failed, found.seconds)
+            self._files.write(work.study.id, start, stop, found.data)
+            self._store.add_chunk(work.study.id, start, stop, found.failed, found.seconds)
         except Exception as fault:
             # A full disk, most often: the members are computed again when there is room.
             work.missing.appendleft(stretch)
             self._say(f"results cannot be stored, which is tried again: {fault}")
             time.sleep(PAUSE)
             return
-        count = stretch[1] - stretch[0]
-        work.each = max(FASTEST, 0.5 * (work.each + found.seconds / count))
+        if stop < stretch[1]:
+            # Its time was up.
+            work.missing.appendleft((stop, stretch[1]))
+        work.each = max(FASTEST, 0.5 * (work.each + found.seconds / found.count))
 
     def _end_overdue(self) -> None:
         """End processes that have had a stretch for much longer than predicted."""

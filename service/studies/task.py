@@ -6,6 +6,7 @@ import os
 import signal
 import time
 from functools import lru_cache
+from math import inf
 from pkgutil import resolve_name
 from typing import Any, NamedTuple
 
@@ -27,6 +28,8 @@ class Computed(NamedTuple):
     ----------
     data : bytes
         Of their file.
+    count : int
+        Members of it.
     failed : int
         Members that have no result but a problem.
     seconds : float
@@ -34,15 +37,22 @@ class Computed(NamedTuple):
     """
 
     data: bytes
+    count: int
     failed: int
     seconds: float
 
 
-def compute(terms: Terms, request: bytes, start: int, stop: int) -> Computed:
-    """Return the results of the members from `start` up to `stop` of a study."""
+def compute(terms: Terms, request: bytes, start: int, stop: int, seconds: float = inf) -> Computed:
+    """Return the results of the members from `start` up to `stop` of a study, or of the first of them.
+
+    Parameters
+    ----------
+    seconds : float
+        Time after which no further member is begun.
+    """
     members = opened(terms, request)
     since = time.thread_time()
-    return _computed(members.block(start, stop), since)
+    return _computed(members.block(start, stop, seconds), since)
 
 
 def without_answer(terms: Terms, request: bytes, member: int, code: str) -> Computed:
@@ -64,4 +74,4 @@ def opened(terms: Terms, request: bytes) -> Any:
 
 def _computed(block: Any, since: float) -> Computed:
     data = packed(block.document())
-    return Computed(data, int(np.count_nonzero(block.failures)), time.thread_time() - since)
+    return Computed(data, len(block.figures), int(np.count_nonzero(block.failures)), time.thread_time() - since)

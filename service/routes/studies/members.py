@@ -6,7 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, nan
+from math import inf, isfinite, nan
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -94,8 +95,15 @@ class Members:
         """Return the question that a member asks, or raise its refusal."""
         return self._source.read(self._document(self.design.numbers(member, member + 1)[0].tolist()).encode())
 
-    def block(self, start: int, stop: int) -> Block:
-        """Return the results of the members from `start` up to `stop`."""
+    def block(self, start: int, stop: int, seconds: float = inf) -> Block:
+        """Return the results of the members from `start` up to `stop`, or of the first of them if time runs out.
+
+        Parameters
+        ----------
+        seconds : float
+            Time after which no further member is begun; one is answered in any case.
+        """
+        until = perf_counter() + seconds
         numbers = self.design.numbers(start, stop)
         figures = np.full((stop - start, len(self._figures)), nan)
         failures, warnings = np.zeros(stop - start, np.uint16), np.zeros(stop - start, np.uint16)
@@ -108,7 +116,11 @@ class Members:
                 if (which & many.answered).any():
                     warnings[which & many.answered] = warned.label((code,))
             rest = np.flatnonzero(~many.answered).tolist()
+        done = stop - start
         for k in rest:
+            if k and perf_counter() > until:
+                done = k
+                break
             answer = self._answered(numbers[k].tolist())
             if isinstance(answer, str):
                 failures[k] = failed.label((answer,))
@@ -119,7 +131,8 @@ class Members:
                 continue
             figures[k] = [nan if value is None else value for value in row]
             warnings[k] = warned.label(tuple(sorted({notice.code for notice in answer.get("warnings", ())})))
-        return Block(start, numbers, figures, failures, warnings, failed.names, warned.names)
+        names = failed.names, warned.names
+        return Block(start, numbers[:done], figures[:done], failures[:done], warnings[:done], *names)
 
     def failed(self, start: int, stop: int, code: str) -> Block:
         """Return members that could not be answered, all for one reason."""
