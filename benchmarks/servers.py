@@ -28,13 +28,13 @@ class Server:
     def compute_processes(self) -> list[int]:
         """Return the processes that its fork server has started."""
         found: list[int] = []
-        for child in _children(self.pid):
+        for child in children(self.pid):
             if b"forkserver" in Path(f"/proc/{child}/cmdline").read_bytes():
-                found += _children(child)
+                found += children(child)
         return found
 
 
-def _children(process: int) -> list[int]:
+def children(process: int) -> list[int]:
     text = Path(f"/proc/{process}/task/{process}/children").read_text()
     return [int(child) for child in text.split()]
 

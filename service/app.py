@@ -30,8 +30,10 @@ from service.openapi.document import ABOUT, document_routes, openapi
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages
-from service.routing import TABLE, PostRoute, Route
+from service.routing import TABLE, PostRoute, Route, StudyRoute
 from service.settings import Settings
+from service.studies.resources import Studies
+from service.studies.supervisor import Supervisor
 
 
 class Service(FastAPI):
@@ -66,8 +68,11 @@ class Service(FastAPI):
         self.compute = Compute(settings, self.metrics, table)
         terms = self.compute.terms
         self.answering = RequestHandler(questions, terms.budget, terms.limits)
+        self._supervisor = Supervisor(settings, table, self.metrics)
+        studies = Studies(settings, self._supervisor, self.compute)
         self.table: tuple[Route, ...] = (
             *questions,
+            *(studies.routes() if any(isinstance(route, StudyRoute) for route in questions) else ()),
             *catalogues(),
             *operations(ready=lambda: self.warm and self.compute.any_ready, metrics=self.metrics),
             *pages(self.openapi_text),
@@ -80,6 +85,7 @@ class Service(FastAPI):
             metrics=self.metrics,
             settings=settings,
             keys=self._keys,
+            submit=studies.submit,
         )
         self._handlers, self._bodies = dispatcher.handlers, dispatcher.bodies
         document_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
@@ -104,9 +110,9 @@ class Service(FastAPI):
         return CORSMiddleware(
             app,
             allow_origins=origins,
-            allow_methods=("GET", "HEAD", "POST"),
+            allow_methods=("GET", "HEAD", "POST", "DELETE"),
             allow_headers=("authorization", "content-type", "if-none-match", "x-request-id"),
-            expose_headers=("etag", "retry-after", "server-timing", "x-request-id"),
+            expose_headers=("etag", "location", "retry-after", "server-timing", "x-request-id"),
             max_age=3600,
         )
 
@@ -122,7 +128,7 @@ class Service(FastAPI):
         if not LOG.hasHandlers():
             # Servers configure their own logging, not that of an application.
             configure(self.settings.log_level)
-        kept_up = [self._warm(), self._publish(), self._bodies.watch()]
+        kept_up = [self._warm(), self._publish(), self._bodies.watch(), self._supervisor.watch()]
         if self._keys is not None:
             kept_up.append(self._keys.follow())
         tasks = [asyncio.create_task(work) for work in kept_up]
@@ -134,7 +140,8 @@ class Service(FastAPI):
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
-            await self.compute.stop()
+            await asyncio.gather(self.compute.stop(), self._supervisor.stop())
+            self._supervisor.store.close()
             remove_temporary_files()
 
     async def _warm(self) -> None:

@@ -77,6 +77,12 @@ REGISTRY: Mapping[str, ProblemType] = {
         ProblemType(
             "method-not-allowed", 405, "This path does not answer this method", "The Allow header lists the methods."
         ),
+        ProblemType(
+            "results-not-ready",
+            404,
+            "The study has no results",
+            "Ask when its status is successful; a dismissed study never has.",
+        ),
         ProblemType("not-acceptable", 406, "No representation fits the Accept header", "Accept application/json."),
         ProblemType(
             "body-too-slow", 408, "The body did not arrive in time", "The limit is named; send the body without pauses."
@@ -163,6 +169,12 @@ REGISTRY: Mapping[str, ProblemType] = {
             503,
             "Not enough memory for the answer",
             "Memory or files of the machine are used up. Ask again in a moment, or for fewer samples.",
+        ),
+        ProblemType(
+            "storage-unavailable",
+            503,
+            "What is to be stored cannot be",
+            "The disk is full, or the folder of data cannot be written; the detail says which. Nothing was accepted.",
         ),
         ProblemType("shutting-down", 503, "The service is being stopped", "Ask again in a moment."),
         ProblemType("not-ready", 503, "The service is still preparing itself", "Ask again in a moment."),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel
 
+from core.errors import Path
 from core.systems.budget import Budget
 
 TABLE = "service.routes:questions"
@@ -48,12 +51,37 @@ class PlanningProbe:
         Order of magnitude of the error of a method that is named, of which few steps are run.
     exact : mapping
         Fields of the answer in closed form beside that.
+    seconds : float or None
+        Time of what is planned, where that is not the price of the request itself.
     """
 
     fields: Answer
     growth: Mapping[str, float] = field(default_factory=dict)
     error: float | None = None
     exact: Answer = field(default_factory=dict)
+    seconds: float | None = None
+
+
+class ManyFigures(NamedTuple):
+    """Figures of many questions that differ in some numbers.
+
+    Attributes
+    ----------
+    answered : ndarray, shape (n,), of bool
+        Which of the questions are answered here; the others are to be answered one by one.
+    figures : ndarray, shape (n, q)
+        NaN where an answer has null; those that are not answered are not set.
+    warned : mapping of str to ndarray, shape (n,), of bool
+        By the code of a warning, which answers have it.
+    """
+
+    answered: NDArray[np.bool_]
+    figures: NDArray[np.float64]
+    warned: Mapping[str, NDArray[np.bool_]]
+
+
+Columns = Mapping[Path, NDArray[np.float64]]
+"""Numbers of many questions, shape (n,) each, by their place in the request."""
 
 
 def free(question: Any, budget: Budget) -> float:
@@ -95,6 +123,9 @@ class PostRoute:
         under their names, and what the bounds rest on.
     elsewhere : mapping
         Fields that belong to another route, each with the remedy for who sends it here.
+    many : callable or None
+        From a request that can be read, columns of numbers that take the place of some of its own, and the paths of
+        figures to the figures of all these questions, to the bit those of `handle`; None for what it cannot do.
     """
 
     path: str
@@ -113,7 +144,50 @@ class PostRoute:
     representations: Mapping[str, Callable[[Answer], bytes]] = field(default_factory=dict)
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     errors: Callable[[Any, Budget], tuple[Answer, str]] | None = None
+    many: Callable[[Any, Columns, Sequence[Path]], ManyFigures | None] | None = None
     method: str = "POST"
+
+
+@dataclass(frozen=True)
+class StudyRoute(PostRoute):
+    """POST of a study: what is answered at once is what the study will be, which then is stored and worked on.
+
+    Attributes
+    ----------
+    members : callable
+        From question and budget to what answers the study's members.
+    """
+
+    members: Callable[[Any, Budget], Any] = free
+
+
+@dataclass(frozen=True)
+class ResourceRoute:
+    """GET or DELETE of what a client has made; its path has parameters in braces.
+
+    Attributes
+    ----------
+    respond : callable
+        Answers a request, given its `service.http.request_context.RequestContext`.
+    answer : type or None
+        Pydantic model that documents a JSON answer.
+    representations : sequence of str
+        Media types of other answers.
+    example : mapping or None
+        An example of a JSON answer.
+    """
+
+    method: str
+    path: str
+    operation_id: str
+    summary: str
+    tag: str
+    respond: Callable[[Any], Awaitable[None]]
+    answer: type[BaseModel] | None = None
+    description: str = ""
+    representations: Sequence[str] = ()
+    example: Mapping[str, Any] | None = None
+    documented: bool = True
 
 
 @dataclass(frozen=True)
@@ -145,4 +219,4 @@ class GetRoute:
     method: str = "GET"
 
 
-Route = PostRoute | GetRoute
+Route = PostRoute | GetRoute | ResourceRoute

@@ -89,6 +89,44 @@ class Settings(BaseSettings):
         description="Number of answers of at most 8 kB that are cached, with their questions; 0 caches none.",
     )
 
+    data: str = Field(
+        default="",
+        description="Folder of what is stored: studies and their results. By default polhode in the user's folder of "
+        "data ($XDG_DATA_HOME or ~/.local/share); made when the first study comes.",
+    )
+    studies_results: str = Field(
+        default="",
+        description="URL, as fsspec has it, of where the results of studies are stored, such as s3://bucket/studies; "
+        "by default the folder of data.",
+    )
+    studies_keep_days: float = Field(
+        default=30.0, gt=0, description="Days after its end after which a study and its results are removed."
+    )
+    dask: str = Field(
+        default="",
+        description="Address of a Dask scheduler that computes studies, such as tcp://scheduler:8786; by default a "
+        "cluster on this machine is started with the first study.",
+    )
+    study_workers: int = Field(
+        default=0, ge=0, le=1024, description="Processes of the cluster on this machine; 0 takes one per core."
+    )
+    study_memory_bytes: int = Field(
+        default=0,
+        ge=0,
+        description="Memory of these processes together; one that takes more than its share is ended. 0 takes half "
+        "of the machine's.",
+    )
+    study_idle_seconds: float = Field(
+        default=60.0, gt=0, le=LONGEST, description="Time without studies after which their processes are ended."
+    )
+    max_studies: int = Field(
+        default=100, ge=1, description="Unfinished studies of one key, or of all without keys (429)."
+    )
+    max_study_members: int = Field(default=10_000_000, ge=1, description="Largest number of members of a study (422).")
+    max_study_seconds: float = Field(
+        default=1e6, gt=0, description="Largest predicted processor time of a study, in seconds (422)."
+    )
+
     keys_file: Annotated[FilePath, BeforeValidator(_named)] | None = Field(
         default=None,
         description="File of accepted keys, one per line: name, SHA-256, requests per second, seconds of work "

@@ -1,6 +1,23 @@
-"""What holds for every test: property tests draw the same examples in every run."""
+"""What holds for every test: property tests draw the same examples in every run, and nothing works on studies.
+
+Data go to a temporary folder. The lock on its studies is held here, so that services in tests start no process
+for them.
+"""
+
+import contextlib
+import fcntl
+import os
+import tempfile
+from pathlib import Path
 
 from hypothesis import settings
 
 settings.register_profile("fixed", derandomize=True, deadline=None)
 settings.load_profile("fixed")
+
+# Before any settings of the service are read.
+FOLDER = Path(os.environ.setdefault("POLHODE_DATA", tempfile.mkdtemp(prefix="polhode-tests-")))
+LOCK = os.open(FOLDER / "studies.lock", os.O_RDWR | os.O_CREAT)
+with contextlib.suppress(BlockingIOError):
+    # Unless another process of these tests has it.
+    fcntl.flock(LOCK, fcntl.LOCK_EX | fcntl.LOCK_NB)

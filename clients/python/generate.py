@@ -19,7 +19,7 @@ PACKAGE = HERE / "polhode_client"
 Schema = Mapping[str, Any]
 
 PLAIN = {"string": "str", "number": "float", "integer": "int", "boolean": "bool", "null": "None"}
-TEXT = ("image/svg+xml", "text/html", "text/plain", "text/javascript", "text/css")
+TEXT = ("image/svg+xml", "text/html", "text/plain", "text/javascript", "text/css", "text/event-stream")
 
 HEAD = '''"""{}
 
@@ -145,7 +145,8 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
     types = Types(components, {name for schema in requests.values() for name in _within(schema, components)})
     rows, methods, awaited = [], [], []
     for name, method, path, entry in table:
-        media = entry["responses"]["200"]["content"]
+        media = next(entry["responses"][status] for status in ("200", "202") if status in entry["responses"])["content"]
+        places = [parameter["name"] for parameter in entry.get("parameters", ()) if parameter["in"] == "path"]
         asked = (
             f"**question: Unpack[documents.{types.annotation(requests[name], sent=True)}]" if name in requests else ""
         )
@@ -157,8 +158,10 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
             answer = types.annotation(schema, sent=False)
             answer = {"str": "str", "Any": "dict[str, Any]"}[answer] if plain else f"documents.{answer}"
             kind = next((kind for kind in media if kind in TEXT), None) if plain and schema else None
-            call = f"self._ask({name!r}, {'question' if asked else 'None'}, {kind!r})"
-            head = f"def {name}{suffix}(self{', ' + asked if asked else ''}) -> {answer}:"
+            passed = "".join(f", {place}={place}" for place in places)
+            call = f"self._ask({name!r}, {'question' if asked else 'None'}, {kind!r}{passed})"
+            given = "".join(f", {place}: str" for place in places)
+            head = f"def {name}{suffix}(self{given}{', ' + asked if asked else ''}) -> {answer}:"
             text = f'"""{entry["summary"]}{", as a drawing" if suffix else ""}."""'
             methods.append(f"    {head}\n        {text}\n        found: {answer} = {call}\n        return found\n")
             awaited.append(
@@ -177,7 +180,10 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
         + "from typing import Any, NamedTuple, Unpack\n\n"
         + "from polhode_client import documents\n\n\n"
         + 'class Operation(NamedTuple):\n    """Method, path and summary."""\n\n'
-        + "    method: str\n    path: str\n    summary: str\n\n\n"
+        + "    method: str\n    path: str\n    summary: str\n\n"
+        + "    def at(self, **places: str) -> Operation:\n"
+        + '        """Return the operation with the braces of its path filled."""\n'
+        + "        return self._replace(path=self.path.format(**places)) if places else self\n\n\n"
         + "OPERATIONS: Mapping[str, Operation] = {\n    "
         + "\n    ".join(rows)
         + "\n}\n\n\n"
@@ -190,8 +196,9 @@ def generated(document: Mapping[str, Any]) -> dict[str, str]:
 def _class(name: str, ask: str, text: str, methods: list[str]) -> str:
     return (
         f'class {name}(ABC):\n    """{text}"""\n\n    @abstractmethod\n'
-        f"    {ask}(self, name: str, question: Mapping[str, Any] | None, media: str | None) -> Any:\n"
-        f'        """Return what an operation answers, in a media type or as its document."""\n\n' + "\n".join(methods)
+        f"    {ask}(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:\n"
+        f'        """Return what an operation answers, in a media type or as its document.\n\n'
+        f'        `places` fill the braces of its path."""\n\n' + "\n".join(methods)
     )
 
 

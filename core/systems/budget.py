@@ -22,10 +22,13 @@ class Budget:
         Of the equation of motion, or of the flows of its parts.
     samples : int
         Rows of the answer.
+    members : int
+        Questions of a study.
     """
 
     evaluations: Count = 20_000_000
     samples: Count = 1_000_000
+    members: Count = 10_000_000
 
     def __post_init__(self) -> None:
         check(self)

@@ -58,7 +58,10 @@ def _question(operation: Mapping[str, Any], document: Mapping[str, Any]) -> Iter
 
 
 def _answer(operation: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[str]:
-    content = operation["responses"]["200"].get("content", {})
+    # What goes on in the background is answered with 202.
+    content = next(operation["responses"][status] for status in ("200", "202") if status in operation["responses"]).get(
+        "content", {}
+    )
     media = ", ".join(f"`{kind}`" for kind in content)
     if media:
         yield from ("", f"**Answer** as {media}", "")

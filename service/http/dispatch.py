@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from functools import partial
 
 from starlette.types import ASGIApp, Receive, Scope, Send
@@ -25,15 +25,19 @@ from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.requests.suggestions import nearest_path
 from service.responses import npz as archive
 from service.responses.json_stream import Document
-from service.routing import GetRoute, PostRoute, Route
+from service.routing import GetRoute, PostRoute, ResourceRoute, Route, StudyRoute
 from service.settings import Settings
 
 _NPZ: tuple[Header, ...] = ((b"content-type", archive.MEDIA_TYPE.encode()), VARY)
 _VERSION = VERSION.encode()
 
 
+Submit = Callable[[RequestContext, bytes, bytes], Awaitable[None]]
+"""Stores a study, given its request and its plan, and answers."""
+
+
 class Dispatcher:
-    """Serves the routes: `answering` answers questions in this process, `compute` in others.
+    """Serves the routes: `answering` answers questions in this process, `compute` in others, `submit` stores studies.
 
     Attributes
     ----------
@@ -50,7 +54,9 @@ class Dispatcher:
         metrics: Metrics,
         settings: Settings,
         keys: Keys | None = None,
+        submit: Submit | None = None,
     ) -> None:
+        self._submit = submit
         self._compute, self._metrics, self._settings, self._keys = compute, metrics, settings, keys
         self._executor = Executor(answering, compute, metrics, settings)
         self._cache = ResponseCache(settings.cached_answers)
@@ -68,8 +74,14 @@ class Dispatcher:
     async def _serve(self, route: Route, scope: Scope, receive: Receive, send: Send) -> None:
         context = RequestContext(self._records, route.operation_id, scope, receive, send)
         try:
-            if isinstance(route, PostRoute):
+            if isinstance(route, StudyRoute):
+                await self._study(route, context)
+            elif isinstance(route, PostRoute):
                 await self._question(route, context)
+            elif isinstance(route, ResourceRoute):
+                if self._keys is not None:
+                    context.key = self._keys.admit(context.headers, context.address)
+                await route.respond(context)
             else:
                 await self._page(route, context)
         except Refusal as refusal:
@@ -123,6 +135,19 @@ class Dispatcher:
             answer = Representation(document.whole())
             self._cache.put(route.path, body, answer)
         await context.answer(answer)
+
+    async def _study(self, route: StudyRoute, context: RequestContext) -> None:
+        """Answer the request of a study with its plan, in thought, and then store it."""
+        if self._keys is not None:
+            context.key = self._keys.admit(context.headers, context.address)
+        if require_readable(context.headers):
+            raise Refusal("unsupported-media-type", "the request of a study is JSON: Content-Type: application/json")
+        negotiated(context.headers.get(b"accept", b"*/*"), ("application/json",))
+        body = await self.bodies.read(context.receive, context.headers)
+        client = context.address if context.key is None else context.key.name
+        plan = await self._executor.answer(route, body, False, None, Sender(client, context.key, context.gone))
+        assert self._submit is not None
+        await self._submit(context, body, plan.whole())
 
     async def _stream(
         self, document: Document, etag: bytes, context: RequestContext, headers: Sequence[Header] = (JSON,)

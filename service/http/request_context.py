@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable, Sequence
+from collections.abc import AsyncIterator, Iterable, Iterator, Sequence
 from math import ceil
 from time import perf_counter
 
 from starlette.types import Receive, Scope, Send
 
-from service.http.etag import NOSNIFF, Header, Representation
+from service.http.etag import JSON, NOSNIFF, Header, Representation
 from service.http.keys import Key
 from service.http.limits import ClientGone
 from service.observability.request_records import Records
@@ -20,6 +20,7 @@ SHORT = 1_024
 
 _PROBLEM: Header = (b"content-type", MEDIA_TYPE.encode())
 VARY: Header = (b"vary", b"accept")
+_NOT_STORED: Header = (b"cache-control", b"no-store")
 _REVALIDATE: Header = (b"cache-control", b"no-cache")
 _PAGE_HEADERS: tuple[Header, ...] = (
     (
@@ -132,6 +133,56 @@ class RequestContext:
         finally:
             leaving.cancel()
         await self._send({"type": "http.response.body", "body": b"".join(gathered), "more_body": False})
+        self.close(200)
+
+    async def document(self, body: bytes, status: int, headers: Iterable[Header] = ()) -> None:
+        """Send a JSON document that changes, and is not to be stored by anyone."""
+        length = (b"content-length", b"%d" % len(body))
+        await self._respond(status, body, [JSON, length, _NOT_STORED, NOSNIFF, *headers])
+
+    async def events(self, events: AsyncIterator[bytes]) -> None:
+        """Send server-sent events one by one as they come about.
+
+        Raises
+        ------
+        ClientGone
+            If the client has left.
+        """
+        await self._start(200, [(b"content-type", b"text/event-stream"), _NOT_STORED, NOSNIFF])
+        await self._each(events)
+
+    async def stream_made_elsewhere(self, pieces: Iterator[bytes], media_type: bytes, patience: float) -> None:
+        """Send a document whose pieces are made by blocking calls, each in another thread.
+
+        Raises
+        ------
+        ClientGone
+            If the client has left, or has taken nothing for longer than `patience` (s).
+        """
+        first = await asyncio.to_thread(next, pieces, b"")
+        await self._start(200, [(b"content-type", media_type), _NOT_STORED, VARY, NOSNIFF])
+
+        async def each() -> AsyncIterator[bytes]:
+            piece: bytes | None = first
+            while piece is not None:
+                yield piece
+                piece = await asyncio.to_thread(next, pieces, None)
+
+        await self._each(each(), patience)
+
+    async def _each(self, pieces: AsyncIterator[bytes], patience: float | None = None) -> None:
+        leaving = asyncio.ensure_future(self.gone())
+        try:
+            async for piece in pieces:
+                if leaving.done():
+                    raise ClientGone
+                async with asyncio.timeout(patience):
+                    await self._send({"type": "http.response.body", "body": piece, "more_body": True})
+        except TimeoutError:
+            raise ClientGone from None
+        finally:
+            leaving.cancel()
+        await self._send({"type": "http.response.body", "body": b"", "more_body": False})
         self.close(200)
 
     def close(self, status: int) -> None:

@@ -47,6 +47,10 @@ class Metrics:
             ("operation",), registry=registry,
         )  # fmt: skip
         self.backlog = Gauge("polhode_backlog_seconds", "Predicted time of the work that waits.", registry=registry)
+        self.studies = Gauge("polhode_studies", "Studies that are not finished.", registry=registry)
+        self.members_missing = Gauge(
+            "polhode_study_members_missing", "Members of unfinished studies that have no result yet.", registry=registry
+        )
         self.workers_lost = Counter("polhode_workers_lost", "Compute processes that died.", registry=registry)
 
     def observe(self, key: tuple[str, int], seconds: float) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
@@ -19,7 +21,7 @@ from service.openapi import components
 from service.openapi.descriptions import describe
 from service.problems import MEDIA_TYPE, REGISTRY
 from service.responses import npz as archive
-from service.routing import PostRoute, Route
+from service.routing import PostRoute, ResourceRoute, Route, StudyRoute
 from service.schemas import ProblemDocument
 
 DESCRIPTION = """\
@@ -40,6 +42,8 @@ Refusals are application/problem+json (RFC 9457) with a stable code and JSON poi
 """
 
 _PROBLEMS_OF_QUESTIONS = (400, 401, 406, 408, 413, 415, 422, 429, 500, 501, 503)
+
+_PROBLEMS_OF_RESOURCES = (401, 404, 406, 422, 429, 500, 503)
 
 PACKED = {
     "type": "string",
@@ -152,7 +156,11 @@ def _typed_content(route: Route, operations: dict[str, Any]) -> Iterator[tuple[s
     if isinstance(route, PostRoute):
         yield "question", route.question, operation["requestBody"]["content"]["application/json"]
     if route.answer is not None:
-        yield "answer", route.answer, operation["responses"]["200"]["content"]["application/json"]
+        yield "answer", route.answer, operation["responses"][str(_status(route))]["content"]["application/json"]
+
+
+def _status(route: Route) -> int:
+    return 202 if isinstance(route, StudyRoute) else 200
 
 
 def _response_name(status: int) -> str:
@@ -172,19 +180,19 @@ class _Route(APIRoute):
         self.entry, self._handler = route, handler
         super().__init__(
             route.path,
-            _never_called,
+            _endpoint(route),
             methods=[route.method],
             operation_id=route.operation_id,
             name=route.operation_id,
             summary=route.summary,
             description=route.description,
             tags=[route.tag],
+            status_code=_status(route),
             include_in_schema=isinstance(route, PostRoute) or route.documented,
             response_model=None,
             response_description="The answer." if isinstance(route, PostRoute) else "The document.",
             response_class=_response_class(route),
-            responses=_representations(route)
-            | _problems(_PROBLEMS_OF_QUESTIONS if isinstance(route, PostRoute) else (406, 500)),
+            responses=_representations(route) | _problems(_problems_of(route)),
             openapi_extra=_request_body(route),
         )
 
@@ -196,13 +204,24 @@ class _Route(APIRoute):
 
 
 def _response_class(route: Route) -> type[Response]:
+    if isinstance(route, ResourceRoute):
+        return JSONResponse if route.answer is not None else Response
     if isinstance(route, PostRoute) or route.media_type == "application/json":
         return JSONResponse
     return type("_Media", (Response,), {"media_type": route.media_type})
 
 
-def _never_called() -> None:
-    raise NotImplementedError
+def _endpoint(route: Route) -> Callable[..., Any]:
+    """Return a function whose signature has the parameters of the path; it is never called."""
+
+    def endpoint(**arguments: Any) -> None:
+        raise NotImplementedError
+
+    names = re.findall(r"{(\w+)}", route.path)
+    parameters = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=str) for name in names]
+    endpoint.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    endpoint.__doc__ = None
+    return endpoint
 
 
 def _request_body(route: Route) -> dict[str, Any] | None:
@@ -216,6 +235,14 @@ def _request_body(route: Route) -> dict[str, Any] | None:
 
 def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
     """Return how an answer is documented that is not JSON; the Accept header chooses."""
+    if isinstance(route, StudyRoute):
+        return {}
+    if isinstance(route, ResourceRoute):
+        forms: dict[str, Any] = {} if route.example is None else {"application/json": {"example": dict(route.example)}}
+        for media in route.representations:
+            text = {"type": "string"}
+            forms[media] = {"schema": text if media.startswith("text/") else text | {"format": "binary"}}
+        return {200: {"content": forms}}
     if not isinstance(route, PostRoute):
         if route.example is None:
             return {}
@@ -230,6 +257,12 @@ def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
         }
     }
     return {200: {"description": "The answer.", "content": content}}
+
+
+def _problems_of(route: Route) -> tuple[int, ...]:
+    if isinstance(route, PostRoute):
+        return _PROBLEMS_OF_QUESTIONS
+    return _PROBLEMS_OF_RESOURCES if isinstance(route, ResourceRoute) else (406, 500)
 
 
 def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:

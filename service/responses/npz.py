@@ -31,7 +31,7 @@ def archive(answer: Any) -> Iterator[bytes]:
     """Yield a finite answer as a numpy archive, not compressed, in chunks; equal answers give equal bytes."""
     arrays: dict[str, np.ndarray[Any, Any]] = {}
     metadata = _without_arrays(answer, "", arrays)
-    sink = _Sink()
+    sink = Sink()
     with ZipFile(sink, "w", ZIP_STORED) as file:
         for name, array in arrays.items():
             with file.open(ZipInfo(f"{name}.npy"), "w", force_zip64=array.nbytes > _ZIP64_FROM) as member:
@@ -62,19 +62,27 @@ def _without_arrays(value: Any, name: str, arrays: dict[str, np.ndarray[Any, Any
     return value
 
 
-class _Sink(io.RawIOBase):
+class Sink(io.RawIOBase):
     """What the archive is written to: it holds only what has not been sent, and cannot go back."""
 
     def __init__(self) -> None:
         super().__init__()
         self._parts: list[bytes] = []
+        self._written = 0
 
     def writable(self) -> bool:
+        """Return that it can be written to."""
         return True
 
     def write(self, data: Any) -> int:
+        """Take some bytes."""
         self._parts.append(bytes(data))
-        return len(data)
+        self._written += len(self._parts[-1])
+        return len(self._parts[-1])
+
+    def tell(self) -> int:
+        """Return how many bytes it has taken."""
+        return self._written
 
     def drained(self) -> bytes:
         """Return what was written since the last time."""

@@ -21,6 +21,7 @@ from service.routes.rotation.surfaces import SURFACES
 from service.routes.rotation.trajectory import ROTATION
 from service.routes.rotation.wobble import WOBBLE
 from service.routes.scenes import members, scene_routes
+from service.routes.studies import studying
 from service.routes.variants import varying
 from service.routes.work_precision import WORK_PRECISION
 from service.routing import PostRoute
@@ -41,7 +42,13 @@ def questions(scenes: tuple[type[NamedScene], ...] | None = None) -> tuple[PostR
     ordinary = (*rotations, *scene_routes(scenes), *DESCRIBED_SCENES)
     in_doubles = tuple(naming_certified(route, paths) for route in ordinary)
     answering = (*in_doubles, *certified)
-    about_others = planning(answering), assessing(in_doubles, certified), varying(in_doubles, certified)
+    studies = studying(answering)
+    about_others = (
+        planning((*answering, studies)),
+        assessing(in_doubles, certified),
+        varying(in_doubles, certified),
+        studies,
+    )
     shown = examples()
     return tuple(
         replace(route, examples=route.examples or shown[route.operation_id]) for route in (*answering, *about_others)

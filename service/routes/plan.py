@@ -135,6 +135,7 @@ def _planned(route: PostRoute, request: Any, budget: Budget) -> Answer:
     method, evaluations = getattr(request, "method", None), _evaluations(route, request, budget)
     probed = route.planning_probe
     probe = PlanningProbe(route.handle(request, budget)) if probed is None else probed(request, budget)
+    seconds = seconds if probe.seconds is None else probe.seconds
     fields, exact = probe.fields, probe.exact
     length = _length(fields, probe.growth)
     model, stated, notices = fields.get("model"), _stated(fields), list(fields.get("warnings", ()))

@@ -20,12 +20,12 @@ from service.execution.request_handler import RequestHandler
 from service.requests.request_reader import Limits
 from service.responses.json_rows import written
 from service.routes import questions
-from service.routing import PostRoute
+from service.routing import PostRoute, StudyRoute
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "openapi.json"
 ROUTES = questions()
 HANDLER = RequestHandler(ROUTES, Budget(), Limits())
-EXAMPLES = [(route, name) for route in ROUTES for name in route.examples]
+EXAMPLES = [(route, name) for route in ROUTES if not isinstance(route, StudyRoute) for name in route.examples]
 NUMBERED = {"DormandPrince853", "RungeKutta4"}
 """Names that end in a number in the field's own terms."""
 

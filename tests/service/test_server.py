@@ -341,7 +341,7 @@ async def main():
             for route in questions():
                 for example in route.examples.values():
                     response = await client.post(route.path, json=dict(example.question))
-                    assert response.status_code == 200, response.text
+                    assert response.status_code == (202 if route.path == "/v1/studies" else 200), response.text
             late = {name for name in set(sys.modules) - loaded if name.split(".")[0] in HEAVY}
             print("compiled", len(compiled), "late", sorted(late))
             njit(lambda x: x + 1)(1)

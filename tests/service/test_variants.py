@@ -24,7 +24,9 @@ PATH = "/v1/variants"
 SERVICE = inline_service()
 ROUTES = {route.path: route for route in questions()}
 HANDLER = RequestHandler(ROUTES.values(), Budget(), Limits())
-VARIED = [path for path in ROUTES if not path.startswith(("/v1/certified", "/v1/plan", "/v1/assess", PATH))]
+VARIED = [
+    path for path in ROUTES if not path.startswith(("/v1/certified", "/v1/plan", "/v1/assess", "/v1/studies", PATH))
+]
 Body = dict[str, Any]
 JSON = {"content-type": "application/json"}
 

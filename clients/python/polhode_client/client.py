@@ -5,14 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import Any, Self, TypeVar, Unpack
 
 import anyio
 import httpx
 
+from polhode_client import documents
+from polhode_client.arrays import ARCHIVE
 from polhode_client.exchange import Received, Sent, exchange
 from polhode_client.operations import OPERATIONS, AsyncOperations, Operation, Operations
 from polhode_client.progress import Progress, Reporting
+from polhode_client.study import Study
 
 C = TypeVar("C", httpx.Client, httpx.AsyncClient)
 
@@ -92,8 +95,19 @@ class Client(Settings, Operations):
         """Close the connection."""
         self._http.close()
 
-    def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None) -> Any:
-        steps = exchange(OPERATIONS[name], question, media, self.patience, planned=self.progress is not None)
+    def study(self, **question: Unpack[documents.StudyRequest]) -> Study:
+        """Submit a study and return it; it goes on in the service."""
+        return Study(self, self.create_study(**question)["jobID"])
+
+    def archive(self, study: str) -> Mapping[str, Any]:
+        """Return all results of a study: arrays, and what their columns mean."""
+        found: Mapping[str, Any] = self._ask("get_study_results", None, ARCHIVE, study=study)
+        return found
+
+    def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
+        steps = exchange(
+            OPERATIONS[name].at(**places), question, media, self.patience, planned=self.progress is not None
+        )
         step = next(steps)
         while True:
             received = None
@@ -149,8 +163,10 @@ class AsyncClient(Settings, AsyncOperations):
         """Close the connections."""
         await self._http.aclose()
 
-    async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None) -> Any:
-        steps = exchange(OPERATIONS[name], question, media, self.patience, planned=self.progress is not None)
+    async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
+        steps = exchange(
+            OPERATIONS[name].at(**places), question, media, self.patience, planned=self.progress is not None
+        )
         step = next(steps)
         while True:
             received = None

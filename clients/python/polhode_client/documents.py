@@ -2526,6 +2526,187 @@ class VariantFigure(TypedDict):
     condition: float | None
 
 
+class StudyList(TypedDict):
+    """The studies of a client, the latest first."""
+
+    signature: Signature
+    studies: list[StudyStatus]
+
+
+class StudyStatus(TypedDict):
+    """The state of a study, in the shape of OGC API Processes' statusInfo."""
+
+    jobID: str
+    type: Literal["process"]
+    processID: Literal["study"]
+    status: Literal["accepted", "running", "successful", "failed", "dismissed"]
+    message: str
+    created: str
+    started: str | None
+    finished: str | None
+    updated: str
+    progress: int
+    path: str
+    count: int
+    shape: Integers
+    inputs: list[StudyAxis]
+    figures: list[StudyFigure]
+    together: bool
+    done: int
+    failed: int
+    seconds: float
+    predicted_seconds: float
+    predicted_end: str | None
+    links: list[Link]
+
+
+class StudyAxis(TypedDict):
+    """A varied input."""
+
+    pointer: str
+    unit: str | None
+    levels: int | None
+
+
+class StudyFigure(TypedDict):
+    """A figure of the members."""
+
+    pointer: str
+    unit: str | None
+
+
+class Link(TypedDict):
+    """A document that belongs to a study."""
+
+    href: str
+    rel: str
+    type: str
+
+
+class StudyRequest(TypedDict):
+    """One question with varied inputs, and the figures of its answers that are wanted."""
+
+    question: EndpointRequest
+    vary: Sequence[StudyInput]
+    design: NotRequired[Literal["product", "zip", "sobol", "random"]]
+    count: NotRequired[int | None]
+    seed: NotRequired[int]
+    quantities: Sequence[str]
+    statistics: NotRequired[Sequence[Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]]]
+    probabilities: NotRequired[Numbers]
+    bins: NotRequired[int]
+
+
+class StudyInput(TypedDict):
+    """An input that varies: a range from `min` to `max`, `values`, or a normal distribution."""
+
+    min: NotRequired[float | None]
+    max: NotRequired[float | None]
+    distribution: NotRequired[Literal["uniform", "log-uniform", "normal"]]
+    step: NotRequired[float | None]
+    digits: NotRequired[int | None]
+    values: NotRequired[Sequence[float | str | bool | Mapping[str, Any] | Numbers] | None]
+    also: NotRequired[Sequence[str]]
+    pointer: NotRequired[str]
+    mean: NotRequired[float | None]
+    deviation: NotRequired[float | None]
+    count: NotRequired[int | None]
+
+
+class StudyState(TypedDict):
+    """The state of one study."""
+
+    signature: Signature
+    jobID: str
+    type: Literal["process"]
+    processID: Literal["study"]
+    status: Literal["accepted", "running", "successful", "failed", "dismissed"]
+    message: str
+    created: str
+    started: str | None
+    finished: str | None
+    updated: str
+    progress: int
+    path: str
+    count: int
+    shape: Integers
+    inputs: list[StudyAxis]
+    figures: list[StudyFigure]
+    together: bool
+    done: int
+    failed: int
+    seconds: float
+    predicted_seconds: float
+    predicted_end: str | None
+    links: list[Link]
+
+
+class StudyResults(TypedDict):
+    """Results of members that follow each other, column by column."""
+
+    signature: Signature
+    warnings: list[Notice]
+    jobID: str
+    count: int
+    shape: Integers
+    statistics: StudySummary
+    start: int
+    inputs: dict[str, list[Any]]
+    figures: dict[str, list[float | None]]
+    failures: list[FailedMember]
+    next: str | None
+
+
+class StudySummary(TypedDict):
+    """Statistics of all members."""
+
+    figures: dict[str, StudyStatistics]
+    failures: NotRequired[dict[str, int] | None]
+    warnings: NotRequired[dict[str, int] | None]
+
+
+class StudyStatistics(TypedDict):
+    """Statistics of one figure; null where they were not asked for or do not exist."""
+
+    unit: str | None
+    present: int
+    mean: float | None
+    standard_error: float | None
+    std: float | None
+    quantiles: list[StudyQuantile] | None
+    min: StudyExtreme | None
+    max: StudyExtreme | None
+    histogram: StudyHistogram | None
+
+
+class StudyQuantile(TypedDict):
+    """The value below which a share of the members lies."""
+
+    probability: float
+    value: float
+
+
+class StudyExtreme(TypedDict):
+    """A smallest or largest figure."""
+
+    value: float
+    member: int
+
+
+class StudyHistogram(TypedDict):
+    """Members by figure."""
+
+    edges: Floats
+    counts: Integers
+
+
+class FailedMember(TypedDict):
+    """A member without result."""
+
+    member: int
+    code: str
+
+
 class ProblemRegistry(TypedDict):
     """The registry of problems."""
 

@@ -81,7 +81,7 @@ def exchange(
         assert received is not None
         if received.status < 400:
             kind = received.headers.get("content-type", "").partition(";")[0]
-            return received.body.decode() if media else read_answer(received.body, kind)
+            return received.body.decode() if media not in (None, ARCHIVE) else read_answer(received.body, kind)
         wait = _seconds(received.headers.get("retry-after"))
         if received.status not in BUSY or wait is None or wait > patience:
             raise Refused.read(received.status, received.body, wait)

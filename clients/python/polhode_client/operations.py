@@ -20,6 +20,10 @@ class Operation(NamedTuple):
     path: str
     summary: str
 
+    def at(self, **places: str) -> Operation:
+        """Return the operation with the braces of its path filled."""
+        return self._replace(path=self.path.format(**places)) if places else self
+
 
 OPERATIONS: Mapping[str, Operation] = {
     "mass_properties": Operation(
@@ -133,6 +137,20 @@ OPERATIONS: Mapping[str, Operation] = {
         "/v1/variants",
         "Well-conditioned variants of any other question from a seed, each with its figures, their error and condition",
     ),
+    "list_studies": Operation("GET", "/v1/studies", "The client's own studies"),
+    "create_study": Operation(
+        "POST", "/v1/studies", "A study: any other question with varied inputs, its members answered in the background"
+    ),
+    "get_study": Operation("GET", "/v1/studies/{study}", "The state of a study"),
+    "dismiss_study": Operation(
+        "DELETE", "/v1/studies/{study}", "Stop a study, or remove one that has ended with its results"
+    ),
+    "get_study_results": Operation(
+        "GET", "/v1/studies/{study}/results", "Statistics and results of a study, page by page or as a whole"
+    ),
+    "watch_study": Operation(
+        "GET", "/v1/studies/{study}/events", "The state of a study as server-sent events, until it ends"
+    ),
     "list_errors": Operation("GET", "/v1/errors", "Every problem that can be answered"),
     "list_methods": Operation("GET", "/v1/methods", "Every method that can be chosen, and when to use it"),
     "list_mistakes": Operation("GET", "/v1/mistakes", "Every mistake that is recognised in submitted answers"),
@@ -142,6 +160,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "get_openapi": Operation("GET", "/openapi.json", "The OpenAPI document"),
     "get_start_page": Operation("GET", "/", "A rotating body beside its energy ellipsoid, to look at and to change"),
     "get_scenes_page": Operation("GET", "/scenes", "Every scene of the catalogue in motion, and your own"),
+    "get_studies_page": Operation("GET", "/studies", "Studies with their progress, maps, histograms and results"),
     "get_documentation": Operation("GET", "/docs", "The reference of the API, to read and to try"),
 }
 
@@ -150,8 +169,10 @@ class Operations(ABC):
     """Methods of the blocking client."""
 
     @abstractmethod
-    def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None) -> Any:
-        """Return what an operation answers, in a media type or as its document."""
+    def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
+        """Return what an operation answers, in a media type or as its document.
+
+        `places` fill the braces of its path."""
 
     def mass_properties(self, **question: Unpack[documents.MassPropertiesRequest]) -> documents.MassPropertiesAnswer:
         """Mass, centre of mass, inertia, principal axes, symmetry and validity of a body."""
@@ -368,6 +389,36 @@ class Operations(ABC):
         found: documents.VariantsAnswer = self._ask("vary", question, None)
         return found
 
+    def list_studies(self) -> documents.StudyList:
+        """The client's own studies."""
+        found: documents.StudyList = self._ask("list_studies", None, None)
+        return found
+
+    def create_study(self, **question: Unpack[documents.StudyRequest]) -> documents.StudyState:
+        """A study: any other question with varied inputs, its members answered in the background."""
+        found: documents.StudyState = self._ask("create_study", question, None)
+        return found
+
+    def get_study(self, study: str) -> documents.StudyState:
+        """The state of a study."""
+        found: documents.StudyState = self._ask("get_study", None, None, study=study)
+        return found
+
+    def dismiss_study(self, study: str) -> documents.StudyState:
+        """Stop a study, or remove one that has ended with its results."""
+        found: documents.StudyState = self._ask("dismiss_study", None, None, study=study)
+        return found
+
+    def get_study_results(self, study: str) -> documents.StudyResults:
+        """Statistics and results of a study, page by page or as a whole."""
+        found: documents.StudyResults = self._ask("get_study_results", None, None, study=study)
+        return found
+
+    def watch_study(self, study: str) -> str:
+        """The state of a study as server-sent events, until it ends."""
+        found: str = self._ask("watch_study", None, "text/event-stream", study=study)
+        return found
+
     def list_errors(self) -> documents.ProblemRegistry:
         """Every problem that can be answered."""
         found: documents.ProblemRegistry = self._ask("list_errors", None, None)
@@ -413,6 +464,11 @@ class Operations(ABC):
         found: str = self._ask("get_scenes_page", None, "text/html")
         return found
 
+    def get_studies_page(self) -> str:
+        """Studies with their progress, maps, histograms and results."""
+        found: str = self._ask("get_studies_page", None, "text/html")
+        return found
+
     def get_documentation(self) -> str:
         """The reference of the API, to read and to try."""
         found: str = self._ask("get_documentation", None, "text/html")
@@ -423,8 +479,10 @@ class AsyncOperations(ABC):
     """Methods of the asynchronous client."""
 
     @abstractmethod
-    async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None) -> Any:
-        """Return what an operation answers, in a media type or as its document."""
+    async def _ask(self, name: str, question: Mapping[str, Any] | None, media: str | None, **places: str) -> Any:
+        """Return what an operation answers, in a media type or as its document.
+
+        `places` fill the braces of its path."""
 
     async def mass_properties(
         self, **question: Unpack[documents.MassPropertiesRequest]
@@ -651,6 +709,36 @@ class AsyncOperations(ABC):
         found: documents.VariantsAnswer = await self._ask("vary", question, None)
         return found
 
+    async def list_studies(self) -> documents.StudyList:
+        """The client's own studies."""
+        found: documents.StudyList = await self._ask("list_studies", None, None)
+        return found
+
+    async def create_study(self, **question: Unpack[documents.StudyRequest]) -> documents.StudyState:
+        """A study: any other question with varied inputs, its members answered in the background."""
+        found: documents.StudyState = await self._ask("create_study", question, None)
+        return found
+
+    async def get_study(self, study: str) -> documents.StudyState:
+        """The state of a study."""
+        found: documents.StudyState = await self._ask("get_study", None, None, study=study)
+        return found
+
+    async def dismiss_study(self, study: str) -> documents.StudyState:
+        """Stop a study, or remove one that has ended with its results."""
+        found: documents.StudyState = await self._ask("dismiss_study", None, None, study=study)
+        return found
+
+    async def get_study_results(self, study: str) -> documents.StudyResults:
+        """Statistics and results of a study, page by page or as a whole."""
+        found: documents.StudyResults = await self._ask("get_study_results", None, None, study=study)
+        return found
+
+    async def watch_study(self, study: str) -> str:
+        """The state of a study as server-sent events, until it ends."""
+        found: str = await self._ask("watch_study", None, "text/event-stream", study=study)
+        return found
+
     async def list_errors(self) -> documents.ProblemRegistry:
         """Every problem that can be answered."""
         found: documents.ProblemRegistry = await self._ask("list_errors", None, None)
@@ -694,6 +782,11 @@ class AsyncOperations(ABC):
     async def get_scenes_page(self) -> str:
         """Every scene of the catalogue in motion, and your own."""
         found: str = await self._ask("get_scenes_page", None, "text/html")
+        return found
+
+    async def get_studies_page(self) -> str:
+        """Studies with their progress, maps, histograms and results."""
+        found: str = await self._ask("get_studies_page", None, "text/html")
         return found
 
     async def get_documentation(self) -> str:

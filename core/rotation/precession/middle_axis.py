@@ -50,7 +50,7 @@ class MiddleAxisTilt(NamedTuple):
 
 
 @kernel()
-def _swing(
+def swing(
     i: NDArray[np.float64],
     it: NDArray[np.float64],
     w: NDArray[np.float64],
@@ -93,7 +93,7 @@ def middle_axis_tilt(resolved: Resolved, inertia: PrincipalInertia) -> MiddleAxi
             return MiddleAxisTilt(0.5 * math.pi, 0.5 * math.pi, False)
         angle = 0.0 if oriented(inertia.axes, 1)[3] * w[1] > 0.0 else math.pi
         return MiddleAxisTilt(angle, angle, False)
-    regime, least, largest, tumbles = _swing(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
+    regime, least, largest, tumbles = swing(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
     if regime == UNDECIDED:
-        _, least, largest, tumbles = _swing(i, it, w, wt, True, exact_difference(resolved))
+        _, least, largest, tumbles = swing(i, it, w, wt, True, exact_difference(resolved))
     return MiddleAxisTilt(least, largest, tumbles)

@@ -16,7 +16,7 @@ from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
-from service.routes.assessments.route_source import Refused, graded_question
+from service.routes.assessments.route_source import Refused, RouteSource, graded_question
 from service.routes.certified.answers import ROOT
 from service.routing import PostRoute
 from service.schemas import Request
@@ -35,9 +35,12 @@ class EndpointRequest(Request):
 
 
 class QuestionTable:
-    """The routes whose answers can be references, some of which have proven digits, too."""
+    """The routes whose answers can be references, some of which have proven digits, too; `purpose` is for refusals."""
 
-    def __init__(self, routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> None:
+    def __init__(
+        self, routes: Sequence[PostRoute], certified: Sequence[PostRoute], purpose: str = "be assessed"
+    ) -> None:
+        self._purpose = purpose
         self._routes: Mapping[str, PostRoute] = {route.path: route for route in routes}
         self._certified: Mapping[str, PostRoute] = {route.path: route for route in certified}
         self._reader = cache(self._new_reader)
@@ -47,9 +50,14 @@ class QuestionTable:
         if question.path not in self._routes:
             near = nearest_path(question.path, self._routes)
             remedy = f"did you mean {near}?" if near else "GET /openapi.json lists every path"
-            fault = Fault("/question/path", "must be the path of a question that can be assessed", remedy)
+            fault = Fault("/question/path", f"must be the path of a question that can {self._purpose}", remedy)
             raise Refusal("invalid-parameter", headline([fault]), faults=[fault])
         return self._routes[question.path]
+
+    def source(self, question: EndpointRequest, budget: Budget) -> RouteSource:
+        """Return what answers a question and others to the same path."""
+        route = self.route(question)
+        return RouteSource(route, self._reader(route.path).read, budget)
 
     def graded(
         self, question: EndpointRequest, request: Any, budget: Budget, uncertainty: float | Mapping[Path, float] | None

@@ -19,6 +19,7 @@ from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation
 from service.execution.cost_model import CalibratedCost, effort, judged, speed_of
 from service.routes.bodies import counts, is_small, properties_of, speed_to_follow
+from service.routes.rotation.many_precessions import many_precessions
 from service.routes.rotation.trajectory import ANGULAR_VELOCITY, FLIP_INTERVAL, MIDDLE_AXIS_TILT, TUMBLES
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import (
@@ -180,6 +181,7 @@ PRECESSION = (
         CalibratedCost("precession", precession_counts),
         lambda question: question.measure is None and is_small(question),
         precession_probe,
+        many=many_precessions,
     ),
     PostRoute(
         "/v1/rotation/stability",

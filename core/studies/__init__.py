@@ -1,0 +1,1 @@
+"""Studies: one question with varied inputs, its members by design, and the statistics of their figures."""

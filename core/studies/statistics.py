@@ -1,0 +1,164 @@
+"""Statistics of one figure over the members of a study, from the whole column in member order.
+
+Sums are exact and rounded once (`math.fsum`), so that the same column gives the same bits on every machine and in
+whatever order its parts came about. Members without the figure are NaN in the column and left out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, NamedTuple, get_args
+
+import numpy as np
+
+from core.studies.study_input import Floats
+
+Statistic = Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]
+STATISTICS: tuple[Statistic, ...] = get_args(Statistic)
+
+PROBABILITIES = (0.01, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99)
+BINS = 50
+
+
+class Quantile(NamedTuple):
+    """The value below which a share of the members lies, linear between two members.
+
+    Attributes
+    ----------
+    probability : float
+    value : float
+        In the unit of the figure.
+    """
+
+    probability: float
+    value: float
+
+
+class Extreme(NamedTuple):
+    """A smallest or largest figure, and the first member that has it."""
+
+    value: float
+    member: int
+
+
+class Histogram(NamedTuple):
+    """Members by figure.
+
+    Attributes
+    ----------
+    edges : ndarray, shape (bins + 1,)
+        Of the bins, ascending; the last bin includes its upper edge.
+    counts : ndarray, shape (bins,)
+        Of members.
+    """
+
+    edges: Floats
+    counts: np.ndarray[Any, np.dtype[np.int64]]
+
+
+class ColumnStatistics(NamedTuple):
+    """Statistics of a figure; those that are not wanted, or do not exist, are None.
+
+    Attributes
+    ----------
+    present : int
+        Members that have the figure.
+    mean : float or None
+    standard_error : float or None
+        Of the mean, for independent members: the deviation over the root of their number.
+    std : float or None
+        Deviation of the sample, with n - 1.
+    quantiles : tuple of Quantile or None
+    min, max : Extreme or None
+    histogram : Histogram or None
+    """
+
+    present: int
+    mean: float | None = None
+    standard_error: float | None = None
+    std: float | None = None
+    quantiles: tuple[Quantile, ...] | None = None
+    min: Extreme | None = None
+    max: Extreme | None = None
+    histogram: Histogram | None = None
+
+
+def column_statistics(
+    column: Floats,
+    wanted: Sequence[Statistic] = STATISTICS,
+    *,
+    probabilities: Sequence[float] = PROBABILITIES,
+    bins: int = BINS,
+) -> ColumnStatistics:
+    """Return the statistics of a column, shape (n,), NaN where a member has no such figure."""
+    members = np.flatnonzero(~np.isnan(column))
+    values = column[members]
+    if not values.size:
+        return ColumnStatistics(0)
+    found: dict[str, Any] = {}
+    low, high = int(values.argmin()), int(values.argmax())
+    # Exact scaling, so that no sum or square leaves the range of doubles.
+    exponent = math.frexp(max(abs(values[low]), abs(values[high])))[1]
+    if "mean" in wanted or "std" in wanted:
+        scaled = np.ldexp(values, -exponent)
+        mean = math.fsum(scaled.tolist()) / values.size
+        deviation = None
+        if values.size > 1:
+            squares = np.square(scaled - mean)
+            deviation = math.sqrt(math.fsum(squares.tolist()) / (values.size - 1))
+        if "mean" in wanted:
+            found["mean"] = _unscaled(mean, exponent)
+            found["standard_error"] = _unscaled(
+                None if deviation is None else deviation / math.sqrt(values.size), exponent
+            )
+        if "std" in wanted:
+            found["std"] = _unscaled(deviation, exponent)
+    if "quantiles" in wanted:
+        ordered = np.sort(values)
+        found["quantiles"] = tuple(Quantile(p, _quantile(ordered, p)) for p in probabilities)
+    if "extremes" in wanted:
+        found["min"] = Extreme(float(values[low]), int(members[low]))
+        found["max"] = Extreme(float(values[high]), int(members[high]))
+    if "histogram" in wanted:
+        found["histogram"] = _histogram(values, bins)
+    return ColumnStatistics(int(values.size), **found)
+
+
+def failure_counts(codes: np.ndarray[Any, Any], names: Sequence[str]) -> Mapping[str, int]:
+    """Return how many members have each code, by name in alphabetic order; code 0 is none, k stands for names[k-1]."""
+    counted = np.bincount(codes.astype(np.int64), minlength=len(names) + 1)[1:].tolist()
+    return {name: count for name, count in sorted(zip(names, counted, strict=True)) if count}
+
+
+def _unscaled(value: float | None, exponent: int) -> float | None:
+    if value is None:
+        return None
+    try:
+        return math.ldexp(value, exponent)
+    except OverflowError:
+        return None
+
+
+def _quantile(ordered: Floats, probability: float) -> float:
+    """Return a quantile of ascending values, by linear interpolation (definition 7 of Hyndman and Fan 1996)."""
+    place = probability * (ordered.size - 1)
+    below = min(int(place), ordered.size - 1)
+    above = min(below + 1, ordered.size - 1)
+    share = place - below
+    low, high = float(ordered[below]), float(ordered[above])
+    # In this form nothing exceeds the range of doubles, and equal values give themselves.
+    return low if low == high else low * (1.0 - share) + high * share
+
+
+def _histogram(values: Floats, bins: int) -> Histogram:
+    low, high = float(values.min()), float(values.max())
+    if low == high:
+        return Histogram(np.array([low, high]), np.array([values.size]))
+    shares = np.arange(bins + 1) / bins
+    edges = low * (1.0 - shares) + high * shares
+    edges[0], edges[-1] = low, high
+    # Of a range of few ulps some edges coincide.
+    edges = np.unique(edges)
+    places = np.minimum(np.searchsorted(edges, values, side="right") - 1, edges.size - 2)
+    return Histogram(edges, np.bincount(places, minlength=edges.size - 1).astype(np.int64))

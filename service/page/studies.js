@@ -1,0 +1,161 @@
+// Studies: their progress as it comes, and maps, histograms and links of those that are finished.
+import { ask, get } from "./api.js";
+import { $, color, make, onTheme, written } from "./dom.js";
+
+const STUDIES = "/v1/studies";
+const LARGEST_MAP = 250000;
+const TYPES = [["JSON", ""], ["npz", "application/x-npz"], ["Parquet", "application/vnd.apache.parquet"], ["Zarr", "application/vnd.zarr+zip"]];
+const START = {
+  question: { path: "/v1/rotation/precession", request: { body: { kind: "principal-moments", moments: [0.5, 0.8, 1.0] }, angular_velocity: [0.01, 1.0, 0.01] } },
+  vary: [{ pointer: "/body/moments/0", min: 0.35, max: 0.65, count: 80 }, { pointer: "/body/moments/1", min: 0.68, max: 0.98, count: 80 }],
+  quantities: ["/flip_interval", "/middle_axis_tilt/0"],
+};
+const rows = new Map();
+let shown = null;
+
+/** Show the state of a study in its row, which is made where it is missing. */
+function show(state) {
+  let row = rows.get(state.jobID);
+  if (!row) {
+    const open = make("button", { type: "button", textContent: state.path });
+    const drop = make("button", { type: "button", textContent: "Remove" });
+    row = { open, drop, bar: make("progress", { max: state.count }), text: make("span") };
+    row.item = make("li", {}, open, " ", row.bar, " ", row.text, " ", drop);
+    open.addEventListener("click", () => results(row.state).catch(tell));
+    drop.addEventListener("click", () => remove(row.state).catch(tell));
+    rows.set(state.jobID, row);
+    $("list").append(row.item);
+  }
+  row.state = state;
+  row.bar.value = state.done;
+  row.bar.setAttribute("aria-label", `${state.done} of ${state.count} members`);
+  const left = state.predicted_end ? `, about ${Math.max(0, Math.round((Date.parse(state.predicted_end) - Date.now()) / 1000))} s left` : "";
+  row.text.textContent = `${state.status}, ${state.done} of ${state.count} members${state.failed ? `, ${state.failed} refused` : ""}${left} ${state.message}`;
+  row.open.disabled = state.status !== "successful";
+  row.drop.textContent = state.predicted_end ? "Stop" : "Remove";
+  $("none").hidden = rows.size > 0;
+}
+
+function follow(state) {
+  show(state);
+  if (!state.predicted_end) return;
+  const events = new EventSource(`${STUDIES}/${state.jobID}/events`);
+  for (const name of ["accepted", "running", "successful", "failed", "dismissed"])
+    events.addEventListener(name, (event) => {
+      const now = JSON.parse(event.data);
+      if (rows.has(now.jobID)) show(now);
+      if (!now.predicted_end) events.close();
+    });
+}
+
+async function remove(state) {
+  const response = await fetch(`${STUDIES}/${state.jobID}`, { method: "DELETE" });
+  if (state.predicted_end && response.ok) return show(await response.json());
+  rows.get(state.jobID).item.remove();
+  rows.delete(state.jobID);
+  $("none").hidden = rows.size > 0;
+  if (shown?.state.jobID === state.jobID) $("shown").hidden = true;
+}
+
+/** Fetch what is drawn of a study: statistics, and the members of a map. */
+async function results(state) {
+  const path = `${STUDIES}/${state.jobID}/results`;
+  const map = state.shape.length === 2 && state.count <= LARGEST_MAP;
+  const pages = [await get(`${path}?count=${map ? 10000 : 1}`)];
+  while (map && pages.at(-1).next) pages.push(await get(pages.at(-1).next));
+  const column = (of, name) => pages.flatMap((page) => page[of][name]);
+  shown = { state, map, statistics: pages[0].statistics.figures, column };
+  $("shown").hidden = false;
+  $("shown-title").textContent = `${state.path}, ${state.count} members`;
+  $("figure").replaceChildren(...state.figures.map((f) => make("option", { value: f.pointer, textContent: f.pointer })));
+  $("links").replaceChildren(...TYPES.flatMap(([name, type]) => [link(name, type, path, state), " "]));
+  draw();
+}
+
+function link(name, type, path, state) {
+  if (!type) return make("a", { href: path, textContent: name });
+  const button = make("button", { type: "button", textContent: name });
+  button.addEventListener("click", async () => {
+    const response = await fetch(path, { headers: { accept: type } });
+    if (!response.ok) return tell(new Error((await response.json()).detail));
+    const place = URL.createObjectURL(await response.blob());
+    make("a", { href: place, download: `${state.jobID}.${name.toLowerCase()}${name === "Zarr" ? ".zip" : ""}` }).click();
+    URL.revokeObjectURL(place);
+  });
+  return button;
+}
+
+function draw() {
+  const { state, map, statistics, column } = shown;
+  const figure = state.figures.find((f) => f.pointer === $("figure").value);
+  const found = statistics[figure.pointer];
+  const unit = figure.unit && figure.unit !== "1" ? ` ${figure.unit}` : "";
+  const said = [["mean", found.mean], ["deviation", found.std], ["least", found.min?.value], ["largest", found.max?.value]];
+  $("numbers").textContent = `${found.present} members have it; ${said.filter(([, x]) => x != null).map(([name, x]) => `${name} ${written(x)}${unit}`).join(", ")}`;
+  $("map").hidden = $("scale").hidden = !map;
+  if (map) drawMap(state, column("figures", figure.pointer), state.inputs.map((axis) => column("inputs", axis.pointer)), found, unit);
+  drawHistogram(found.histogram, unit);
+}
+
+/** Colours from dark to light, of equal steps in lightness. */
+const shade = (share) => `hsl(${250 - 200 * share} 70% ${20 + 65 * share}%)`;
+
+function drawMap(state, values, [slow, fast], found, unit) {
+  const canvas = $("map"), context = canvas.getContext("2d"), [n, m] = state.shape;
+  const low = found.min?.value ?? 0, width = (found.max?.value ?? 1) - low || 1;
+  const left = 70, bottom = 40, w = (canvas.width - left) / n, h = (canvas.height - bottom) / m;
+  context.clearRect(0, 0, canvas.width, canvas.height);
+  values.forEach((value, k) => {
+    context.fillStyle = value === null ? color("line") : shade((value - low) / width);
+    context.fillRect(left + Math.floor(k / m) * w, canvas.height - bottom - ((k % m) + 1) * h, w + 0.5, h + 0.5);
+  });
+  context.fillStyle = color("ink") || "currentColor";
+  context.font = "13px system-ui";
+  const name = (value) => (typeof value === "number" ? written(value, 4) : JSON.stringify(value));
+  const [a, b] = state.inputs.map((axis) => axis.pointer);
+  context.fillText(`${a}: ${name(slow[0])} to ${name(slow.at(-1))}`, left, canvas.height - 14);
+  context.save();
+  context.rotate(-Math.PI / 2);
+  context.fillText(`${b}: ${name(fast[0])} to ${name(fast.at(-1))}`, bottom - canvas.height, 24);
+  context.restore();
+  const text = `dark ${written(low)}${unit}, light ${written(low + width)}${unit}, grey: none`;
+  $("scale").textContent = text;
+  canvas.setAttribute("aria-label", `Map over ${a} and ${b}: ${text}`);
+}
+
+function drawHistogram(histogram, unit) {
+  const canvas = $("histogram"), context = canvas.getContext("2d");
+  canvas.hidden = !histogram;
+  if (!histogram) return;
+  const { edges, counts } = histogram, most = Math.max(...counts), height = canvas.height - 24;
+  const step = canvas.width / counts.length;
+  context.clearRect(0, 0, canvas.width, canvas.height);
+  context.fillStyle = color("deep");
+  counts.forEach((count, k) => context.fillRect(k * step, height * (1 - count / most), step - 1, (height * count) / most));
+  context.fillStyle = color("ink") || "currentColor";
+  context.font = "13px system-ui";
+  const ends = [edges[0], edges.at(-1)].map((edge) => written(edge, 4) + unit);
+  context.fillText(ends[0], 0, canvas.height - 6);
+  context.fillText(ends[1], canvas.width - context.measureText(ends[1]).width, canvas.height - 6);
+  canvas.setAttribute("aria-label", `Histogram from ${ends[0]} to ${ends[1]}, at most ${most} members in a bin`);
+}
+
+function tell(error) {
+  $("problem").textContent = error.errors?.map((fault) => `${fault.pointer} ${fault.detail}`).join("; ") || error.message;
+}
+
+async function send(work) {
+  $("problem").textContent = $("told").textContent = "";
+  await work($("editor").value).catch(tell);
+}
+
+$("editor").value = JSON.stringify(START, null, 2);
+$("figure").addEventListener("change", draw);
+$("price").addEventListener("click", () => send(async (text) => {
+  const { answer } = await ask("/v1/plan", { path: STUDIES, request: JSON.parse(text) });
+  if (!answer.answerable) throw Object.assign(new Error(), { errors: answer.errors });
+  $("told").textContent = `${written(answer.cost.milliseconds / 1000, 3)} s of one processor`;
+}));
+$("start").addEventListener("click", () => send(async (text) => follow((await ask(STUDIES, text)).answer)));
+onTheme(() => shown && draw());
+get(STUDIES).then(({ studies }) => studies.forEach(follow), tell);

@@ -1,0 +1,199 @@
+"""The request of a study, and what a study will be: its members, figures and price."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from core.assessment.figures import is_null, steps_of, value_at
+from core.assessment.propagation import at
+from core.assessment.varied_input import LONGEST_WORD
+from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, Path
+from core.quantities import Quantity
+from core.studies.designs import Design, Kind
+from core.studies.statistics import BINS, PROBABILITIES, STATISTICS, Statistic
+from core.studies.study_input import StudyInput
+from core.systems.budget import Budget
+from service.problems import Refusal
+from service.routes.assessments.question_table import WITHIN, EndpointRequest, QuestionTable, within_question
+from service.routes.declared_units import unit_at
+from service.routes.studies.members import Members, number_of
+from service.routes.studies.views import STATE, StudyState
+from service.routing import Answer, PlanningProbe, PostRoute, StudyRoute
+from service.schemas import Request
+
+PATH = "/v1/studies"
+
+MOST_INPUTS = 20
+MOST_QUANTITIES = 20
+
+MOST_BINS = 1000
+
+PRICED = 32
+"""Members by which all of them are priced."""
+
+SECONDS_OF_A_MEMBER = 3e-4
+"""Beside its price: reading it and finding its figures."""
+
+SECONDS_AMONG_MANY = 8e-6
+"""Of a member that is answered together with many others."""
+
+Seed = Annotated[int, Quantity("1", at_least=0, at_most=2**53 - 1)]
+Count = Annotated[int, Quantity("1", at_least=1)]
+Bins = Annotated[int, Quantity("1", at_least=1, at_most=MOST_BINS)]
+Probability = Annotated[float, Quantity("1", at_least=0, at_most=1)]
+
+
+class StudyRequest(Request):
+    """One question with varied inputs, and the figures of its answers that are wanted."""
+
+    question: EndpointRequest = Field(description="It has to be answerable as it is; what varies has to be in it.")
+    vary: list[StudyInput] = Field(description="What varies.", min_length=1, max_length=MOST_INPUTS)
+    design: Kind = Field(
+        default="product",
+        description="product: every combination of levels, the last input varying fastest; zip: levels side by side; "
+        "random: independent draws; sobol: scrambled Sobol points.",
+    )
+    count: Count | None = Field(default=None, description="Of members, in the designs random and sobol.")
+    seed: Seed = Field(default=0, description="Of drawn members; equal requests have equal members.")
+    quantities: list[str] = Field(
+        min_length=1,
+        max_length=MOST_QUANTITIES,
+        description="Figures of each member, by pointer into its answer: numbers, and truth values as 1 and 0.",
+    )
+    statistics: list[Statistic] = Field(default=[*STATISTICS], description="Of each figure over all members.")
+    probabilities: list[Probability] = Field(default=[*PROBABILITIES], max_length=100, description="Of quantiles.")
+    bins: Bins = Field(default=BINS, description="Of histograms.")
+
+    def all_members(self) -> Design:
+        """Return the design of the members.
+
+        Raises
+        ------
+        InvalidParameter
+            If the inputs do not fit the design.
+        """
+        return Design(tuple(self.vary), self.design, self.count, self.seed)
+
+
+DESCRIPTION = """Answered with 202 and the state of the study; its address is in the Location header. Members that are
+refused are part of the results, with the code of their problem. Results are a function of the request alone: the
+same bits whatever the number of processes, and after any interruption. `/v1/plan` tells members and price."""
+
+
+def studying(routes: Sequence[PostRoute]) -> StudyRoute:
+    """Return the route of studies of questions to `routes`."""
+    table = QuestionTable(routes, (), "have studies")
+
+    def plan(question: StudyRequest, budget: Budget) -> Answer:
+        route, design = table.route(question.question), question.all_members()
+        if design.members > budget.members:
+            remedy = "take fewer levels or a smaller count, or several studies"
+            raise BudgetExceeded("members", design.members, budget.members, path=("vary",), remedy=remedy)
+        source = table.source(question.question, budget)
+        with within_question():
+            answer = source.answer(json.dumps(question.question.request))
+        inputs, figures = _paths(question)
+        for k, figure in enumerate(figures):
+            value = value_at(answer, figure)
+            if number_of(value) is None and not is_null(answer, figure):
+                rule = "lead to a number, true or false in the answer"
+                raise InvalidParameter(("quantities", k), rule)
+        members = Members(question, source)
+        together = members.together
+        each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
+        axes = zip(question.vary, inputs, strict=True)
+        return {
+            "path": route.path,
+            "count": design.members,
+            "shape": list(design.shape),
+            "inputs": [
+                {
+                    "pointer": entry.pointer,
+                    "unit": unit_at(route.question, path),
+                    "levels": None if question.count is not None else entry.levels,
+                }
+                for entry, path in axes
+            ],
+            "figures": [
+                {"pointer": pointer, "unit": unit_at(route.answer, path)}
+                for pointer, path in zip(question.quantities, figures, strict=True)
+            ],
+            "together": together,
+            "seconds": design.members * each,
+            "warnings": [notice.inside(*WITHIN) for notice in answer.get("warnings", ())],
+        }
+
+    def price(question: StudyRequest, budget: Budget) -> float:
+        return table.price(question.question, budget) + PRICED * SECONDS_OF_A_MEMBER
+
+    def probe(question: StudyRequest, budget: Budget) -> PlanningProbe:
+        found = plan(question, budget)
+        # The plan and what is answered beside it.
+        return PlanningProbe({**STATE, **found}, seconds=found["seconds"])
+
+    def members(question: StudyRequest, budget: Budget) -> Members:
+        return Members(question, table.source(question.question, budget))
+
+    return StudyRoute(
+        PATH,
+        "create_study",
+        "A study: any other question with varied inputs, its members answered in the background",
+        "studies",
+        StudyRequest,
+        StudyState,
+        plan,
+        price,
+        planning_probe=probe,
+        description=DESCRIPTION,
+        members=members,
+    )
+
+
+def _paths(question: StudyRequest) -> tuple[list[Path], list[Path]]:
+    """Return the places of the varied inputs and of the figures."""
+    taken: set[Path] = set()
+    inputs = []
+    for k, entry in enumerate(question.vary):
+        for within, pointer in (
+            (("vary", k, "pointer"), entry.pointer),
+            *((("vary", k, "also", i), other) for i, other in enumerate(entry.also)),
+        ):
+            path = _steps(pointer, within)
+            if at(question.question.request, path) is None:
+                remedy = "what varies has to be in the request of the question"
+                raise InvalidParameter(within, "lead to a value in the request", remedy=remedy)
+            if any(path[: len(other)] == other or other[: len(path)] == path for other in taken):
+                raise InvalidParameter(within, "vary nothing that another entry varies")
+            taken.add(path)
+        inputs.append(_steps(entry.pointer, ("vary", k, "pointer")))
+    return inputs, [_steps(pointer, ("quantities", k)) for k, pointer in enumerate(question.quantities)]
+
+
+def _steps(pointer: str, within: Path) -> Path:
+    try:
+        if len(pointer) > LONGEST_WORD:
+            raise InvalidParameter((), f"have at most {LONGEST_WORD} characters")
+        return steps_of(pointer)
+    except InvalidParameter as fault:
+        raise InvalidParameter(within, fault.rule, remedy=fault.remedy) from None
+
+
+def _mean_price(members: Members, route: PostRoute, budget: Budget) -> float:
+    """Return the mean of the prices of some members, evenly spread; what is refused costs nothing."""
+    count = members.design.members
+    which = np.unique(np.linspace(0, count - 1, min(PRICED, count)).astype(np.int64)).tolist()
+    prices = []
+    for k in which:
+        try:
+            prices.append(route.price(members.read(k), budget))
+        except (MechanicsError, Refusal):
+            prices.append(0.0)
+    return sum(prices) / len(prices)
+
+
+__all__ = ["PATH", "StudyRequest", "studying"]

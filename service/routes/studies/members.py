@@ -1,0 +1,210 @@
+"""The members of a study, answered: each by the ordinary way of a request, or many at a time with the same bits."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, isfinite, nan
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.assessment.figures import steps_of, value_at
+from core.assessment.propagation import changed
+from core.errors import MechanicsError, Path
+from core.studies.study_input import Floats
+from service.problems import code_of
+from service.routes.assessments.route_source import Refused, RouteSource
+from service.routing import Answer, Columns
+
+FAULT = "internal-error"
+"""Code of a member whose answer is a fault of the service."""
+
+NO_ROOM = "no-room"
+
+Labels = NDArray[np.uint16]
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Members that follow each other, with their results.
+
+    Attributes
+    ----------
+    start : int
+        Number of the first.
+    inputs : ndarray, shape (n, a)
+        Of each varied input its number, or its place in `values`.
+    figures : ndarray, shape (n, q)
+        NaN where an answer has none.
+    failures, warnings : ndarray, shape (n,)
+        0 for none, k for the k-th of the names.
+    failure_names, warning_names : tuple of str
+        Codes of problems; codes of warnings, several joined by commas.
+    """
+
+    start: int
+    inputs: Floats
+    figures: Floats
+    failures: Labels
+    warnings: Labels
+    failure_names: tuple[str, ...]
+    warning_names: tuple[str, ...]
+
+    def document(self) -> Answer:
+        """Return the block as it is written."""
+        return {
+            "start": self.start,
+            "inputs": self.inputs,
+            "figures": self.figures,
+            "failures": self.failures,
+            "warnings": self.warnings,
+            "failure_names": list(self.failure_names),
+            "warning_names": list(self.warning_names),
+        }
+
+
+class Members:
+    """Answers members.
+
+    Parameters
+    ----------
+    question : StudyRequest
+    source : RouteSource
+        Answers the question and others to its path.
+    """
+
+    def __init__(self, question: Any, source: RouteSource) -> None:
+        self._source, self._request = source, question.question.request
+        self.design = question.all_members()
+        self._places: list[list[Path]] = [
+            [steps_of(entry.pointer), *map(steps_of, entry.also)] for entry in self.design.inputs
+        ]
+        self._figures = [steps_of(pointer) for pointer in question.quantities]
+
+    @cached_property
+    def together(self) -> bool:
+        """Whether members are answered many at a time."""
+        return self._many(self.design.numbers(0, 1)) is not None
+
+    def read(self, member: int) -> Any:
+        """Return the question that a member asks, or raise its refusal."""
+        return self._source.read(self._document(self.design.numbers(member, member + 1)[0].tolist()).encode())
+
+    def block(self, start: int, stop: int, seconds: float = inf) -> Block:
+        """Return the results of the members from `start` up to `stop`, or of the first of them if time runs out.
+
+        Parameters
+        ----------
+        seconds : float
+            Time after which no further member is begun; one is answered in any case.
+        """
+        until = perf_counter() + seconds
+        numbers = self.design.numbers(start, stop)
+        figures = np.full((stop - start, len(self._figures)), nan)
+        failures, warnings = np.zeros(stop - start, np.uint16), np.zeros(stop - start, np.uint16)
+        failed, warned = _Names(), _Names()
+        rest: Sequence[int] = range(stop - start)
+        many = self._many(numbers)
+        if many is not None:
+            figures[many.answered] = many.figures[many.answered]
+            for code, which in many.warned.items():
+                if (which & many.answered).any():
+                    warnings[which & many.answered] = warned.label((code,))
+            rest = np.flatnonzero(~many.answered).tolist()
+        done = stop - start
+        for k in rest:
+            if k and perf_counter() > until:
+                done = k
+                break
+            answer = self._answered(numbers[k].tolist())
+            if isinstance(answer, str):
+                failures[k] = failed.label((answer,))
+                continue
+            row = [_figure(answer, path) for path in self._figures]
+            if not all(value is None or isfinite(value) for value in row):
+                failures[k] = failed.label((FAULT,))
+                continue
+            figures[k] = [nan if value is None else value for value in row]
+            warnings[k] = warned.label(tuple(sorted({notice.code for notice in answer.get("warnings", ())})))
+        names = failed.names, warned.names
+        return Block(start, numbers[:done], figures[:done], failures[:done], warnings[:done], *names)
+
+    def failed(self, start: int, stop: int, code: str) -> Block:
+        """Return members that could not be answered, all for one reason."""
+        none = np.zeros(stop - start, np.uint16)
+        figures = np.full((stop - start, len(self._figures)), nan)
+        return Block(start, self.design.numbers(start, stop), figures, none + np.uint16(1), none, (code,), ())
+
+    def _many(self, numbers: Floats) -> Any:
+        many = self._source.route.many
+        if many is None or any(
+            entry.values is not None and not _all_numbers(entry.values) for entry in self.design.inputs
+        ):
+            return None
+        columns: Columns = {
+            place: self._column(k, numbers[:, k]) for k, places in enumerate(self._places) for place in places
+        }
+        return many(self._request, columns, self._figures)
+
+    def _column(self, k: int, numbers: Floats) -> Floats:
+        values = self.design.inputs[k].values
+        return numbers if values is None else np.array(values, dtype=np.float64)[numbers.astype(np.int64)]
+
+    def _document(self, numbers: Sequence[float]) -> str:
+        """Return a member's request as JSON."""
+        changes: dict[Path, Any] = {}
+        for entry, places, number in zip(self.design.inputs, self._places, numbers, strict=True):
+            changes |= dict.fromkeys(places, entry.value(number))
+        return json.dumps(changed(self._request, changes))
+
+    def _answered(self, numbers: Sequence[float]) -> Answer | str:
+        """Return a member's answer, or the code of its problem."""
+        try:
+            return self._source.answer(self._document(numbers))
+        except Refused as refused:
+            return refused.refusal.problem.type.code
+        except MechanicsError as error:
+            return code_of(error)
+        except MemoryError:
+            return NO_ROOM
+        except Exception:
+            return FAULT
+
+
+class _Names:
+    """Names in the order in which they occur, and their labels from 1; no name has 0."""
+
+    def __init__(self) -> None:
+        self._labels: dict[tuple[str, ...], int] = {}
+
+    def label(self, codes: tuple[str, ...]) -> int:
+        return self._labels.setdefault(codes, len(self._labels) + 1) if codes else 0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(map(",".join, self._labels))
+
+
+def number_of(value: Any) -> float | None:
+    """Return a figure as a double, truth values as 1 and 0, decimal strings rounded; None for what is no number."""
+    if isinstance(value, (bool, float)):
+        return float(value)
+    if isinstance(value, str):
+        try:
+            return float(value)
+        except ValueError:
+            return None
+    return None
+
+
+def _figure(answer: Mapping[str, Any], path: Path) -> float | None:
+    return number_of(value_at(answer, path))
+
+
+def _all_numbers(values: Sequence[Any]) -> bool:
+    return all(type(value) in (int, float) for value in values)

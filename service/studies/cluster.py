@@ -1,0 +1,91 @@
+"""The Dask cluster that computes studies: one of this machine, or an existing one."""
+
+from __future__ import annotations
+
+import logging
+import os
+from pathlib import Path
+from typing import Any
+
+from service.settings import Settings
+
+CONNECTING = 10.0
+"""Seconds in which an existing scheduler must answer."""
+
+SHARE_OF_MEMORY = 0.5
+"""Of the machine's, which the processes take together unless the settings say how much."""
+
+
+class Cluster:
+    """Connected while it is needed; `client` is None until then.
+
+    Parameters
+    ----------
+    settings : Settings
+    scratch : Path
+        Folder for what the processes of this machine store for a while.
+    """
+
+    def __init__(self, settings: Settings, scratch: Path) -> None:
+        self._settings, self._scratch = settings, scratch
+        self._local: Any = None
+        self.client: Any = None
+
+    def open(self) -> Any:
+        """Return the connection, made where there is none.
+
+        Raises
+        ------
+        OSError
+            If the existing scheduler does not answer.
+        """
+        import dask
+
+        if self.client is not None:
+            return self.client
+        # Its own log would repeat, for each process, what is said here once.
+        dask.config.set({"logging.distributed": "critical"})
+        from distributed import Client, LocalCluster
+
+        settings = self._settings
+        if settings.dask:
+            self.client = Client(settings.dask, timeout=CONNECTING, name="polhode")
+            return self.client
+        from distributed.system import MEMORY_LIMIT
+
+        cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        workers = settings.study_workers or cores
+        memory = settings.study_memory_bytes or int(SHARE_OF_MEMORY * MEMORY_LIMIT)
+        # A member that ends its process is found by halves; it need not end three others first.
+        dask.config.set(
+            {
+                "distributed.scheduler.allowed-failures": 0,
+                "distributed.worker.multiprocessing-method": "forkserver",
+                "distributed.worker.profile.enabled": False,
+                # Its pages are not needed, and would tell every user of the machine what is computed.
+                "distributed.scheduler.http.routes": ["distributed.http.health"],
+                "distributed.worker.http.routes": ["distributed.http.health"],
+            }
+        )
+        self._local = LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            memory_limit=memory // workers,
+            dashboard_address="127.0.0.1:0",
+            local_directory=str(self._scratch),
+            silence_logs=logging.CRITICAL,
+        )
+        self.client = Client(self._local)
+        return self.client
+
+    @property
+    def connected(self) -> bool:
+        """Whether the connection is there."""
+        return self.client is not None and self.client.status == "running"
+
+    def close(self) -> None:
+        """End the processes of this machine, or leave the existing cluster."""
+        for part in (self.client, self._local):
+            if part is not None:
+                part.close(timeout=5)
+        self.client = self._local = None

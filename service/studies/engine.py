@@ -1,0 +1,317 @@
+"""Works on the studies of a folder: hands stretches of members to the cluster and stores what comes back.
+
+Which members make a stretch, which process has it and when it ends has no influence on any result. Studies have their
+turns in rotation.
+
+A stretch whose process has ended is suspect: it may have been the reason, or merely have waited in that process. It is
+tried again with nothing beside it. If the process ends again it is divided, until a single member is left, whose result
+is then that it has none.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from queue import Empty, SimpleQueue
+from typing import Any
+
+from service.execution.worker import Terms
+from service.observability.logs import LOG
+from service.problems import Refusal
+from service.studies.chunk_files import ChunkFiles, CorruptedChunk
+from service.studies.cluster import Cluster
+from service.studies.store import FAILED, Store, Study
+from service.studies.summary import summary
+from service.studies.task import Computed, compute, end_process, without_answer
+
+CHUNK_SECONDS = 0.5
+"""Processor time that a stretch should take, and time after which it begins no further member."""
+
+LEAST_SECONDS = 0.05
+"""Processor time below which a stretch is not divided among processes."""
+
+LARGEST_CHUNK = 100_000
+"""Members of a stretch."""
+
+AHEAD = 2
+"""Stretches that each process of the cluster is given at a time, so that none waits for work."""
+
+FASTEST = 1e-6
+"""Processor time of a member at least (s)."""
+
+MOST_ENDED = 100
+"""Processes that a study may end, with waiting stretches counted as well; beyond, it has failed."""
+
+TURN = 0.1
+"""Seconds between two looks at the database."""
+
+GATHERING = 60.0
+"""Seconds in which a result must have travelled."""
+
+PAUSE = 2.0
+"""Seconds after which something is tried again that failed for reasons outside of the study."""
+
+Stretch = tuple[int, int]
+
+
+@dataclass(eq=False)
+class Work:
+    """An unfinished study.
+
+    Attributes
+    ----------
+    missing : deque of (int, int)
+        Stretches that are not stored and not being computed.
+    in_flight : mapping of future to stretch and when it was handed over
+    suspects : deque of (int, int)
+        Stretches that are to be tried alone.
+    deaths : mapping
+        How many processes a stretch has ended while it was alone.
+    ended : int
+        How many processes the study has ended.
+    each : float
+        Processor time of a member (s), as predicted and then as measured.
+    """
+
+    study: Study
+    missing: deque[Stretch]
+    each: float
+    in_flight: dict[Any, tuple[Stretch, float]] = field(default_factory=dict)
+    suspects: deque[Stretch] = field(default_factory=deque)
+    deaths: dict[Stretch, int] = field(default_factory=dict)
+    ended: int = 0
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing is left to be computed."""
+        return not (self.missing or self.suspects or self.in_flight)
+
+    def next_stretch(self, processes: int) -> Stretch:
+        """Take a stretch of about `CHUNK_SECONDS`, less where otherwise some processes would have none."""
+        start, stop = self.missing.popleft()
+        share = max(-(-(stop - start) // processes), int(LEAST_SECONDS / self.each))
+        size = max(1, min(LARGEST_CHUNK, int(CHUNK_SECONDS / self.each), share))
+        if start + size < stop:
+            self.missing.appendleft((start + size, stop))
+        return start, min(stop, start + size)
+
+
+class Engine:
+    """Works on the studies in a store."""
+
+    def __init__(self, store: Store, files: ChunkFiles, cluster: Cluster, terms: Terms, longest: float) -> None:
+        self._store, self._files, self._cluster, self._terms, self._longest = store, files, cluster, terms, longest
+        self._works: dict[str, Work] = {}
+        self._done: SimpleQueue[Any] = SimpleQueue()
+        self._processes, self._counted = 0, 0.0
+        self._alone = False
+
+    def turn(self) -> bool:
+        """Do what there is to do now, waiting a moment for results; return whether studies are unfinished."""
+        self._follow()
+        if not self._works:
+            time.sleep(TURN)
+            return False
+        try:
+            self._hand_over()
+        except OSError as fault:
+            self._say(f"the Dask cluster cannot be reached, and is tried again: {fault}")
+            self._cluster.close()
+            time.sleep(PAUSE)
+            return True
+        self._collect()
+        self._end_overdue()
+        for work in [*self._works.values()]:
+            if work.done:
+                self._finish(work)
+        return True
+
+    def stop(self) -> None:
+        """Leave everything as it is stored."""
+        self._works.clear()
+        self._cluster.close()
+
+    def _follow(self) -> None:
+        """Take up new studies, and let go of those that were dismissed."""
+        unfinished = {study.id: study for study in self._store.unfinished()}
+        for identity in [*self._works]:
+            if identity not in unfinished:
+                self._let_go(self._works.pop(identity))
+                self._files.remove(identity)
+        for identity, study in unfinished.items():
+            if identity not in self._works:
+                stored = self._store.chunks(identity)
+                each = max(study.plan["seconds"] / study.count, FASTEST)
+                self._works[identity] = Work(study, deque(_gaps(stored, study.count)), each)
+                self._store.begin(identity)
+                LOG.info("a study is worked on", extra={"study": identity, "members": study.count, "done": study.done})
+
+    def _let_go(self, work: Work) -> None:
+        futures = [*work.in_flight]
+        if futures and self._cluster.connected:
+            client = self._cluster.client
+            # A thread cannot be ended: processes that would be busy for long with these members are.
+            long = work.each > CHUNK_SECONDS
+            busy = _processes_with({future.key for future in futures}, client) if long else []
+            client.cancel(futures, force=True)
+            if busy:
+                client.run(end_process, workers=busy, wait=False, on_error="ignore")
+        work.in_flight.clear()
+
+    def _hand_over(self) -> None:
+        client = self._cluster.open()
+        if time.monotonic() - self._counted > 1.0:
+            self._processes = max(1, sum(client.nthreads().values()))
+            self._counted = time.monotonic()
+        busy = sum(len(work.in_flight) for work in self._works.values())
+        suspected = next((work for work in self._works.values() if work.suspects), None)
+        if suspected is not None:
+            # What is in flight comes back first.
+            if not busy:
+                self._alone = True
+                self._submit(suspected, suspected.suspects.popleft())
+            return
+        if self._alone and busy:
+            return
+        self._alone = False
+        for _ in range(AHEAD * self._processes - busy):
+            waiting = [work for work in self._works.values() if work.missing]
+            if not waiting:
+                return
+            work = min(waiting, key=lambda one: len(one.in_flight))
+            self._submit(work, work.next_stretch(self._processes))
+
+    def _submit(self, work: Work, stretch: Stretch) -> None:
+        future = self._cluster.client.submit(
+            compute, self._terms, work.study.request, *stretch, CHUNK_SECONDS, pure=False
+        )
+        work.in_flight[future] = stretch, time.monotonic()
+        future.add_done_callback(self._done.put)
+
+    def _collect(self) -> None:
+        """Store what has come back, after waiting for the first of it."""
+        patience = TURN
+        while True:
+            try:
+                future = self._done.get(timeout=patience) if patience else self._done.get_nowait()
+            except Empty:
+                return
+            patience = 0.0
+            work = next((one for one in self._works.values() if future in one.in_flight), None)
+            if work is not None:
+                stretch, _ = work.in_flight.pop(future)
+                self._settle(work, stretch, future)
+
+    def _settle(self, work: Work, stretch: Stretch, future: Any) -> None:
+        from distributed.scheduler import KilledWorker
+
+        if future.status != "error":
+            try:
+                found = future.result(timeout=GATHERING)
+            except Exception:
+                # The scheduler has gone, or the process that had the result.
+                work.missing.appendleft(stretch)
+                return
+            self._keep(work, stretch, found)
+            return
+        fault = future.exception()
+        if isinstance(fault, KilledWorker):
+            self._after_death(work, stretch, "worker-lost")
+            return
+        self._fail(work, f"the cluster could not compute its members: {fault!r}")
+
+    def _after_death(self, work: Work, stretch: Stretch, code: str) -> None:
+        start, stop = stretch
+        work.ended += 1
+        if work.ended > MOST_ENDED:
+            self._fail(work, f"its members ended {work.ended} processes")
+        elif not self._alone:
+            work.suspects.append(stretch)
+        elif stop - start > 1:
+            middle = (start + stop) // 2
+            work.suspects.extendleft(((middle, stop), (start, middle)))
+        elif (deaths := work.deaths.get(stretch, 0) + 1) < 2:
+            work.deaths[stretch] = deaths
+            work.suspects.append(stretch)
+        else:
+            self._keep(work, stretch, without_answer(self._terms, work.study.request, start, code))
+
+    def _fail(self, work: Work, message: str) -> None:
+        LOG.error("a study has failed", extra={"study": work.study.id, "reason": message})
+        self._let_go(self._works.pop(work.study.id))
+        self._store.end(work.study.id, FAILED, message)
+
+    def _keep(self, work: Work, stretch: Stretch, found: Computed) -> None:
+        start, stop = stretch[0], stretch[0] + found.count
+        try:
+            self._files.write(work.study.id, start, stop, found.data)
+            self._store.add_chunk(work.study.id, start, stop, found.failed, found.seconds)
+        except Exception as fault:
+            # A full disk, most often: the members are computed again when there is room.
+            work.missing.appendleft(stretch)
+            self._say(f"results cannot be stored, which is tried again: {fault}")
+            time.sleep(PAUSE)
+            return
+        if stop < stretch[1]:
+            # Its time was up.
+            work.missing.appendleft((stop, stretch[1]))
+        work.each = max(FASTEST, 0.5 * (work.each + found.seconds / found.count))
+
+    def _end_overdue(self) -> None:
+        """End processes that have had a stretch for much longer than predicted."""
+        now = time.monotonic()
+        for work in [*self._works.values()]:
+            for future, (stretch, since) in [*work.in_flight.items()]:
+                expected = work.each * (stretch[1] - stretch[0])
+                if now - since <= AHEAD * (self._longest + 20.0 * expected):
+                    continue
+                client = self._cluster.client
+                busy = _processes_with({future.key}, client)
+                if not busy:
+                    # It still waits for a process.
+                    work.in_flight[future] = stretch, now
+                    continue
+                del work.in_flight[future]
+                client.cancel([future], force=True)
+                client.run(end_process, workers=busy, wait=False, on_error="ignore")
+                self._after_death(work, stretch, "deadline-exceeded")
+
+    def _finish(self, work: Work) -> None:
+        """Form the statistics; stretches whose files are damaged are computed again."""
+        study, chunks = work.study, []
+        for start, stop in self._store.chunks(study.id):
+            try:
+                chunks.append(self._files.read(study.id, start, stop))
+            except CorruptedChunk as fault:
+                LOG.error("results are damaged and computed again", extra={"study": study.id, "fault": str(fault)})
+                self._store.drop_chunk(study.id, start)
+                work.missing.append((start, stop))
+        if not work.missing:
+            self._store.finish(study.id, summary(study, chunks))
+            del self._works[study.id]
+
+    def _say(self, message: str) -> None:
+        LOG.error(message)
+        for work in self._works.values():
+            # On a full disk there may be no room for it.
+            with suppress(Refusal):
+                self._store.note(work.study.id, message)
+
+
+def _gaps(stored: list[Stretch], count: int) -> Iterator[Stretch]:
+    """Yield what lies between the stretches that are stored."""
+    reached = 0
+    for start, stop in stored:
+        if start > reached:
+            yield reached, start
+        reached = max(reached, stop)
+    if reached < count:
+        yield reached, count
+
+
+def _processes_with(keys: set[str], client: Any) -> list[str]:
+    """Return the addresses of the processes that have been given any of some tasks."""
+    return [address for address, tasks in client.processing().items() if keys & set(map(str, tasks))]

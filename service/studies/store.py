@@ -1,0 +1,277 @@
+"""The record of studies: one SQLite database in the folder of data, written by any number of processes.
+
+It is in the mode of a write-ahead log: readers never wait for the writer. A study is a row; so is each stretch of its
+members whose results are stored.
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+import sqlite3
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from service.problems import Refusal
+
+DATABASE = "studies.sqlite"
+
+ACCEPTED, RUNNING, SUCCESSFUL, FAILED, DISMISSED = "accepted", "running", "successful", "failed", "dismissed"
+"""States, as OGC API Processes names them."""
+
+UNFINISHED = (ACCEPTED, RUNNING)
+
+PATIENCE = 5.0
+"""Seconds for which a process waits for another's writing."""
+
+_TABLES = """
+CREATE TABLE IF NOT EXISTS studies (
+    id TEXT PRIMARY KEY, owner TEXT NOT NULL, request BLOB NOT NULL, plan TEXT NOT NULL, status TEXT NOT NULL,
+    message TEXT NOT NULL, created REAL NOT NULL, started REAL, finished REAL, statistics TEXT
+);
+CREATE TABLE IF NOT EXISTS chunks (
+    study TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL, failed INTEGER NOT NULL,
+    seconds REAL NOT NULL, PRIMARY KEY (study, start)
+) WITHOUT ROWID;
+CREATE INDEX IF NOT EXISTS studies_by_owner ON studies (owner, created);
+"""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study as it is recorded.
+
+    Attributes
+    ----------
+    id, owner : str
+        The owner is the name of a key, empty where none are required.
+    request : bytes
+        As it was sent.
+    plan : mapping
+        What was answered at its submission.
+    status, message : str
+    created, started, finished : float
+        Seconds since 1970; None for what has not happened.
+    done, failed : int
+        Members whose results are stored, and how many of them have none but a problem.
+    seconds : float
+        Processor time that they took.
+    """
+
+    id: str
+    owner: str
+    request: bytes
+    plan: Mapping[str, Any]
+    status: str
+    message: str
+    created: float
+    started: float | None
+    finished: float | None
+    done: int
+    failed: int
+    seconds: float
+
+    @property
+    def count(self) -> int:
+        """Number of members."""
+        return int(self.plan["count"])
+
+    @property
+    def unfinished(self) -> bool:
+        """Whether there is something left to do."""
+        return self.status in UNFINISHED
+
+
+_STUDY = """SELECT id, owner, request, plan, status, message, created, started, finished,
+    COALESCE((SELECT SUM(stop - start) FROM chunks WHERE study = id), 0),
+    COALESCE((SELECT SUM(failed) FROM chunks WHERE study = id), 0),
+    COALESCE((SELECT SUM(seconds) FROM chunks WHERE study = id), 0.0)
+    FROM studies """
+
+
+class Store:
+    """The database in a folder, which is made where it is missing.
+
+    Raises
+    ------
+    Refusal
+        ``storage-unavailable``, by every method, where the folder cannot be read or written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._turn = Lock()
+        self._connection: sqlite3.Connection | None = None
+
+    def close(self) -> None:
+        """Close the connection; the next call opens another."""
+        with self._turn:
+            self._drop()
+
+    def _drop(self) -> None:
+        if self._connection is not None:
+            self._connection.close()
+            self._connection = None
+
+    @property
+    def exists(self) -> bool:
+        """Whether there has been a study."""
+        return (self.folder / DATABASE).exists()
+
+    @contextmanager
+    def _connected(self) -> Iterator[sqlite3.Connection]:
+        # Closing the last connection to a database writes its log into it: this one stays open.
+        with self._turn:
+            try:
+                if self._connection is None:
+                    self._connection = self._opened()
+                yield self._connection
+            except (OSError, sqlite3.Error) as fault:
+                self._drop()
+                raise storage_unavailable(fault) from fault
+            except BaseException:
+                # Nothing is left half written.
+                self._drop()
+                raise
+
+    def _opened(self) -> sqlite3.Connection:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        # Used by one thread at a time.
+        connection = sqlite3.connect(
+            self.folder / DATABASE, timeout=PATIENCE, isolation_level=None, check_same_thread=False
+        )
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("PRAGMA synchronous = NORMAL")
+        connection.executescript(_TABLES)
+        return connection
+
+    def create(self, owner: str, request: bytes, plan: Mapping[str, Any], most: int) -> str:
+        """Record a study and return its id, which cannot be guessed.
+
+        Parameters
+        ----------
+        most : int
+            Unfinished studies that the owner may have.
+
+        Raises
+        ------
+        Refusal
+            429 beyond them.
+        """
+        identity = secrets.token_urlsafe(18)
+        with self._connected() as connection:
+            connection.execute("BEGIN IMMEDIATE")
+            (open_,) = connection.execute(
+                "SELECT COUNT(*) FROM studies WHERE owner = ? AND status IN (?, ?)", (owner, *UNFINISHED)
+            ).fetchone()
+            if open_ >= most:
+                detail = f"{open_} studies are unfinished already, the limit max_studies"
+                raise Refusal("too-busy", detail, retry_after=10.0)
+            connection.execute(
+                "INSERT INTO studies VALUES (?, ?, ?, ?, ?, '', ?, NULL, NULL, NULL)",
+                (identity, owner, request, json.dumps(plan), ACCEPTED, time.time()),
+            )
+            connection.execute("COMMIT")
+        return identity
+
+    def get(self, identity: str, owner: str | None = None) -> Study | None:
+        """Return a study, None if there is none with this id, or it is another owner's."""
+        if not self.exists:
+            return None
+        with self._connected() as connection:
+            row = connection.execute(_STUDY + "WHERE id = ?", (identity,)).fetchone()
+        found = None if row is None else _study(row)
+        return found if found is not None and owner in (None, found.owner) else None
+
+    def listed(self, owner: str, limit: int) -> list[Study]:
+        """Return an owner's studies, the latest first."""
+        return self._where("WHERE owner = ? ORDER BY created DESC, id LIMIT ?", (owner, limit))
+
+    def unfinished(self) -> list[Study]:
+        """Return every study that is not finished, the earliest first."""
+        return self._where("WHERE status IN (?, ?) ORDER BY created, id", UNFINISHED)
+
+    def finished_before(self, moment: float) -> list[Study]:
+        """Return the studies that were finished before a moment (s since 1970)."""
+        return self._where("WHERE finished < ?", (moment,))
+
+    def _where(self, condition: str, values: tuple[Any, ...]) -> list[Study]:
+        if not self.exists:
+            return []
+        with self._connected() as connection:
+            return [_study(row) for row in connection.execute(_STUDY + condition, values)]
+
+    def chunks(self, identity: str) -> list[tuple[int, int]]:
+        """Return the stretches of members whose results are stored, in member order."""
+        with self._connected() as connection:
+            rows = connection.execute("SELECT start, stop FROM chunks WHERE study = ? ORDER BY start", (identity,))
+            return [(start, stop) for start, stop in rows]
+
+    def add_chunk(self, identity: str, start: int, stop: int, failed: int, seconds: float) -> None:
+        """Record that the results of a stretch are stored; what hindered the study no longer does."""
+        self._write("INSERT OR REPLACE INTO chunks VALUES (?, ?, ?, ?, ?)", (identity, start, stop, failed, seconds))
+        self._write("UPDATE studies SET message = '' WHERE id = ? AND message != '' AND finished IS NULL", (identity,))
+
+    def drop_chunk(self, identity: str, start: int) -> None:
+        """Record that the results of a stretch cannot be read; a study that was finished goes on."""
+        self._write("DELETE FROM chunks WHERE study = ? AND start = ?", (identity, start))
+        self._write(
+            "UPDATE studies SET status = ?, finished = NULL, statistics = NULL WHERE id = ? AND status = ?",
+            (RUNNING, identity, SUCCESSFUL),
+        )
+
+    def begin(self, identity: str) -> None:
+        """Record that a study is being worked on."""
+        self._write(
+            "UPDATE studies SET status = ?, started = COALESCE(started, ?) WHERE id = ? AND status = ?",
+            (RUNNING, time.time(), identity, ACCEPTED),
+        )
+
+    def finish(self, identity: str, statistics: Any) -> None:
+        """Record the statistics of a study whose members are all done, unless it was dismissed meanwhile."""
+        self._write(
+            "UPDATE studies SET status = ?, finished = ?, statistics = ? WHERE id = ? AND status IN (?, ?)",
+            (SUCCESSFUL, time.time(), json.dumps(statistics), identity, *UNFINISHED),
+        )
+
+    def end(self, identity: str, status: str, message: str) -> bool:
+        """Record that a study has failed or is dismissed; return whether it was unfinished."""
+        return self._write(
+            "UPDATE studies SET status = ?, finished = ?, message = ? WHERE id = ? AND status IN (?, ?)",
+            (status, time.time(), message, identity, *UNFINISHED),
+        )
+
+    def note(self, identity: str, message: str) -> None:
+        """Record what is to be said about an unfinished study."""
+        self._write("UPDATE studies SET message = ? WHERE id = ? AND message != ?", (message, identity, message))
+
+    def statistics(self, identity: str) -> Any:
+        """Return the statistics of a successful study."""
+        with self._connected() as connection:
+            (text,) = connection.execute("SELECT statistics FROM studies WHERE id = ?", (identity,)).fetchone()
+        return None if text is None else json.loads(text)
+
+    def remove(self, identity: str) -> None:
+        """Forget a study."""
+        self._write("DELETE FROM chunks WHERE study = ?", (identity,))
+        self._write("DELETE FROM studies WHERE id = ?", (identity,))
+
+    def _write(self, statement: str, values: tuple[Any, ...]) -> bool:
+        with self._connected() as connection:
+            return connection.execute(statement, values).rowcount > 0
+
+
+def _study(row: tuple[Any, ...]) -> Study:
+    identity, owner, request, plan, *rest = row
+    return Study(identity, owner, request, json.loads(plan), *rest)
+
+
+def storage_unavailable(fault: Exception) -> Refusal:
+    """Return the refusal of what cannot be stored."""
+    reason = getattr(fault, "strerror", None) or str(fault)
+    return Refusal("storage-unavailable", f"the folder of data cannot be used: {reason}", retry_after=10.0)

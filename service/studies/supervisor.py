@@ -1,0 +1,102 @@
+"""Sees to it, in a server process, that unfinished studies are worked on, and that old ones are removed."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+import time
+
+from service.observability.logs import LOG
+from service.observability.metrics import Metrics
+from service.problems import Refusal
+from service.settings import Settings
+from service.studies.chunk_files import ChunkFiles
+from service.studies.folder import Ownership, data_folder
+from service.studies.store import Store
+
+LOOK_EVERY = 1.0
+"""Seconds."""
+
+CLEAN_EVERY = 600.0
+"""Seconds."""
+
+DAY = 86_400.0
+
+
+class Supervisor:
+    """Starts the process that works on studies where it is missing; `watch` runs as long as the server.
+
+    Parameters
+    ----------
+    settings : Settings
+    table : str
+        Where the questions are: ``"module:function"``.
+    metrics : Metrics
+    """
+
+    def __init__(self, settings: Settings, table: str, metrics: Metrics) -> None:
+        self._settings, self._table, self._metrics = settings, table, metrics
+        folder = data_folder(settings)
+        self.store = Store(folder)
+        self.results = settings.studies_results or str(folder / "studies")
+        self._ownership = Ownership(folder)
+        self._runner: subprocess.Popen[bytes] | None = None
+
+    def files(self) -> ChunkFiles:
+        """Return where results are stored."""
+        return ChunkFiles(self.results)
+
+    def ensure(self) -> None:
+        """Start the process, unless there is one that works on this folder."""
+        if (self._runner is not None and self._runner.poll() is None) or self._ownership.taken:
+            return
+        environment = {
+            f"POLHODE_{name.upper()}": str(value)
+            for name, value in self._settings.model_dump().items()
+            if value is not None
+        }
+        self._runner = subprocess.Popen(
+            [sys.executable, "-m", "service.studies.runner", self._table],
+            stdin=subprocess.PIPE,
+            env={**os.environ, **environment},
+        )
+
+    async def watch(self) -> None:
+        """Look after the studies of the folder until cancelled."""
+        cleaned = -CLEAN_EVERY
+        while True:
+            try:
+                await asyncio.to_thread(self._look)
+                if time.monotonic() - cleaned > CLEAN_EVERY:
+                    cleaned = time.monotonic()
+                    await asyncio.to_thread(self.clean)
+            except (OSError, Refusal) as fault:
+                LOG.error("the studies cannot be looked after: %s", fault)
+            await asyncio.sleep(LOOK_EVERY)
+
+    def _look(self) -> None:
+        unfinished = self.store.unfinished()
+        self._metrics.studies.set(len(unfinished))
+        self._metrics.members_missing.set(sum(study.count - study.done for study in unfinished))
+        if unfinished:
+            self.ensure()
+
+    def clean(self) -> None:
+        """Remove what was finished too long ago."""
+        for study in self.store.finished_before(time.time() - DAY * self._settings.studies_keep_days):
+            self.files().remove(study.id)
+            self.store.remove(study.id)
+
+    async def stop(self) -> None:
+        """End the process that was started, which leaves everything as it is stored."""
+        runner = self._runner
+        if runner is not None and runner.stdin is not None:
+            runner.stdin.close()
+            runner.terminate()
+            try:
+                await asyncio.to_thread(runner.wait, 15.0)
+            except subprocess.TimeoutExpired:
+                runner.kill()
+                runner.wait()

@@ -1,0 +1,85 @@
+"""Every route that answers many questions at once: the same bits, failures and warnings as one by one."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.systems.budget import Budget
+from service.requests.request_reader import Limits, Reader
+from service.routes import questions
+from service.routes.studies import studying
+from service.routing import PostRoute
+
+ROUTES = {route.path: route for route in questions() if route.many is not None}
+
+RANGES: dict[str, list[list[dict[str, Any]]]] = {
+    "/v1/rotation/precession": [
+        # Bodies of every kind: impossible, symmetric, and with two moments of 0.
+        [{"pointer": f"/body/moments/{k}", "values": [0.0, 1.0, 1.5, 2.0, 2.5, 9.0]} for k in range(3)],
+        # Starts along axes, on the separatrix and next to it.
+        [{"pointer": f"/angular_velocity/{k}", "values": [0.0, -0.5, 0.1, 1.0, 1e200, 3]} for k in range(3)],
+        [
+            {"pointer": "/body/moments/0", "min": 1.0, "max": 2.0, "count": 15, "also": ["/angular_velocity/1"]},
+            {"pointer": "/angular_velocity/0", "distribution": "normal", "mean": 0.0, "deviation": 1.0, "count": 15},
+        ],
+    ]
+}
+FIGURES = {
+    "/v1/rotation/precession": [
+        *(f"/{name}" for name in ("body_rate", "space_rate", "period", "flip_interval", "precession_per_period")),
+        *(f"/{name}" for name in ("mean_precession_rate", "axis_to_angular_momentum", "tumbles", "axis/2")),
+        *("/middle_axis_tilt/0", "/middle_axis_tilt/1", "/axis_to_angular_velocity", "/axis/0", "/axis/1"),
+        "/angular_momentum_to_angular_velocity",
+    ]
+}
+CASES = [(path, k) for path, sets in RANGES.items() for k in range(len(sets))]
+
+
+def test_every_such_route_is_tested() -> None:
+    assert set(ROUTES) == set(RANGES) == set(FIGURES)
+
+
+def block(route: PostRoute, study: dict[str, Any]) -> Any:
+    about = studying((route,))
+    question = Reader(about.question, Limits()).read(json.dumps(study).encode())
+    members = about.members(question, Budget())
+    assert members.together is (route.many is not None)
+    return members.block(0, members.design.members)
+
+
+def named(labels: Any, names: tuple[str, ...]) -> list[str]:
+    return [names[k - 1] if k else "" for k in labels.tolist()]
+
+
+@pytest.mark.parametrize(("path", "k"), CASES)
+def test_many_have_the_bits_of_each_alone(path: str, k: int) -> None:
+    route = ROUTES[path]
+    request = {"body": {"kind": "principal-moments", "moments": [1.0, 1.5, 2.0]}, "angular_velocity": [0.1, 1.0, 0.2]}
+    study = {"question": {"path": path, "request": request}, "vary": RANGES[path][k], "quantities": FIGURES[path]}
+    many, alone = block(route, study), block(replace(route, many=None), study)
+    assert many.inputs.tobytes() == alone.inputs.tobytes()
+    for found in (many, alone):
+        found.figures[np.isnan(found.figures)] = np.nan
+    assert many.figures.tobytes() == alone.figures.tobytes()
+    assert named(many.failures, many.failure_names) == named(alone.failures, alone.failure_names)
+    assert named(many.warnings, many.warning_names) == named(alone.warnings, alone.warning_names)
+    assert np.isfinite(many.figures).any(axis=1).any()
+
+
+def test_what_is_not_answered_at_once_is_answered_one_by_one() -> None:
+    """Other bodies, a measurement, and figures that are no numbers of the precession."""
+    route = ROUTES["/v1/rotation/precession"]
+    assert route.many is not None
+    moments = {"body": {"kind": "principal-moments", "moments": [1.0, 1.5, 2.0]}, "angular_velocity": [0.1, 1.0, 0.2]}
+    columns = {("angular_velocity", 0): np.array([0.1, 0.2])}
+    assert route.many(moments, columns, [("flip_interval",)]) is not None
+    box = {"body": {"kind": "cuboid", "sides": [1.0, 2.0, 3.0], "mass": 1.0}, "angular_velocity": [0.1, 1.0, 0.2]}
+    assert route.many(box, columns, [("flip_interval",)]) is None
+    assert route.many(moments | {"measure": {"duration": 1.0}}, columns, [("flip_interval",)]) is None
+    assert route.many(moments, columns, [("measured", "period")]) is None
+    assert route.many(moments, {("body", "moments"): np.array([1.0])}, [("flip_interval",)]) is None

@@ -1,0 +1,187 @@
+"""The same bits on every cluster and after every accident; nothing that is stored is computed again."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from service.studies.store import DISMISSED, SUCCESSFUL
+from service.studies.task import compute
+from tests.service.studies.conftest import TERMS, UNIFORM, Desk, sleeping
+from tests.service.toy_routes import GOOD
+
+Desks = Callable[..., Desk]
+
+
+def finished(desk: Desk, request: dict[str, Any], each: float = 1e-3) -> tuple[bytes, ...]:
+    identity = desk.submit(request, each)
+    desk.work()
+    assert desk.study(identity).status == SUCCESSFUL
+    return desk.bits(identity)
+
+
+def test_equal_bits_in_one_thread_and_two_processes_however_members_are_divided(
+    desk_on: Desks, in_process: str, processes: str, tmp_path: Path
+) -> None:
+    whole = finished(desk_on(in_process), UNIFORM, 1e-6)
+    assert finished(desk_on(in_process, tmp_path / "b"), UNIFORM, 0.1) == whole
+    assert finished(desk_on(processes, tmp_path / "c"), UNIFORM, 0.02) == whole
+
+
+def test_a_member_has_the_figures_of_its_single_request(desk_on: Desks, in_process: str) -> None:
+    desk = desk_on(in_process)
+    inputs, figures, *_ = finished(desk, UNIFORM)
+    rates = np.frombuffer(inputs).reshape(300, 2)[:, 0]
+    found = np.frombuffer(figures).reshape(300, 2)
+    assert found[:, 0].tolist() == rates.tolist()
+    assert (found[:, 1] == 0.5 * GOOD["angular_velocity"][1]).all()
+
+
+def test_refused_members_are_results(desk_on: Desks, in_process: str) -> None:
+    request = UNIFORM | {"vary": [{"pointer": "/body/moments/2", "values": [3.0, 7.0, -1.0, 4.0]}], "design": "product"}
+    del request["count"]
+    desk = desk_on(in_process)
+    _, figures, failed, _ = finished(desk, request)
+    assert failed == b'["", "unphysical-inertia", "invalid-parameter", ""]'
+    assert np.isnan(np.frombuffer(figures).reshape(4, 2)[1:3]).all()
+
+
+def test_faults_of_the_service_are_results_too(desk_on: Desks, in_process: str) -> None:
+    values = ["well", "fail", "nan", "unreachable"]
+    request = UNIFORM | {"vary": [{"pointer": "/behaviour", "values": values}], "design": "product"}
+    request["question"] = {"path": "/v1/toy", "request": GOOD | {"behaviour": "well"}}
+    request["quantities"] = ["/position/2/2"]
+    del request["count"]
+    _, _, failed, statistics = finished(desk_on(in_process), request)
+    assert failed == b'["", "internal-error", "internal-error", "accuracy-unreachable"]'
+    assert b'"failures": {"accuracy-unreachable": 1, "internal-error": 2}' in statistics
+
+
+def test_a_killed_process_costs_what_it_was_computing(
+    desk_on: Desks, in_process: str, processes: str, tmp_path: Path
+) -> None:
+    request = sleeping(0.004, 120)
+    desk = desk_on(processes)
+    identity = desk.submit(request, 0.02)
+    desk.work(until=lambda: desk.study(identity).done)
+    stored = set(desk.store.chunks(identity))
+    for process in desk.cluster.client.run(os.getpid).values():
+        os.kill(process, signal.SIGKILL)
+    desk.work()
+    assert stored < set(desk.store.chunks(identity))
+    assert desk.study(identity).status == SUCCESSFUL
+    assert desk.bits(identity) == finished(desk_on(in_process, tmp_path / "other"), request)
+
+
+def test_a_member_that_ends_its_process_is_found_and_the_others_are_answered(desk_on: Desks, processes: str) -> None:
+    values = ["well", "well", "die", "well"]
+    request = UNIFORM | {"vary": [{"pointer": "/behaviour", "values": values}], "design": "product"}
+    request["question"] = {"path": "/v1/toy", "request": GOOD | {"behaviour": "well"}}
+    del request["count"]
+    _, figures, failed, _ = finished(desk_on(processes), request, 0.01)
+    assert failed == b'["", "", "worker-lost", ""]'
+    assert np.isnan(np.frombuffer(figures).reshape(4, 2)).any(axis=1).tolist() == [False, False, True, False]
+
+
+def test_another_engine_goes_on_where_one_has_stopped(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    first = desk_on(in_process)
+    identity = first.submit(UNIFORM, 0.05)
+    first.work(until=lambda: first.study(identity).done)
+    first.engine.stop()
+    stored = first.store.chunks(identity)
+    assert 0 < first.study(identity).done < 300
+    second = desk_on(in_process)
+    second.work()
+    assert set(stored) < set(second.store.chunks(identity))
+    assert second.bits(identity) == finished(desk_on(in_process, tmp_path / "other"), UNIFORM)
+
+
+@pytest.mark.parametrize("damage", ["turned", "cut", "gone", "swapped"])
+def test_damaged_results_are_computed_again(desk_on: Desks, in_process: str, tmp_path: Path, damage: str) -> None:
+    desk = desk_on(in_process)
+    identity = desk.submit(UNIFORM, 0.1)
+    desk.work(until=lambda: len(desk.store.chunks(identity)) > 1)
+    assert desk.study(identity).unfinished
+    (start, stop), other, *_ = desk.store.chunks(identity)
+    file = tmp_path / "studies" / identity / f"{start}-{stop}.npz"
+    data = bytearray(file.read_bytes())
+    if damage == "gone":
+        file.unlink()
+    elif damage == "cut":
+        file.write_bytes(data[:-100])
+    elif damage == "swapped":
+        file.write_bytes((tmp_path / "studies" / identity / f"{other[0]}-{other[1]}.npz").read_bytes())
+    else:
+        data[len(data) // 3] ^= 1
+        file.write_bytes(data)
+    desk.work()
+    assert desk.bits(identity) == finished(desk_on(in_process, tmp_path / "other"), UNIFORM)
+
+
+def test_a_full_disk_is_said_and_waited_for(desk_on: Desks, in_process: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = desk_on(in_process)
+    messages: list[str] = []
+    full = iter([True, True])
+    write = desk.files.write
+
+    def writing(*arguments: Any) -> None:
+        messages.append(desk.study(identity).message)
+        if next(full, False):
+            raise OSError(errno.ENOSPC, "No space left on device")
+        write(*arguments)
+
+    monkeypatch.setattr(desk.files, "write", writing)
+    monkeypatch.setattr("service.studies.engine.PAUSE", 0.01)
+    identity = desk.submit(UNIFORM)
+    desk.work()
+    assert "No space left on device" in messages[1]
+    study = desk.study(identity)
+    assert (study.status, study.done, study.message) == (SUCCESSFUL, 300, "")
+
+
+def test_a_scheduler_that_cannot_be_reached_is_said(desk_on: Desks, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.studies.engine.PAUSE", 0.01)
+    monkeypatch.setattr("service.studies.cluster.CONNECTING", 0.2)
+    desk = desk_on("tcp://127.0.0.1:9")
+    identity = desk.submit(UNIFORM)
+    assert desk.engine.turn()
+    assert "cannot be reached" in desk.study(identity).message
+
+
+def test_a_dismissed_study_lets_its_processes_go(desk_on: Desks, processes: str) -> None:
+    desk = desk_on(processes)
+    identity = desk.submit(sleeping(60.0, 3), 60.0)
+    client = desk.cluster.open()
+    desk.work(until=lambda: sum(map(len, client.processing().values())) >= 2)
+    assert desk.store.end(identity, DISMISSED, "")
+    # Both processes sleep for a minute, but others are there before: the next study would have to wait for them.
+    other = desk.submit(UNIFORM, 0.05)
+    desk.work(most=40.0)
+    assert desk.study(other).status == SUCCESSFUL
+    assert desk.study(identity).status == DISMISSED
+
+
+def test_a_member_that_takes_far_too_long_is_ended(desk_on: Desks, processes: str) -> None:
+    _, _, failed, _ = finished(desk_on(processes, longest=1.0), sleeping(60.0, 1), 0.001)
+    assert failed == b'["deadline-exceeded"]'
+
+
+def test_studies_have_their_turns_in_rotation(desk_on: Desks, in_process: str) -> None:
+    desk = desk_on(in_process)
+    long, short = desk.submit(UNIFORM, 0.5), desk.submit(UNIFORM | {"count": 3}, 0.5)
+    desk.work(until=lambda: not desk.study(short).unfinished)
+    assert desk.study(long).unfinished
+
+
+def test_what_is_computed_is_a_function_of_its_arguments() -> None:
+    import json
+
+    body = json.dumps(UNIFORM).encode()
+    assert compute(TERMS, body, 3, 40).data == compute(TERMS, body, 3, 40).data

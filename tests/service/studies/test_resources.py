@@ -1,0 +1,327 @@
+"""Studies over HTTP: states, pages, archives, tables, grids, events; owners, limits and what cannot be stored."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import json
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+from service.app import Service
+from service.http.keys import new_key
+from service.settings import Settings
+from service.studies.folder import Ownership
+from service.studies.store import Store
+from tests.service.conftest import INLINE, client_of
+from tests.service.studies.conftest import UNIFORM, Desk
+from tests.service.studies.toy_table import TABLE
+from tests.service.toy_routes import GOOD
+
+pytestmark = pytest.mark.anyio
+
+GRID: dict[str, Any] = {
+    "question": {"path": "/v1/toy", "request": GOOD},
+    "vary": [
+        {"pointer": "/angular_velocity/0", "min": 0.0, "max": 1.0, "count": 3},
+        {"pointer": "/body/moments/2", "values": [3.0, 7.0]},
+    ],
+    "quantities": ["/position/2/0", "/position/1/1"],
+}
+
+Desks = Callable[..., Desk]
+
+
+@asynccontextmanager
+async def client_at(folder: Path, **settings: Any) -> AsyncIterator[httpx.AsyncClient]:
+    """Yield a client of a service whose studies nothing works on but this test."""
+    folder.mkdir(exist_ok=True)
+    ownership = Ownership(folder)
+    taken = ownership.acquire()
+    async with client_of(Service(Settings(data=str(folder), **INLINE, **settings), TABLE)) as client:
+        yield client
+    if taken:
+        ownership.release()
+
+
+async def submitted(client: httpx.AsyncClient, request: Any = GRID, **headers: str) -> str:
+    response = await client.post("/v1/studies", json=request, headers=headers)
+    assert response.status_code == 202, response.text
+    assert response.headers["location"] == f"/v1/studies/{response.json()['jobID']}"
+    assert response.json()["status"] == "accepted"
+    return str(response.headers["location"])
+
+
+@asynccontextmanager
+async def finished(desk_on: Desks, address: str, folder: Path, request: Any = GRID) -> AsyncIterator[Any]:
+    """Yield a client, and the address of a study that is finished."""
+    async with client_at(folder) as client:
+        place = await submitted(client, request)
+        await asyncio.to_thread(desk_on(address, folder).work)
+        yield client, place
+
+
+async def test_a_study_from_submission_to_results(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        state = (await client.get(place)).json()
+        assert (state["status"], state["progress"], state["done"], state["failed"]) == ("successful", 100, 6, 3)
+        assert (state["count"], state["shape"], state["predicted_end"]) == (6, [3, 2], None)
+        assert state["inputs"][0] == {"pointer": "/angular_velocity/0", "unit": "rad s^-1", "levels": 3}
+        assert {link["rel"] for link in state["links"]} == {"self", "events", "results"}
+        found = (await client.get(f"{place}/results")).json()
+        assert found["inputs"] == {
+            "/angular_velocity/0": [0.0, 0.0, 0.5, 0.5, 1.0, 1.0],
+            "/body/moments/2": [3.0, 7.0] * 3,
+        }
+        assert found["figures"]["/position/2/0"] == [0.0, None, 0.5, None, 1.0, None]
+        assert found["failures"] == [{"member": k, "code": "unphysical-inertia"} for k in (1, 3, 5)]
+        statistics = found["statistics"]["figures"]["/position/2/0"]
+        assert (statistics["mean"], statistics["std"], statistics["max"]) == (0.5, 0.5, {"value": 1.0, "member": 4})
+        assert found["statistics"]["failures"] == {"unphysical-inertia": 3}
+        listed = (await client.get("/v1/studies")).json()["studies"]
+        assert [entry["jobID"] for entry in listed] == [state["jobID"]]
+
+
+async def test_results_page_by_page(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    async with finished(desk_on, in_process, tmp_path, UNIFORM) as (client, place):
+        whole = (await client.get(f"{place}/results?count=10000")).json()
+        after, pages = f"{place}/results?count=70", []
+        while after:
+            pages.append((await client.get(after)).json())
+            after = pages[-1]["next"]
+        assert [page["start"] for page in pages] == [0, 70, 140, 210, 280]
+        for name in ("inputs", "figures"):
+            for pointer, column in whole[name].items():
+                assert [entry for page in pages for entry in page[name][pointer]] == column
+        for query in ("start=300", "count=0", "count=10001", "start=-1", "start=1.5"):
+            response = await client.get(f"{place}/results?{query}")
+            assert (response.status_code, response.json()["code"]) == (422, "invalid-parameter"), query
+
+
+async def test_all_results_as_an_archive_a_table_and_a_grid(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    import xarray
+    import zarr
+    from pyarrow import parquet
+
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        page = (await client.get(f"{place}/results")).json()
+        expected = [page["figures"]["/position/2/0"][k] for k in range(6)]
+        figures = np.array([np.nan if entry is None else entry for entry in expected])
+        archive = np.load(io.BytesIO((await get(client, place, "application/x-npz")).content))
+        assert np.array_equal(archive["figures"][:, 0], figures, equal_nan=True)
+        about = json.loads(archive["metadata.json"])
+        assert archive["failures"].tolist() == [0, 1, 0, 1, 0, 1]
+        assert about["failure_names"] == ["unphysical-inertia"]
+        rows = parquet.read_table(io.BytesIO((await get(client, place, "application/vnd.apache.parquet")).content))
+        assert rows["/position/2/0"].to_pylist() == expected
+        assert rows["failure"].to_pylist() == [None, "unphysical-inertia"] * 3
+        assert rows.schema.field("/angular_velocity/0").metadata[b"unit"] == b"rad s^-1"
+        file = tmp_path / "grid.zip"
+        file.write_bytes((await get(client, place, "application/vnd.zarr+zip")).content)
+        with zarr.storage.ZipStore(file, mode="r") as store:
+            grid = xarray.open_zarr(store, consolidated=False).load()
+        assert grid["position_2_0"].dims == ("angular_velocity_0", "moments_2")
+        assert np.array_equal(grid["position_2_0"].to_numpy().ravel(), figures, equal_nan=True)
+        assert grid["moments_2"].to_numpy().tolist() == [3.0, 7.0]
+        assert grid["angular_velocity_0"].attrs["units"] == "rad s^-1"
+        assert (await get(client, place, "text/csv")).status_code == 406
+
+
+async def get(client: httpx.AsyncClient, place: str, media: str) -> httpx.Response:
+    return await client.get(f"{place}/results", headers={"accept": media})
+
+
+async def test_events_tell_every_state_until_the_end(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    async with client_at(tmp_path) as client:
+        place = await submitted(client)
+        watching = asyncio.create_task(client.get(f"{place}/events"))
+        await asyncio.sleep(0.05)
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        response = await watching
+        assert response.headers["content-type"] == "text/event-stream"
+        events = [event.split("\n") for event in response.text.strip().split("\n\n")]
+        assert events[0][0] == "event: accepted"
+        assert events[-1][0] == "event: successful"
+        assert json.loads(events[-1][1].removeprefix("data: "))["done"] == 6
+
+
+async def test_a_dismissed_study_has_no_results_and_a_finished_one_is_removed(
+    desk_on: Desks, in_process: str, tmp_path: Path
+) -> None:
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        assert (await client.delete(place)).status_code == 200
+        assert (await client.get(place)).json()["code"] == "not-found"
+        assert not [*(tmp_path / "studies").iterdir()]
+        other = await submitted(client)
+        early = await client.get(f"{other}/results")
+        assert (early.status_code, early.json()["code"]) == (404, "results-not-ready")
+        assert "retry-after" in early.headers
+        assert (await client.delete(other)).json()["status"] == "dismissed"
+        late = await client.get(f"{other}/results")
+        assert (late.status_code, "retry-after" in late.headers) == (404, False)
+
+
+async def test_results_that_are_damaged_are_computed_again(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        before = (await client.get(f"{place}/results")).json()
+        (file,) = (tmp_path / "studies").rglob("*.npz")
+        file.write_bytes(file.read_bytes()[:-20])
+        damaged = await client.get(f"{place}/results")
+        assert (damaged.status_code, damaged.json()["code"]) == (404, "results-not-ready")
+        assert (await client.get(place)).json()["status"] == "running"
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        assert (await client.get(f"{place}/results")).json() == before
+
+
+async def test_a_key_sees_its_own_studies_and_is_charged(tmp_path: Path) -> None:
+    lines, secrets = [], {}
+    for name, work in (("ada", "60"), ("bob", "-")):
+        secrets[name], line = new_key(name)
+        lines.append(line.rsplit(" ", 1)[0] + f" {work}\n")
+    (tmp_path / "keys").write_text("".join(lines))
+    ada, bob = ({"authorization": f"Bearer {secrets[name]}"} for name in ("ada", "bob"))
+    async with client_at(tmp_path / "data", keys_file=tmp_path / "keys") as client:
+        assert (await client.get("/v1/studies")).status_code == 401
+        assert (await client.post("/v1/studies", json=GRID)).status_code == 401
+        place = await submitted(client, **ada)
+        assert (await client.get(place, headers=ada)).status_code == 200
+        for method in ("GET", "DELETE"):
+            assert (await client.request(method, place, headers=bob)).status_code == 404
+        for part in ("/results", "/events"):
+            assert (await client.get(place + part, headers=bob)).status_code == 404
+        assert (await client.get("/v1/studies", headers=bob)).json()["studies"] == []
+        # About a thousand seconds of work, of which this key has one a second.
+        large = {**UNIFORM, "count": 3_000_000}
+        await submitted(client, large, **ada)
+        spent = await client.post("/v1/studies", json=large, headers=ada)
+        assert (spent.status_code, spent.json()["code"]) == (429, "quota-exceeded")
+        await submitted(client, large, **bob)
+
+
+async def test_dismissing_gives_back_what_was_not_computed(tmp_path: Path) -> None:
+    secret, line = new_key("ada")
+    (tmp_path / "keys").write_text(line.rsplit(" ", 1)[0] + " 60\n")
+    headers = {"authorization": f"Bearer {secret}"}
+    async with client_at(tmp_path / "data", keys_file=tmp_path / "keys") as client:
+        large = {**UNIFORM, "count": 3_000_000}
+        place = await submitted(client, large, **headers)
+        await client.delete(place, headers=headers)
+        await submitted(client, large, **headers)
+
+
+@pytest.mark.parametrize(
+    ("changes", "settings", "code", "pointer"),
+    [
+        ({}, {"max_study_members": 5}, "budget-exceeded", "/vary"),
+        ({}, {"max_study_seconds": 1e-6}, "budget-exceeded", "/vary"),
+        ({"quantities": ["/absent"]}, {}, "invalid-parameter", "/quantities/0"),
+        ({"quantities": ["/position/0"]}, {}, "invalid-parameter", "/quantities/0"),
+        ({"quantities": []}, {}, "invalid-parameter", "/quantities"),
+        ({"vary": []}, {}, "invalid-parameter", "/vary"),
+        ({"vary": [{"pointer": "/nowhere", "values": [1.0]}]}, {}, "invalid-parameter", "/vary/0/pointer"),
+        (
+            {"vary": [{"pointer": "/angular_velocity/0", "min": 0.0, "max": 1.0}]},
+            {},
+            "invalid-parameter",
+            "/vary/0/count",
+        ),
+        ({"design": "zip"}, {}, "invalid-parameter", "/vary/1"),
+        ({"design": "random"}, {}, "invalid-parameter", "/count"),
+        ({"question": {"path": "/v1/studies", "request": {}}}, {}, "invalid-parameter", "/question/path"),
+        ({"question": {"path": "/v1/toy", "request": {}}}, {}, "invalid-parameter", "/question/request/body"),
+        (
+            {"vary": [*GRID["vary"], {"pointer": "/angular_velocity", "values": [[1.0, 0.0, 0.0]]}]},
+            {},
+            "invalid-parameter",
+            "/vary/2/pointer",
+        ),
+    ],
+)
+async def test_what_is_refused_is_not_stored(
+    tmp_path: Path, changes: Any, settings: Any, code: str, pointer: str
+) -> None:
+    async with client_at(tmp_path, **settings) as client:
+        response = await client.post("/v1/studies", json=GRID | changes)
+        assert (response.status_code, response.json()["code"]) == (422, code), response.text
+        assert response.json()["errors"][0]["pointer"].startswith(pointer)
+        assert (await client.get("/v1/studies")).json()["studies"] == []
+
+
+async def test_unfinished_studies_are_limited(tmp_path: Path) -> None:
+    async with client_at(tmp_path, max_studies=2) as client:
+        places = [await submitted(client) for _ in range(2)]
+        assert (await client.post("/v1/studies", json=GRID)).json()["code"] == "too-busy"
+        await client.delete(places[0])
+        await submitted(client)
+
+
+async def test_a_plan_tells_the_price_before(tmp_path: Path) -> None:
+    async with client_at(tmp_path) as client:
+        state = (await client.post("/v1/studies", json=UNIFORM)).json()
+        assert state["count"] == 300
+        assert 300 * 1e-5 < state["predicted_seconds"] < 300 * 1e-2
+
+
+async def test_a_folder_that_cannot_be_used_is_said(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("no folder")
+    service = Service(Settings(data=str(tmp_path / "file" / "data"), **INLINE), TABLE)
+    async with client_of(service) as client:
+        response = await client.post("/v1/studies", json=GRID)
+        assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
+        assert "Not a directory" in response.json()["detail"]
+
+
+async def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sqlite3
+
+    def full(*arguments: Any, **settings: Any) -> Any:
+        raise sqlite3.OperationalError("database or disk is full")
+
+    async with client_at(tmp_path) as client:
+        monkeypatch.setattr("service.studies.store.sqlite3.connect", full)
+        response = await client.post("/v1/studies", json=GRID)
+        assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
+        assert "disk is full" in response.json()["detail"]
+
+
+async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> None:
+    async with client_at(tmp_path) as client:
+        headers = {"content-type": "application/x-npz"}
+        assert (await client.post("/v1/studies", content=b"PK", headers=headers)).status_code == 415
+        assert (await client.post("/v1/studies", json=GRID, headers={"accept": "text/html"})).status_code == 406
+        assert (await client.put("/v1/studies", json=GRID)).status_code == 405
+
+
+async def test_old_studies_are_removed(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    from service.observability.metrics import Metrics
+    from service.studies.supervisor import Supervisor
+
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        Supervisor(Settings(data=str(tmp_path)), TABLE, Metrics()).clean()
+        assert (await client.get(place)).status_code == 200
+        Supervisor(Settings(data=str(tmp_path), studies_keep_days=1e-12), TABLE, Metrics()).clean()
+        assert (await client.get(place)).status_code == 404
+        assert not [*(tmp_path / "studies").iterdir()]
+
+
+def test_ids_are_long_and_random(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    ids = {store.create("", b"{}", {"count": 1}, 100) for _ in range(9)}
+    store.close()
+    assert len(ids) == 9
+    assert all(len(identity) == 24 for identity in ids)
+
+
+def test_one_process_at_a_time_owns_a_folder(tmp_path: Path) -> None:
+    first, second = Ownership(tmp_path), Ownership(tmp_path)
+    assert first.acquire()
+    assert second.taken
+    assert not second.acquire()
+    first.release()
+    assert second.acquire()
