@@ -103,11 +103,13 @@ const shade = (share) => `hsl(${250 - 200 * share} 70% ${20 + 65 * share}%)`;
 function drawMap(state, values, [slow, fast], found, unit) {
   const canvas = $("map"), context = canvas.getContext("2d"), [n, m] = state.shape;
   const low = found.min?.value ?? 0, width = (found.max?.value ?? 1) - low || 1;
-  const left = 70, bottom = 40, w = (canvas.width - left) / n, h = (canvas.height - bottom) / m;
+  const left = 70, bottom = 40;
+  const x = (i) => left + Math.round((i * (canvas.width - left)) / n), y = (j) => Math.round((j * (canvas.height - bottom)) / m);
   context.clearRect(0, 0, canvas.width, canvas.height);
   values.forEach((value, k) => {
     context.fillStyle = value === null ? color("line") : shade((value - low) / width);
-    context.fillRect(left + Math.floor(k / m) * w, canvas.height - bottom - ((k % m) + 1) * h, w + 0.5, h + 0.5);
+    const i = Math.floor(k / m), j = m - 1 - (k % m);
+    context.fillRect(x(i), y(j), x(i + 1) - x(i), y(j + 1) - y(j));
   });
   context.fillStyle = color("ink") || "currentColor";
   context.font = "13px system-ui";

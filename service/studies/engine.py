@@ -245,7 +245,7 @@ class Engine:
         self._store.end(work.study.id, FAILED, message)
 
     def _keep(self, work: Work, stretch: Stretch, found: Computed) -> None:
-        start, stop = stretch[0], stretch[0] + found.count
+        start, stop = stretch[0], stretch[0] + found.members
         try:
             self._files.write(work.study.id, start, stop, found.data)
             self._store.add_chunk(work.study.id, start, stop, found.failed, found.seconds)
@@ -258,7 +258,7 @@ class Engine:
         if stop < stretch[1]:
             # Its time was up.
             work.missing.appendleft((stop, stretch[1]))
-        work.each = max(FASTEST, 0.5 * (work.each + found.seconds / found.count))
+        work.each = max(FASTEST, 0.5 * (work.each + found.seconds / found.members))
 
     def _end_overdue(self) -> None:
         """End processes that have had a stretch for much longer than predicted."""

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from threading import Lock
 
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
@@ -43,6 +44,7 @@ class Supervisor:
         self.results = settings.studies_results or str(folder / "studies")
         self._ownership = Ownership(folder)
         self._runner: subprocess.Popen[bytes] | None = None
+        self._turn = Lock()
 
     def files(self) -> ChunkFiles:
         """Return where results are stored."""
@@ -50,6 +52,11 @@ class Supervisor:
 
     def ensure(self) -> None:
         """Start the process, unless there is one that works on this folder."""
+        # Requests and the watch may come at once; a process that nobody holds would end.
+        with self._turn:
+            self._start()
+
+    def _start(self) -> None:
         if (self._runner is not None and self._runner.poll() is None) or self._ownership.taken:
             return
         environment = {

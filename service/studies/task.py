@@ -28,8 +28,8 @@ class Computed(NamedTuple):
     ----------
     data : bytes
         Of their file.
-    count : int
-        Members of it.
+    members : int
+        How many it has.
     failed : int
         Members that have no result but a problem.
     seconds : float
@@ -37,7 +37,7 @@ class Computed(NamedTuple):
     """
 
     data: bytes
-    count: int
+    members: int
     failed: int
     seconds: float
 
