@@ -15,6 +15,7 @@ equations", Applied Mathematics and Computation 105 (1999).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import mul
@@ -82,31 +83,39 @@ class ProvenSeries:
         while waiting:
             spend(_WORK_OF_A_STEP)
             series = self._coefficients(q, v, order)
-            h, tail = self._tail(q, v, series, order, way)
-            steps += 1
-            needed = steps + int(float((waiting[-1][0] - start) / h))
             # Steps may become longer, but where twice as many are needed they do not become long enough.
-            if needed > 2 * self.most or steps > self.most:
-                raise BudgetExceeded(
-                    "proven steps",
-                    needed,
-                    self.most,
-                    path=("times",),
-                    remedy="ask for earlier times, or for an answer that is measured against pairs: POST /v1/scenes",
-                )
+            least = float(waiting[-1][0] - start) / (2 * self.most - steps)
+            h, tail = self._tail(q, v, series, order, way, least)
+            steps += 1
+            if steps > self.most:
+                raise self._too_long()
             while waiting and not waiting[0][0] > start + h:
                 time, k = waiting.pop(0)
                 found[k] = ProvenStep(*_at(series, tail, way * (time - start), order), path)
             q, v = _at(series, tail, way * h, order)
             start, path = start + h, [*path, q]
 
-    def _tail(self, q: Vector, v: Vector, series: list[Vector], order: int, way: int) -> tuple[Ball, list[Vector]]:
-        """Return the length of a step, a double, and the coefficients of the order left out over all of it."""
+    def _too_long(self) -> BudgetExceeded:
+        remedy = "ask for earlier times, or for an answer that is measured against pairs: POST /v1/scenes"
+        return BudgetExceeded("proven steps", 2 * self.most, self.most, path=("times",), remedy=remedy)
+
+    def _tail(
+        self, q: Vector, v: Vector, series: list[Vector], order: int, way: int, least: float
+    ) -> tuple[Ball, list[Vector]]:
+        """Return the length of a step, a double, and the coefficients of the order left out over all of it.
+
+        Raises
+        ------
+        BudgetExceeded
+            If the step is shorter than `least`.
+        """
         small = arb(2) ** (_SPARE - ctx.prec)
         size = max((float(abs(x).upper()) for x in (*q, *v)), default=0.0) or 1.0
         last = max((float(abs(x[order]).upper()) for x in series), default=0.0)
         h = float((small * size / last) ** (arb(1) / order)) if last > 0.0 else 1e3
         for _ in range(_HALVINGS):
+            if not least <= h < math.inf:
+                raise self._too_long()
             step = arb(h)
             box = self._box(q, v, step * way)
             if box is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -49,8 +50,13 @@ class Column:
     @property
     def largest(self) -> float:
         """Largest magnitude of a sample."""
-        size = np.abs(self.values) if self.values.ndim == 1 else np.linalg.norm(self.values, axis=1)
-        return float(np.max(size, initial=0.0))
+        greatest = float(np.max(np.abs(self.values), initial=0.0))
+        if self.values.ndim == 1:
+            return greatest
+        # In a power of two as unit, so that no square overflows.
+        _, exponent = math.frexp(greatest)
+        size = np.linalg.norm(np.ldexp(self.values, -exponent), axis=1)
+        return float(np.max(size, initial=0.0)) * 2.0 ** (exponent - 1) * 2.0
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from core.systems.methods import Method
 from core.systems.methods.fixed_step import FixedStep
 from core.systems.methods.method import AbstractMethod, Family, Invariance
 from core.systems.solve import solve
-from core.systems.system import ClosedForm, System
+from core.systems.system import ClosedForm
 from tests.core.systems.systems import counting, elliptic_functions, oscillator, rigid_body
 
 CATALOGUE: dict[str, Any] = {member.kind: member for member in members_of(Method)}
@@ -246,7 +246,7 @@ def test_a_catalogue_body_is_served(kind: str) -> None:
     from core.bodies.mass_properties import diagonal
     from core.rotation.torque_free import TorqueFree
 
-    system: System = TorqueFree(diagonal((1.0, 2.0, 3.0)), np.array([0.1, 1.0, 0.1]))
+    system = TorqueFree(diagonal((1.0, 2.0, 3.0)), np.array([0.1, 1.0, 0.1]))
     exact: ClosedForm | None = system.closed_form()
     assert exact is not None
     trajectory = solve(system, np.linspace(0, 5, 21), method=finest(kind), accuracy=0.1)

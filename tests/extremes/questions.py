@@ -447,6 +447,7 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/certified/rotation/precession": certified_precessions,
     "/v1/certified/rotation/stability": certified_stabilities,
     "/v1/certified/rotation/energy-ellipsoid": certified_ellipsoids,
+    "/v1/certified/scenes": certified(described),
     "/v1/certified/scenes/unwinding-shafts": certified(shafts),
     "/v1/certified/scenes/rod-in-hole": certified(rods),
     "/v1/certified/scenes/chain-on-wedge": certified(chains),
