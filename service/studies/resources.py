@@ -18,6 +18,7 @@ from service.http.limits import negotiated
 from service.http.request_context import RequestContext
 from service.problems import Fault, Refusal, headline
 from service.responses import npz as archive
+from service.responses.svg import SVG
 from service.routes.studies import PATH
 from service.routes.studies.views import RESULTS, STATE, StudyList, StudyResults, StudyState
 from service.routing import ResourceRoute
@@ -25,6 +26,7 @@ from service.schemas import SIGNATURE
 from service.settings import Settings
 from service.studies import grids, tables
 from service.studies.chunk_files import CorruptedChunk
+from service.studies.figures import figure
 from service.studies.results import Results
 from service.studies.store import DISMISSED, SUCCESSFUL, Study, storage_unavailable
 from service.studies.supervisor import Supervisor
@@ -96,7 +98,7 @@ class Studies:
                 StudyResults,
                 description="`?start=` and `?count=` (at most 10000) choose the members of a page. Other media types "
                 "have all members.",
-                representations=(archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE),
+                representations=(archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE, SVG),
                 example=_signed(dict(RESULTS)),
             ),
             ResourceRoute(
@@ -167,7 +169,7 @@ class Studies:
             detail = f"the study is {study.status}"
             raise Refusal("results-not-ready", detail, retry_after=1.0 if study.unfinished else None)
         accept = context.headers.get(b"accept", b"*/*")
-        media = negotiated(accept, (JSON_TYPE, archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE))
+        media = negotiated(accept, (JSON_TYPE, archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE, SVG))
         try:
             found = await self._in_thread(lambda: Results(study, self._store, self._supervisor.files()))
             if media == JSON_TYPE:
@@ -177,6 +179,7 @@ class Studies:
                     archive.MEDIA_TYPE: found.archive,
                     tables.MEDIA_TYPE: lambda: tables.table(found),
                     grids.MEDIA_TYPE: lambda: grids.grid(found, self._store.folder / "scratch"),
+                    SVG: lambda: figure(found),
                 }[media]()
                 await context.stream_made_elsewhere(pieces, media.encode(), self._settings.stalled_seconds)
         except ImportError as missing:

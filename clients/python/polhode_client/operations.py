@@ -414,6 +414,11 @@ class Operations(ABC):
         found: documents.StudyResults = self._ask("get_study_results", None, None, study=study)
         return found
 
+    def get_study_results_svg(self, study: str) -> str:
+        """Statistics and results of a study, page by page or as a whole, as a drawing."""
+        found: str = self._ask("get_study_results", None, "image/svg+xml", study=study)
+        return found
+
     def watch_study(self, study: str) -> str:
         """The state of a study as server-sent events, until it ends."""
         found: str = self._ask("watch_study", None, "text/event-stream", study=study)
@@ -732,6 +737,11 @@ class AsyncOperations(ABC):
     async def get_study_results(self, study: str) -> documents.StudyResults:
         """Statistics and results of a study, page by page or as a whole."""
         found: documents.StudyResults = await self._ask("get_study_results", None, None, study=study)
+        return found
+
+    async def get_study_results_svg(self, study: str) -> str:
+        """Statistics and results of a study, page by page or as a whole, as a drawing."""
+        found: str = await self._ask("get_study_results", None, "image/svg+xml", study=study)
         return found
 
     async def watch_study(self, study: str) -> str:

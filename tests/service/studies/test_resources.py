@@ -130,6 +130,9 @@ async def test_all_results_as_an_archive_a_table_and_a_grid(desk_on: Desks, in_p
         assert np.array_equal(grid["position_2_0"].to_numpy().ravel(), figures, equal_nan=True)
         assert grid["moments_2"].to_numpy().tolist() == [3.0, 7.0]
         assert grid["angular_velocity_0"].attrs["units"] == "rad s^-1"
+        figure = await get(client, place, "image/svg+xml")
+        assert figure.headers["content-type"] == "image/svg+xml"
+        assert figure.content.startswith(b"<svg")
         assert (await get(client, place, "text/csv")).status_code == 406
 
 
