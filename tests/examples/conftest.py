@@ -13,8 +13,8 @@ from tests.service.conftest import Server
 
 
 @pytest.fixture(scope="session")
-def service() -> Iterator[str]:
-    running = Server()
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    running = Server(POLHODE_DATA=str(tmp_path_factory.mktemp("data")))
     running.wait_until_ready()
     yield running.url
     running.stop()

@@ -370,8 +370,11 @@ def test_every_number_that_is_found_is_shown(found):
 
 def test_every_example_is_linked_and_every_link_leads_somewhere():
     text = PAGE.read_text(encoding="utf-8")
-    # The catalogue of described scenes, and grading, have pages of their own; the box is the README's.
+    # The catalogue of described scenes, grading and studies have pages of their own; the box is the README's.
     own = {f"scenes/{name}" for name in scene_catalogue()} | {"rotation/precession/box"}
-    assert set(linked(text)) == {name for name in names() if not name.startswith(("assessments/", "variants/"))} - own
+    assert (
+        set(linked(text))
+        == {name for name in names() if not name.startswith(("assessments/", "variants/", "studies/"))} - own
+    )
     for target in re.findall(r"\]\(([^)#]+)\)", text):
         assert (PAGE.parent / target).exists(), target

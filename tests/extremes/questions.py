@@ -422,6 +422,38 @@ def variants() -> Named:
                 )
 
 
+def studies() -> Named:
+    ranges: tuple[dict[str, Any], ...] = (
+        {"min": SUBNORMAL, "max": LARGEST, "distribution": "log-uniform", "count": 3},
+        {"min": -LARGEST, "max": LARGEST, "count": 3},
+        {"values": [0.0, SUBNORMAL, LARGEST]},
+        {"mean": 0.0, "deviation": LARGEST},
+    )
+    for path, (asked, share, pointers) in CLAIMED.items():
+        for (name, question), vary in zip(list(asked())[:: 9 * share], cycle(ranges), strict=False):
+            drawn = {"design": "random", "count": 5, "seed": 0} if "mean" in vary else {}
+            if pointer := _first_number(question):
+                yield (
+                    f"{path}, {name}, {vary}",
+                    {
+                        "question": {"path": path, "request": question},
+                        "vary": [{"pointer": pointer, **vary}],
+                        "quantities": [pointers[0]],
+                    }
+                    | drawn,
+                )
+    spin = {"body": {"kind": "principal-moments", "moments": [1.0, 2.0, 3.0]}, "angular_velocity": [0.0, 1.0, 0.1]}
+    for count in (0, 1, 10**7, 10**18):
+        yield (
+            f"{count} members",
+            {
+                "question": {"path": "/v1/rotation/precession", "request": spin},
+                "vary": [{"pointer": "/body/moments/0", "min": 1.0, "max": 2.0, "count": count}],
+                "quantities": ["/period"],
+            },
+        )
+
+
 def _first_number(value: Any, pointer: str = "") -> str | None:
     """Return the pointer of the first number of a request."""
     if isinstance(value, dict | list):
@@ -455,4 +487,5 @@ QUESTIONS: dict[str, Callable[[], Named]] = {
     "/v1/plan": plans,
     "/v1/assessments": assessments,
     "/v1/variants": variants,
+    "/v1/studies": studies,
 }
