@@ -160,4 +160,4 @@ $("price").addEventListener("click", () => send(async (text) => {
 }));
 $("start").addEventListener("click", () => send(async (text) => follow((await ask(STUDIES, text)).answer)));
 onTheme(() => shown && draw());
-get(STUDIES).then(({ studies }) => studies.forEach(follow), tell);
+get(STUDIES).then(({ studies }) => studies.forEach(follow), tell).finally(() => { document.body.dataset.ready = "yes"; });

@@ -104,7 +104,7 @@ def test_the_reference_asks_and_shows_the_answer(opened):
 
 def test_every_own_script_is_loaded_by_a_page(opened):
     loaded = set()
-    for path in ("/", "/scenes#scene=lagrange-top", "/docs"):
+    for path in ("/", "/scenes#scene=lagrange-top", "/studies", "/docs"):
         page = opened(path)
         urls = page.evaluate("performance.getEntriesByType('resource').map(e => e.name)")
         loaded |= {Path(urlsplit(url).path).name for url in urls}
