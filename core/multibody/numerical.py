@@ -22,10 +22,12 @@ _SAME_PLACE = 1e-3
 """Relative difference of the times at which doubles and pairs may meet one singular place."""
 
 _CHUNK = 64
+# A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
+# motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
 ORDER, TOLERANCE = 24, 2.0**-56
-JUDGE_ORDER, JUDGE_TOLERANCE = 26, 2.0**-72
-FINE_ORDER, FINE_TOLERANCE = 32, 2.0**-100
-CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
+JUDGE_ORDER, JUDGE_TOLERANCE = 28, 2.0**-72
+FINE_ORDER, FINE_TOLERANCE = 36, 2.0**-100
+CHECK_ORDER, CHECK_TOLERANCE = 34, 2.0**-94
 
 
 @dataclass
