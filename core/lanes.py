@@ -29,6 +29,7 @@ _VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 # Numba's packages have no type annotations.
 _Type: Any = types.Type
 _Model: Any = models.PrimitiveModel
+_declared: Any = cgutils.get_or_insert_function
 
 
 class Lanes(_Type):  # type: ignore[misc]
@@ -73,7 +74,7 @@ _define(operator.neg, "fneg", 1)
 def fused(builder: Any, arguments: Any) -> Any:
     """Return the instruction a*b + c, rounded once, for lanes."""
     kind = ir.FunctionType(_VECTOR, [_VECTOR] * 3)
-    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.fma.v{WIDTH}f64"), arguments)
+    return builder.call(_declared(builder.module, kind, f"llvm.fma.v{WIDTH}f64"), arguments)
 
 
 def _pointer(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:

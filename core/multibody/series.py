@@ -270,3 +270,17 @@ def sampled(starts: Floats, series: Floats, times: Floats, which: Integers, q: F
                 rate = (rate + k * c[i, k]) * h
             q[s, i] = c[i, 0] + moved
             v[s, i] = c[i, 1] + rate
+
+
+@kernel()
+def placed(starts: Floats, series: Floats, times: Floats, which: Integers, q: Floats) -> None:
+    """Evaluate the places alone, into q of shape (t, n)."""
+    n, order = series.shape[1], series.shape[2] - 1
+    for s in range(times.shape[0]):
+        h = (times[s] - starts[which[s], 0]) - starts[which[s], 1]
+        c = series[which[s]]
+        for i in range(n):
+            moved = c[i, order]
+            for k in range(order - 1, -1, -1):
+                moved = fma(moved, h, c[i, k])
+            q[s, i] = moved

@@ -173,16 +173,20 @@ def moved_pairs(c: Floats, hh: float, hl: float, q: Floats, v: Floats) -> None:
     """Evaluate a series c of shape (n, order + 1, 2) a pair of time later, into q and v of shape (n, 2)."""
     n, order = c.shape[0], c.shape[1] - 1
     for i in range(n):
-        sh, sl = 0.0, 0.0
+        # Horner's rule for the sum s and its derivative r at once, the tails summed in doubles.
+        sh, sl = c[i, order, 0], c[i, order, 1]
         rh, rl = 0.0, 0.0
-        for k in range(order, 0, -1):
-            # Horner's rule for the sum s and its derivative r at once: r becomes r h + s, then s becomes s h + c.
-            rh, rl = dd_mul(rh, rl, hh, hl)
-            sh, sl = dd_add(sh, sl, c[i, k, 0], c[i, k, 1])
-            rh, rl = dd_add(rh, rl, sh, sl)
-            sh, sl = dd_mul(sh, sl, hh, hl)
-        q[i, 0], q[i, 1] = dd_add(c[i, 0, 0], c[i, 0, 1], sh, sl)
-        v[i, 0], v[i, 1] = rh, rl
+        for k in range(order - 1, -1, -1):
+            ph, pl = two_prod(rh, hh)
+            pl = fma(rl, hh, fma(rh, hl, pl + sl))
+            rh, e = two_sum(ph, sh)
+            rl = pl + e
+            ph, pl = two_prod(sh, hh)
+            pl = fma(sl, hh, fma(sh, hl, pl + c[i, k, 1]))
+            sh, e = two_sum(ph, c[i, k, 0])
+            sl = pl + e
+        q[i, 0], q[i, 1] = fast_two_sum(sh, sl)
+        v[i, 0], v[i, 1] = fast_two_sum(rh, rl)
 
 
 @kernel()
