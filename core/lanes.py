@@ -30,6 +30,7 @@ _VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 _Type: Any = types.Type
 _Model: Any = models.PrimitiveModel
 _declared: Any = cgutils.get_or_insert_function
+_typed: Any = type_callable
 
 
 class Lanes(_Type):  # type: ignore[misc]
@@ -60,7 +61,7 @@ def _define(function: Any, instruction: str, count: int) -> None:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return getattr(builder, instruction)(*arguments)
 
-    type_callable(function)(type_of)
+    _typed(function)(type_of)
     lower_builtin(function, *[Lanes] * count)(generate)
 
 

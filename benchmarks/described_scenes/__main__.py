@@ -18,6 +18,7 @@ from importlib import metadata
 from typing import Any
 
 from benchmarks.described_scenes.double_pendulum import ENTRANTS, EXACT, Entrant
+from benchmarks.described_scenes.drake import PATIENCE, Late
 from benchmarks.machine import RESULTS, described, medians
 from core.systems.budget import Budget
 from service.requests.described_scene import DescribedSceneRequest
@@ -67,10 +68,13 @@ def dial(entrant: Entrant) -> dict[str, Any]:
     points = []
     for setting in entrant.settings:
         since = time.perf_counter()
-        run = entrant.prepare(setting)
-        prepared = time.perf_counter() - since
-        since = time.perf_counter()
-        found = run()
+        try:
+            run = entrant.prepare(setting)
+            prepared = time.perf_counter() - since
+            since = time.perf_counter()
+            found = run()
+        except Late:
+            return {"points": points, "no answer": {"setting": setting, "after": PATIENCE}}
         once = time.perf_counter() - since
         error = max(abs(x - y) for x, y in zip(found, EXACT, strict=True))
         seconds = medians({"run": run}, 5)["run"] if once < 1.0 else once

@@ -60,8 +60,9 @@ def coefficients_pairs(table: Packed, space: Saddle, products: Products, until: 
             right[0, i], right[1, i] = gathered(right[0, i], right[1, i], -table.damp[p, 0], -table.damp[p, 1], ph, pl)
         summed_pairs(products, k)
         for p in range(at.shape[0]):
-            i = np.uintp(at[p, ROW])
-            right[0, i], right[1, i] = gathered(right[0, i], right[1, i], factor[p, 0], factor[p, 1], high[p], low[p])
+            row = np.uintp(at[p, ROW])
+            rh, rl = right[0, row], right[1, row]
+            right[0, row], right[1, row] = gathered(rh, rl, factor[p, 0], factor[p, 1], high[p], low[p])
         for i in range(n + m):
             sh, sl = settled(right[0, i], right[1, i])
             right[0, i], right[1, i] = (sh, sl) if i < n else dd_mul_d(sh, sl, -(k + 1.0))
