@@ -30,7 +30,7 @@ _VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 _Type: Any = types.Type
 _Model: Any = models.PrimitiveModel
 _declared: Any = cgutils.get_or_insert_function
-_typed: Any = type_callable
+_lowered: Any = lower_builtin
 
 
 class Lanes(_Type):  # type: ignore[misc]
@@ -61,8 +61,8 @@ def _define(function: Any, instruction: str, count: int) -> None:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return getattr(builder, instruction)(*arguments)
 
-    _typed(function)(type_of)
-    lower_builtin(function, *[Lanes] * count)(generate)
+    type_callable(function)(type_of)
+    _lowered(function, *[Lanes] * count)(generate)
 
 
 _define(operator.add, "fadd", 2)
