@@ -25,7 +25,7 @@ _SAME_PLACE = 1e-3
 _SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a judge's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 
-_CHUNK = 2**20
+_CHUNK = 2**21
 """Bytes for the first steps of a run; memory that is not used is not touched."""
 # A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
 # motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
