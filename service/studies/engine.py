@@ -29,10 +29,10 @@ from service.studies.summary import summary
 from service.studies.task import Computed, compute, end_process, without_answer
 
 CHUNK_SECONDS = 0.5
-"""Processor time that a stretch should take."""
+"""Processor time that a stretch should take, unless many processes have to be supplied."""
 
-LONGEST_CHUNK = 1.0
-"""Time after which a stretch begins no further member (s)."""
+SUPPLY_SECONDS = 0.025
+"""Time in which the engine hands out a stretch and stores another, at most half of the time of a process."""
 
 LEAST_SECONDS = 0.05
 """Processor time below which a stretch is not divided among processes."""
@@ -102,10 +102,10 @@ class Work:
         return not (self.missing or self.suspects or self.in_flight)
 
     def next_stretch(self, processes: int) -> Stretch:
-        """Take a stretch of about `CHUNK_SECONDS`, less where otherwise some processes would have none."""
+        """Take a stretch of about `stretch_seconds`, less where otherwise some processes would have none."""
         start, stop = self.missing.popleft()
         share = max(-(-(stop - start) // processes), int(LEAST_SECONDS / self.each))
-        size = max(1, min(LARGEST_CHUNK, int(CHUNK_SECONDS / self.each), share))
+        size = max(1, min(LARGEST_CHUNK, int(stretch_seconds(processes) / self.each), share))
         if start + size < stop:
             self.missing.appendleft((start + size, stop))
         return start, min(stop, start + size)
@@ -209,7 +209,9 @@ class Engine:
             self._submit(work, work.next_stretch(self._processes))
 
     def _submit(self, work: Work, stretch: Stretch) -> None:
-        future = self._cluster.client.submit(compute, self._terms, work.request, *stretch, LONGEST_CHUNK, pure=False)
+        # A process that others hold up comes back in time nevertheless.
+        longest = 2.0 * stretch_seconds(self._processes)
+        future = self._cluster.client.submit(compute, self._terms, work.request, *stretch, longest, pure=False)
         work.in_flight[future] = stretch, time.monotonic()
         future.add_done_callback(self._done.put)
 
@@ -346,6 +348,11 @@ class Engine:
             # On a full disk there may be no room for it.
             with suppress(Refusal):
                 self._store.note(work.study.id, message)
+
+
+def stretch_seconds(processes: int) -> float:
+    """Return the processor time that a stretch should take (s), for that many processes."""
+    return max(CHUNK_SECONDS, SUPPLY_SECONDS * processes)
 
 
 def _gaps(stored: list[Stretch], count: int) -> Iterator[Stretch]:

@@ -16,7 +16,7 @@ from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.http.limits import negotiated
 from service.http.request_context import RequestContext
-from service.problems import Fault, Refusal, headline
+from service.problems import MOST_FAULTS, Fault, Refusal, headline
 from service.responses import npz as archive
 from service.responses.svg import SVG
 from service.routes.studies import PATH
@@ -36,6 +36,13 @@ MOST_LISTED = 200
 PAGE = 1000
 LONGEST_PAGE = 10_000
 """Members of a page of results, unless asked for otherwise, and at most."""
+
+WORDS_OF_PAGE = ("start", "count")
+"""What a page of results may be chosen by."""
+
+LONGEST_WORD = 40
+"""Characters of an unknown name that are repeated."""
+
 
 EVENTS_EVERY = 0.25
 """Seconds between two looks at a study that is watched."""
@@ -191,7 +198,11 @@ class Studies:
             raise Refusal("results-not-ready", detail, retry_after=2.0) from None
 
     async def _page(self, context: RequestContext, study: Study, found: Results) -> None:
-        query = parse_qs(context.scope.get("query_string", b"").decode("latin-1"))
+        query = parse_qs(context.scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True)
+        faults = [Fault(f"?{name[:LONGEST_WORD]}", "is not known here") for name in query if name not in WORDS_OF_PAGE]
+        faults += [Fault(f"?{name}", "must be given once") for name in WORDS_OF_PAGE if len(query.get(name, ())) > 1]
+        if faults:
+            raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
         start = _whole(query, "start", 0, study.count - 1, 0)
         size = _whole(query, "count", 1, LONGEST_PAGE, PAGE)
         stop = min(study.count, start + size)

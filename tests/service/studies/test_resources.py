@@ -225,7 +225,9 @@ async def test_dismissing_gives_back_what_was_not_computed(tmp_path: Path) -> No
         ({}, {"max_study_seconds": 1e-6}, "budget-exceeded", "/vary"),
         ({"quantities": ["/absent"]}, {}, "invalid-parameter", "/quantities/0"),
         ({"quantities": ["/position/0"]}, {}, "invalid-parameter", "/quantities/0"),
+        ({"quantities": ["/position/0/0", "/position/1/0"] * 2}, {}, "invalid-parameter", "/quantities/2"),
         ({"quantities": []}, {}, "invalid-parameter", "/quantities"),
+        ({"statistics": ["mean"] * 7}, {}, "invalid-parameter", "/statistics"),
         ({"vary": []}, {}, "invalid-parameter", "/vary"),
         ({"vary": [{"pointer": "/nowhere", "values": [1.0]}]}, {}, "invalid-parameter", "/vary/0/pointer"),
         (
@@ -299,6 +301,8 @@ async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> N
         assert (await client.post("/v1/studies", content=b"PK", headers=headers)).status_code == 415
         assert (await client.post("/v1/studies", json=GRID, headers={"accept": "text/html"})).status_code == 406
         assert (await client.put("/v1/studies", json=GRID)).status_code == 405
+        other = await client.patch("/v1/studies/of-somebody")
+        assert (other.status_code, other.headers["allow"]) == (405, "GET, HEAD, DELETE")
 
 
 async def test_old_studies_are_removed(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
