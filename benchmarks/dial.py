@@ -73,16 +73,16 @@ def points(request: dict[str, Any], figures: np.ndarray[Any, Any]) -> list[dict[
 
 
 def picture(measured: list[dict[str, Any]], closed_form: float) -> str:
-    """Return the figure: the median body in colour, the best and the worst one beside it."""
+    """Return the figure: the median body in colour, over bars from the best body to the worst one."""
     curves = []
     for kind in dict.fromkeys(point["method"]["kind"] for point in measured):
         own = [point for point in measured if point["method"]["kind"] == kind]
-        for bound in (0, 2):
-            outer = [(point["evaluations"][bound], point["error"][bound]) for point in own]
-            curves.append(Curve("", outer, emphasised=True))
+        for point in own:
+            spread = [(point["evaluations"][1], error) for error in point["error"]]
+            curves.append(Curve("", spread, emphasised=True))
         curves.append(Curve(kind, [(point["evaluations"][1], point["error"][1]) for point in own]))
-    title = "Error against work: every method, the median of 200 bodies, and the best and the worst of them"
-    return log_log(title, "evaluations", "largest error, relative", curves, [Level("closed form, none", closed_form)])
+    title = "Error against work: the median of 200 bodies, over the range of all of them"
+    return log_log(title, "evaluations", "largest error, relative", curves, [Level("closed form, bound", closed_form)])
 
 
 def main() -> None:
