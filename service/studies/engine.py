@@ -154,7 +154,11 @@ class Engine:
         for identity in [*self._works]:
             if identity not in unfinished:
                 self._let_go(self._works.pop(identity))
-                self._files.remove(identity)
+                try:
+                    self._files.remove(identity)
+                except OSError as fault:
+                    # They go when the study is removed.
+                    LOG.error("results cannot be removed", extra={"study": identity, "reason": str(fault)})
         for identity, study in unfinished.items():
             if identity not in self._works:
                 stored = self._store.chunks(identity)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from datetime import UTC, datetime
 from typing import Any
 from urllib.parse import parse_qs
@@ -126,6 +126,8 @@ class Studies:
         if seconds > limit:
             remedy = "take fewer members, or several studies"
             raise BudgetExceeded("seconds", round(seconds), round(limit), path=("vary",), remedy=remedy)
+        # What has no place for its results is refused at once.
+        await self._in_thread(self._supervisor.files)
         if context.key is not None:
             context.key.work(seconds)
         try:
@@ -188,7 +190,7 @@ class Studies:
                     grids.MEDIA_TYPE: lambda: grids.grid(found, self._store.folder / "scratch"),
                     SVG: lambda: figure(found),
                 }[media]()
-                await context.stream_made_elsewhere(pieces, media.encode(), self._settings.stalled_seconds)
+                await context.stream_made_elsewhere(_stored(pieces), media.encode(), self._settings.stalled_seconds)
         except ImportError as missing:
             detail = f"this service is installed without {missing.name}, which writes {media}"
             raise Refusal("not-acceptable", detail) from None
@@ -264,6 +266,14 @@ class Studies:
         self, context: RequestContext, document: Any, status: int = 200, headers: tuple[tuple[bytes, bytes], ...] = ()
     ) -> None:
         await context.document(orjson.dumps(document), status, headers)
+
+
+def _stored(pieces: Iterator[bytes]) -> Iterator[bytes]:
+    """Yield what is made of stored results, or raise that they cannot be read now."""
+    try:
+        yield from pieces
+    except OSError as fault:
+        raise storage_unavailable(fault) from fault
 
 
 def state_of(study: Study) -> dict[str, Any]:

@@ -99,7 +99,16 @@ async def test_results_page_by_page(desk_on: Desks, in_process: str, tmp_path: P
         for name in ("inputs", "figures"):
             for pointer, column in whole[name].items():
                 assert [entry for page in pages for entry in page[name][pointer]] == column
-        for query in ("start=300", "count=0", "count=10001", "start=-1", "start=1.5"):
+        for query in (
+            "start=300",
+            "count=0",
+            "count=10001",
+            "start=-1",
+            "start=1.5",
+            "start=",
+            "first=1",
+            "count=1&count=2",
+        ):
             response = await client.get(f"{place}/results?{query}")
             assert (response.status_code, response.json()["code"]) == (422, "invalid-parameter"), query
 
@@ -280,6 +289,28 @@ async def test_a_folder_that_cannot_be_used_is_said(tmp_path: Path) -> None:
         response = await client.post("/v1/studies", json=GRID)
         assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
         assert "Not a directory" in response.json()["detail"]
+
+
+async def test_results_that_cannot_be_stored_anywhere_are_refused_before(tmp_path: Path) -> None:
+    async with client_at(tmp_path, studies_results="nowhere://results") as client:
+        response = await client.post("/v1/studies", json=GRID)
+        assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
+        assert (await client.get("/v1/studies")).json()["studies"] == []
+
+
+async def test_storage_that_cannot_be_reached_is_said(
+    desk_on: Desks, in_process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unreachable(*arguments: Any) -> Any:
+        raise OSError("no connection")
+
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        monkeypatch.setattr("service.studies.chunk_files.ChunkFiles.read", unreachable)
+        monkeypatch.setattr("service.studies.chunk_files.ChunkFiles.remove", unreachable)
+        for media in ("application/json", "application/x-npz", "image/svg+xml"):
+            response = await get(client, place, media)
+            assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable"), media
+        assert (await client.delete(place)).json()["code"] == "storage-unavailable"
 
 
 async def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
