@@ -6,7 +6,9 @@ members whose results are stored.
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import secrets
 import sqlite3
 import time
@@ -127,11 +129,17 @@ class Store:
                 yield self._connection
             except (OSError, sqlite3.Error) as fault:
                 self._drop()
-                raise storage_unavailable(fault) from fault
+                raise storage_unavailable(self._reason(fault)) from fault
             except BaseException:
                 # Nothing is left half written.
                 self._drop()
                 raise
+
+    def _reason(self, fault: Exception) -> Exception:
+        # SQLite says of every folder that it cannot write to that a file cannot be opened.
+        if self.folder.is_dir() and not os.access(self.folder, os.W_OK):
+            return PermissionError(errno.EROFS, "it cannot be written to")
+        return fault
 
     def _opened(self) -> sqlite3.Connection:
         self.folder.mkdir(parents=True, exist_ok=True)

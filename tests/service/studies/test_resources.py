@@ -326,6 +326,21 @@ async def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert "disk is full" in response.json()["detail"]
 
 
+async def test_a_folder_that_cannot_be_written_to_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sqlite3
+
+    def unable(*arguments: Any, **settings: Any) -> Any:
+        raise sqlite3.OperationalError("unable to open database file")
+
+    async with client_at(tmp_path) as client:
+        monkeypatch.setattr("service.studies.store.sqlite3.connect", unable)
+        # Tests may run as root, whom no permission stops.
+        monkeypatch.setattr("service.studies.store.os.access", lambda folder, wish: False)
+        response = await client.post("/v1/studies", json=GRID)
+        assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
+        assert "cannot be written to" in response.json()["detail"]
+
+
 async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> None:
     async with client_at(tmp_path) as client:
         headers = {"content-type": "application/x-npz"}
