@@ -169,6 +169,11 @@ health: environment
 calibration: environment
 	$(BIN)/python -m benchmarks.calibration
 
+# Studies by real servers on real clusters, with kills; then what they cost.
+studies: environment
+	$(BIN)/python -m tests.service.studies.real_clusters
+	$(BIN)/python -m benchmarks.studies
+
 # Error against work of every method over 200 bodies: a study, and its figure in docs/accuracy.md.
 dial: environment
 	$(BIN)/python -m benchmarks.dial
