@@ -150,7 +150,7 @@ FUZZ ?= 2000
 # Seconds of load and faults.
 SOAK ?= 300
 
-.PHONY: fuzz fuzz-loop schemathesis soak overload health calibration image
+.PHONY: fuzz fuzz-loop schemathesis soak overload health calibration image dial studies
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
@@ -173,6 +173,15 @@ health: environment
 
 calibration: environment
 	$(BIN)/python -m benchmarks.calibration
+
+# Studies by real servers on real clusters, with kills; then what they cost.
+studies: environment
+	$(BIN)/python -m tests.service.studies.real_clusters
+	$(BIN)/python -m benchmarks.studies
+
+# Error against work of every method over 200 bodies: a study, and its figure in docs/accuracy.md.
+dial: environment
+	$(BIN)/python -m benchmarks.dial
 
 # The steps of the Dockerfile in a clean Debian, and the image as it is meant to run; needs root and debootstrap.
 image: environment
