@@ -27,7 +27,7 @@ RIGID = 1e9
 
 
 def dissipation_for(restitution: float, speed: float) -> float:
-    """Return the d (s/m) of a law that leaves a share e of a speed v: with x = d v, x (1 + e) = ln((1 + x)/(1 - e x))."""
+    """Return the d (s/m) that leaves a share e of a speed v: x (1 + e) = ln((1 + x)/(1 - e x)) with x = d v."""
     e = restitution
     root = brentq(lambda x: x * (1 + e) - math.log((1 + x) / (1 - e * x)), 1e-3, (1 - 1e-12) / e)
     return float(root / speed)

@@ -1,8 +1,8 @@
 """MuJoCo: contacts are soft constraints on accelerations; forces are the minimum of a convex function.
 
 `defaults` changes the time step alone. `stiff` takes elliptic cones, contacts as stiff as the step allows (a
-time constant of two steps), an impedance near one and a friction that hardly creeps. Restitution has no parameter of its own:
-a damped spring is one whose contact ends with the wanted share of the speed.
+time constant of two steps), an impedance near one and a friction that hardly creeps. Restitution has no parameter of
+its own: a damped spring is one whose contact ends with the wanted share of the speed.
 """
 
 from __future__ import annotations

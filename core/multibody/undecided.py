@@ -77,8 +77,8 @@ UNDECIDED: Mapping[Code, UndecidedKind] = {
         UndecidedKind(
             "simultaneous-impacts",
             "Several impacts at one time, of which the order matters",
-            "Contacts take impulses at one time, and the outcome depends on their order; candidates lists what follows, "
-            "and order decides.",
+            "Contacts take impulses at one time, and the outcome depends on their order; candidates lists the "
+            "outcomes, and order decides.",
         ),
         UndecidedKind(
             "several-impacts",

@@ -149,7 +149,8 @@ def _problems() -> Iterator[str]:
         yield f"| `{entry.code}` | {entry.status} | {_one_line(entry.title)} | {_one_line(entry.meaning)} |"
     yield from ("", "## Undecided", "")
     yield "An answer about a described scene with contacts may carry a `problem`: the motion ends there, because"
-    yield "mechanics does not decide or because it is not followed any further. `GET /v1/undecided` answers this table as JSON."
+    yield "mechanics does not decide or because it is not followed any further."
+    yield "`GET /v1/undecided` answers this table as JSON."
     yield from ("", "| code | title | |", "|---|---|---|")
     for kind in UNDECIDED.values():
         link = f"[`{kind.code}`](../physics/undecided.md#{kind.code})"
