@@ -19,11 +19,15 @@ from typing import Any
 from mpmath import mpf, workdps
 
 from benchmarks.contact_peers.cases import CASES, DIGITS, ContactCase
+from benchmarks.contact_peers.page import with_section
 from benchmarks.contact_peers.worker import ENGINES, Engine
 from benchmarks.machine import RESULTS, described
 
 TARGET = RESULTS / "contact_peers.json"
 ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "peers.md"
+NOTES = ("deformable contact", "pybullet build time")
+"""What engines always write."""
 LIMIT = 120.0
 """Seconds that one process may take, with its start; after it, dearer settings are left out."""
 
@@ -41,6 +45,7 @@ def ran(engine: Engine, case: ContactCase, setting: float) -> dict[str, Any]:
         except subprocess.TimeoutExpired:
             return {"failure": f"no answer within {LIMIT:g} s"}
         logs = [file.read_text(errors="replace").strip() for file in Path(folder).glob("*.TXT")]
+    logs += [line for line in done.stderr.splitlines() if line.strip() and not any(note in line for note in NOTES)]
     if done.returncode:
         lines = done.stderr.strip().splitlines()
         return {"failure": lines[-1][:300] if lines else f"the process ended with {done.returncode}"}
@@ -92,6 +97,7 @@ def main() -> None:
         "load average": {"before": before, "after": os.getloadavg()[0]},
     }
     TARGET.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    PAGE.write_text(with_section(PAGE.read_text(encoding="utf-8"), TARGET), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -2,18 +2,19 @@
 
 python -m tests.core.multibody.event_references   (prints the table)
 
-Every reference is a function of the numbers of its scene, written as decimals. Its conditioning is the sum of the relative
-changes of the time by relative changes of each number.
+Every reference is a function of the numbers of its scene, written as decimals. Its conditioning is the sum of the
+relative changes of the time by relative changes of each number.
 
 References
 ----------
-D. Morin, Introduction to Classical Mechanics (2008), chapters 4 (pendulum), 5 (impacts), 8 (rolling). The slope's stone:
-its hodograph, see tests/examples/test_scenes_of_contacts.py.
+D. Morin, Introduction to Classical Mechanics (2008), chapters 4 (pendulum), 5 (impacts), 8 (rolling). The stone on a
+slope: its hodograph, see tests/examples/test_scenes_of_contacts.py.
 """
 
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -273,9 +274,9 @@ def main() -> None:
     """Print the table."""
     for reference in REFERENCES:
         for i, one in enumerate(compared(reference)):
-            print(
+            sys.stdout.write(
                 f"{reference.scene:30} {i + 1:2} {one.event.kind:9} {one.event.time:.17g} s, off {one.off:.1e}, "
-                f"stated {one.event.error:.1e}, conditioning {one.conditioning:.2f}, allowed {one.allowed:.1e}"
+                f"stated {one.event.error:.1e}, conditioning {one.conditioning:.2f}, allowed {one.allowed:.1e}\n"
             )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.core.multibody.event_references import REFERENCES, SCENES, Reference, compared
+from tests.core.multibody.event_references import REFERENCES, Reference, compared
 
 
 @pytest.mark.parametrize("reference", REFERENCES, ids=lambda reference: reference.scene)
