@@ -118,7 +118,7 @@ def test_engines_agree_roughly(engine: object) -> None:
     except metadata.PackageNotFoundError:
         pytest.skip("not installed")
     steps: list[Step] = []
-    final = engine.prepare(SLIP, 1e-3)(steps)  # type: ignore[attr-defined]
+    final = engine.prepare(SLIP, engine.settings[1])(steps)  # type: ignore[attr-defined]
     assert figures(SLIP, final, steps)["velocity at 1 s"] == pytest.approx(2.0, rel=0.05)
 
 
