@@ -1324,23 +1324,6 @@ class ChainSamples(TypedDict):
     apex_tension: NotRequired[Floats | None]
 
 
-class SceneCatalogue(TypedDict):
-    """The catalogue of scenes."""
-
-    signature: Signature
-    scenes: list[SceneEntry]
-
-
-class SceneEntry(TypedDict):
-    """One scene of the catalogue."""
-
-    name: str
-    path: str
-    summary: str
-    outputs: list[str]
-    example: dict[str, Any]
-
-
 class DescribedSceneRequest(TypedDict):
     """Bodies, what connects them, and what is requested of them."""
 
@@ -1508,7 +1491,22 @@ class MotionPhase(TypedDict):
 class SceneProblem(TypedDict):
     """Something that mechanics does not decide, or that is not followed any further: the motion ends there."""
 
-    code: str
+    code: Literal[
+        "no-motion",
+        "several-motions",
+        "undetermined-friction",
+        "simultaneous-impacts",
+        "several-impacts",
+        "no-impact",
+        "energy-gain",
+        "grazing-contact",
+        "several-onsets",
+        "turning-onset",
+        "no-progress",
+        "event-limit",
+        "lost-event",
+    ]
+    type: str
     explanation: str
     time: float
     connections: list[str]
@@ -1597,6 +1595,23 @@ class DescribedAccuracy(TypedDict):
     inherited: float | None
     horizon: float | None
     why: str | None
+
+
+class SceneCatalogue(TypedDict):
+    """The catalogue of scenes."""
+
+    signature: Signature
+    scenes: list[SceneEntry]
+
+
+class SceneEntry(TypedDict):
+    """One scene of the catalogue."""
+
+    name: str
+    path: str
+    summary: str
+    outputs: list[str]
+    example: dict[str, Any]
 
 
 class CertifiedTrajectoryRequest(TypedDict):
@@ -2526,16 +2541,40 @@ class VariantFigure(TypedDict):
     condition: float | None
 
 
-class StudyList(TypedDict):
-    """The studies of a client, the latest first."""
+class StudyRequest(TypedDict):
+    """One question with varied inputs, and the figures of its answers that are wanted."""
+
+    question: EndpointRequest
+    vary: Sequence[StudyInput]
+    design: NotRequired[Literal["product", "zip", "sobol", "random"]]
+    count: NotRequired[int | None]
+    seed: NotRequired[int]
+    quantities: Sequence[str]
+    statistics: NotRequired[Sequence[Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]]]
+    probabilities: NotRequired[Numbers]
+    bins: NotRequired[int]
+
+
+class StudyInput(TypedDict):
+    """An input that varies: a range from `min` to `max`, `values`, or a normal distribution."""
+
+    min: NotRequired[float | None]
+    max: NotRequired[float | None]
+    distribution: NotRequired[Literal["uniform", "log-uniform", "normal"]]
+    step: NotRequired[float | None]
+    digits: NotRequired[int | None]
+    values: NotRequired[Sequence[float | str | bool | Mapping[str, Any] | Numbers] | None]
+    also: NotRequired[Sequence[str]]
+    pointer: NotRequired[str]
+    mean: NotRequired[float | None]
+    deviation: NotRequired[float | None]
+    count: NotRequired[int | None]
+
+
+class StudyState(TypedDict):
+    """The state of one study."""
 
     signature: Signature
-    studies: list[StudyStatus]
-
-
-class StudyStatus(TypedDict):
-    """The state of a study, in the shape of OGC API Processes' statusInfo."""
-
     jobID: str
     type: Literal["process"]
     processID: Literal["study"]
@@ -2583,40 +2622,16 @@ class Link(TypedDict):
     type: str
 
 
-class StudyRequest(TypedDict):
-    """One question with varied inputs, and the figures of its answers that are wanted."""
-
-    question: EndpointRequest
-    vary: Sequence[StudyInput]
-    design: NotRequired[Literal["product", "zip", "sobol", "random"]]
-    count: NotRequired[int | None]
-    seed: NotRequired[int]
-    quantities: Sequence[str]
-    statistics: NotRequired[Sequence[Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]]]
-    probabilities: NotRequired[Numbers]
-    bins: NotRequired[int]
-
-
-class StudyInput(TypedDict):
-    """An input that varies: a range from `min` to `max`, `values`, or a normal distribution."""
-
-    min: NotRequired[float | None]
-    max: NotRequired[float | None]
-    distribution: NotRequired[Literal["uniform", "log-uniform", "normal"]]
-    step: NotRequired[float | None]
-    digits: NotRequired[int | None]
-    values: NotRequired[Sequence[float | str | bool | Mapping[str, Any] | Numbers] | None]
-    also: NotRequired[Sequence[str]]
-    pointer: NotRequired[str]
-    mean: NotRequired[float | None]
-    deviation: NotRequired[float | None]
-    count: NotRequired[int | None]
-
-
-class StudyState(TypedDict):
-    """The state of one study."""
+class StudyList(TypedDict):
+    """The studies of a client, the latest first."""
 
     signature: Signature
+    studies: list[StudyStatus]
+
+
+class StudyStatus(TypedDict):
+    """The state of a study, in the shape of OGC API Processes' statusInfo."""
+
     jobID: str
     type: Literal["process"]
     processID: Literal["study"]
@@ -2769,6 +2784,38 @@ class MistakeEntry(TypedDict):
     summary: str
     feedback: str
     credit: float
+
+
+class UndecidedRegistry(TypedDict):
+    """What can be left undecided about a scene with contacts."""
+
+    signature: Signature
+    undecided: list[UndecidedEntry]
+
+
+class UndecidedEntry(TypedDict):
+    """One kind of thing that is left undecided about a scene with contacts."""
+
+    code: Literal[
+        "no-motion",
+        "several-motions",
+        "undetermined-friction",
+        "simultaneous-impacts",
+        "several-impacts",
+        "no-impact",
+        "energy-gain",
+        "grazing-contact",
+        "several-onsets",
+        "turning-onset",
+        "no-progress",
+        "event-limit",
+        "lost-event",
+    ]
+    type: str
+    title: str
+    meaning: str
+    of_mechanics: bool
+    documentation: str
 
 
 class Status(TypedDict):
