@@ -109,7 +109,7 @@ class Columns:
         """Return momentum and angular momentum about the origin in time, of every body and of all."""
         measures = self.whole.measures
         found: dict[str, Column] = {}
-        for name, function in momenta(measures.table, measures.coordinates.frames).items():
+        for name, function in momenta(measures.table, measures.coordinates.frames, measures.momenta).items():
             values, size = function.at(self.states.q, self.states.v)
             error = _SMALL * float(np.max(np.linalg.norm(size, axis=1), initial=0.0))
             if self.states.reference is not None:
