@@ -1,4 +1,4 @@
-"""Named scenes with events, described anew: unwinding shafts, smooth and rough, and a rod that leaves its hole.
+"""Named scenes with events, described anew: unwinding shafts, smooth and rough, a rod in its hole, a chain on a wedge.
 
     python -m tests.core.multibody.named_judge 1000
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from core.multibody.answer import SceneAnswer
 from core.multibody.solve import solve_scene
+from core.scenes.chain_on_wedge import ChainOnWedge
 from core.scenes.friction import Friction
 from core.scenes.rod_in_hole import RodInHole
 from core.scenes.unwinding_shafts import UnwindingShafts
@@ -183,10 +184,88 @@ def require_same_rod(named: RodInHole) -> SceneAnswer:
     return answer
 
 
+def chain(named: ChainOnWedge) -> dict[str, Any]:
+    """Return the chain over the origin with a body at each end, of mass 0 where the end is bare."""
+    bodies: dict[str, Any] = {}
+    lengths = f"{named.position}", f"({named.length} - {named.position})"
+    for i, (name, side) in enumerate((("one", -1), ("two", 1))):
+        x, v, slope = lengths[i], (1, -1)[i] * named.velocity, named.slopes[i]
+        bodies[name] = {
+            "mass": named.masses[i],
+            "at": [f"{side}*{x}*cos({slope})", f"-{x}*sin({slope})"],
+            "velocity": [f"{side}*({v})*cos({slope})", f"-({v})*sin({slope})"],
+        }
+    link = {"kind": "chain", "name": "c", "through": ["one", [0, 0], "two"], "density": named.linear_density}
+    gravity = [0, f"-{named.gravity}"]
+    return {"numbers": "doubles", "gravity": gravity, "bodies": bodies, "connections": [link]}
+
+
+def random_chain(seed: int) -> ChainOnWedge:
+    random = np.random.default_rng(seed)
+    length = decimal(random, 0.5, 5)
+    return ChainOnWedge(
+        masses=(_end_mass(random), _end_mass(random)),
+        slopes=(decimal(random, 0, 1.55), decimal(random, 0.05, 1.55)),
+        gravity=9.81,
+        length=length,
+        linear_density=decimal(random, 0.05, 3),
+        position=float(f"{length * random.uniform(0.05, 0.95):.4g}"),
+        velocity=decimal(random, -4, 4) if random.random() < 0.7 else 0.0,
+    )
+
+
+def _end_mass(random: np.random.Generator) -> float:
+    return 0.0 if random.random() < 0.3 else decimal(random, 0.05, 3)
+
+
+def require_same_chain(named: ChainOnWedge, described: dict[str, Any] | None = None) -> SceneAnswer:
+    """Raise `AssertionError` unless the described chain slides, lifts off and ends as the named one."""
+    times = np.linspace(0.0, 2.0, 11)
+    theirs = named.answer(times)
+    assert theirs.trajectory is not None
+    answer = solve_scene(
+        read(described or chain(named)), times, ("accelerations", "forces", "energy", "trajectory", "forces-in-time")
+    )
+    assert answer.accelerations is not None
+    assert answer.energy is not None
+    told = next((event for event in theirs.figures["events"] if 0.0 <= event["time"] <= 2.0), None)
+    if told is None:
+        assert answer.ended is None, answer.ended
+    else:
+        mine = answer.ended
+        assert mine is not None, told
+        kind, name = {"lift-off": ("lift-off", "c")}.get(told["kind"], ("end-of-chain", f"c.{told['kind'][5]}"))
+        assert (mine.kind, mine.name) == (kind, name), (mine, told)
+        assert abs(mine.time - told["time"]) <= mine.error + 2.0**-52 * told["time"], (mine, told)
+        assert mine.error <= 1e-12, mine
+        lifts = theirs.figures["lift_off"]
+        assert lifts["occurs"] == (kind == "lift-off")
+    start = np.linalg.norm(answer.accelerations["one"].linear)
+    assert abs(start - abs(theirs.figures["acceleration"])) <= 4e-15 * max(start, 1.0)
+    assert abs(answer.energy.total - theirs.figures["energy"]["total"]) <= 4e-15 * abs(answer.energy.potential)
+    found, count = theirs.trajectory, len(theirs.trajectory["position"])
+    assert answer.trajectory is not None
+    assert len(answer.trajectory.time) == count
+    down = [np.array([side * np.cos(s), -np.sin(s)]) for side, s in zip((-1, 1), named.slopes, strict=True)]
+    lengths = found["position"], named.length - found["position"]
+    for name, way, length, sign in zip(("one", "two"), down, lengths, (1, -1), strict=True):
+        place, rate = column(answer, f"{name}.position"), column(answer, f"{name}.velocity")
+        away = float(np.linalg.norm(place.values - length[:, None] * way, axis=1).max(initial=0.0))
+        assert away <= place.error + 2 * OWN * named.length, (name, away, place.error)
+        away = float(np.linalg.norm(rate.values - sign * found["velocity"][:, None] * way, axis=1).max(initial=0.0))
+        fastest = float(np.abs(found["velocity"]).max(initial=0.0))
+        assert away <= rate.error + 2 * OWN * fastest, (name, "velocity", away, rate.error)
+    pull = column(answer, "c.tension")
+    away = float(np.abs(pull.values - found["apex_tension"]).max(initial=0.0))
+    assert away <= pull.error + 2 * OWN * float(np.abs(pull.values).max(initial=0.0)), ("tension", away, pull.error)
+    return answer
+
+
 JUDGES: dict[str, Callable[[int], SceneAnswer]] = {
     "shafts": lambda seed: require_same_shafts(random_shafts(seed)),
     "rough shafts": lambda seed: require_same_shafts(random_shafts(seed, rough=True)),
     "rod": lambda seed: require_same_rod(random_rod(seed)),
+    "chain": lambda seed: require_same_chain(random_chain(seed)),
 }
 
 
