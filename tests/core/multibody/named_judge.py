@@ -2,19 +2,22 @@
 
     python -m tests.core.multibody.named_judge 1000
 
-The named scenes have closed forms of their own, and share no code with described ones. Whatever differs is printed.
+The named scenes have closed forms of their own, and share no code with described ones. Whatever differs is printed; the
+figures are written to benchmarks/results/named_scenes.json.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 from collections import Counter
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneAnswer, SceneEvent
 from core.multibody.solve import solve_scene
 from core.scenes.chain_on_wedge import ChainOnWedge
 from core.scenes.friction import Friction
@@ -23,8 +26,14 @@ from core.scenes.unwinding_shafts import UnwindingShafts
 from tests.core.multibody.random_scenes import decimal
 from tests.core.multibody.worked_examples import column, read
 
+TARGET = Path(__file__).parents[3] / "benchmarks" / "results" / "named_scenes.json"
 OWN = 2e-15
 """Relative error of the named scenes' samples."""
+END = 1.5
+"""Until when shafts are compared (s)."""
+FAINT = 1e-7
+"""Share of the largest impulse of a motion below which a jerk, and what happens until jerks end, is not compared: both
+leave out the last of infinitely many jerks, and not the same ones."""
 
 
 def shafts(named: UnwindingShafts) -> dict[str, Any]:
@@ -92,18 +101,12 @@ def random_shafts(seed: int, *, rough: bool = False) -> UnwindingShafts:
 
 def require_same_shafts(named: UnwindingShafts, described: dict[str, Any] | None = None) -> SceneAnswer:
     """Raise `AssertionError` unless described shafts move as named ones; return the answer about the described."""
-    times = np.linspace(0.0, 1.5, 16)
+    times = np.linspace(0.0, END, 16)
     theirs = named.answer(times)
     assert theirs.trajectory is not None
     answer = solve_scene(read(described or shafts(named)), times)
     assert answer.problem is None, answer.problem
-    jerks = [event for event in answer.events if event.kind == "taut"]
-    phases = theirs.figures["phases"]
-    starts = [phase["start"] for phase in phases if phase["kind"] == "taut" and 0.0 < phase["start"] < 1.5]
-    ends = [event for event in answer.events if event.kind == "settle"] or jerks[-1:]
-    if starts and named.friction is None:
-        own = 1e-14 * starts[-1]
-        assert abs(ends[-1].time - starts[-1]) <= ends[-1].error + own, ("jerks end", ends[-1], starts[-1])
+    _require_same_events(named, theirs.figures, answer)
     for i, (name, side) in enumerate((("one", -1), ("two", 1))):
         down = np.array([side * np.cos(named.slopes[i]), -np.sin(named.slopes[i])])
         place = column(answer, f"{name}.position")
@@ -114,6 +117,80 @@ def require_same_shafts(named: UnwindingShafts, described: dict[str, Any] | None
         away = float(np.abs(spin.values + side * theirs.trajectory["spins"][:, i]).max())
         assert away <= spin.error + 1e-13, (name, "spin", away, spin.error)
     return answer
+
+
+def _require_same_events(named: UnwindingShafts, figures: Any, answer: SceneAnswer) -> None:
+    """Raise unless jerks, what they do, and the ends of slips are the same, one by one, in both directions."""
+    jerks = [event for event in answer.events if event.kind == "taut"]
+    settles = [event for event in answer.events if event.kind == "settle"]
+    largest = max((event.impulses["normal"] for event in jerks), default=0.0)
+    told = [event for event in figures["events"] if event["time"] <= END]
+    faint = _faint(jerks, settles, largest)
+
+    def seen(time: float) -> bool:
+        return not any(low <= time <= high for low, high in faint)
+
+    def find(time: float, among: list[SceneEvent]) -> None:
+        near = min(among, key=lambda event: abs(event.time - time), default=None)
+        assert near is not None, ("not described", time)
+        assert abs(near.time - time) <= near.error + 1e-14 * time, ("another time", near, time)
+
+    ends = [event for event in answer.events if event.kind in ("roll", "stick", "slip")]
+    for event in told:
+        if event["kind"] == "jerks-accumulate":
+            find(event["time"], settles)
+        elif seen(event["time"]):
+            find(event["time"], {"jerk": jerks, "slip-ends": ends}[event["kind"]])
+    jerked = {event.time for event in jerks}
+    for event in ends:
+        # A jerk that makes something slip or turns its slip about is one event of the named scene.
+        if seen(event.time) and event.time not in jerked:
+            own = [one["time"] for one in told if one["kind"] == "slip-ends"]
+            away = min((abs(time - event.time) for time in own), default=np.inf)
+            assert away <= event.error + 1e-14 * event.time, ("not named", event)
+    _require_same_impulses(named, figures["phases"], jerks, settles, largest, seen)
+    # At every jerk the string of the named scene is as long as its way: for a moment, where it jerks on.
+    assert named.positions is not None
+    listed = [event for event in jerks if seen(event.time)]
+    if listed:
+        samples = named.answer(np.array([event.time for event in listed])).trajectory
+        assert samples is not None
+        slack = samples["unwound"].sum(axis=1) - (samples["positions"] - named.positions).sum(axis=1)
+        assert np.abs(slack).max() <= 1e-13 * np.abs(samples["positions"]).max(), ("slack", float(np.abs(slack).max()))
+
+
+def _faint(jerks: list[SceneEvent], settles: list[SceneEvent], largest: float) -> list[tuple[float, float]]:
+    """Return the times of jerks that are faint, each up to the next jerk or the end of infinitely many."""
+    found = []
+    for event, after in zip(jerks, [*jerks, None][1:], strict=True):
+        if event.impulses["normal"] <= FAINT * largest:
+            # What is left of a sequence of jerks lasts some times as long as since the last that is not faint.
+            last = max((one.time for one in jerks if one.impulses["normal"] > FAINT * largest), default=0.0)
+            until = [one.time for one in (*settles, *([after] if after else [])) if one.time >= event.time]
+            reach = max(min(until, default=event.time), event.time + 1e-5 * max(event.time - last, 1.0))
+            found.append((event.time * (1 - 1e-14), reach * (1 + 1e-14)))
+    return found
+
+
+def _require_same_impulses(
+    named: UnwindingShafts,
+    phases: list[Any],
+    jerks: list[SceneEvent],
+    settles: list[SceneEvent],
+    largest: float,
+    seen: Callable[[float], bool],
+) -> None:
+    """Raise unless the jerks within every phase of the named scene have its impulse."""
+    for phase in phases:
+        start, end = phase["start"], phase["end"]
+        if end > END or not (seen(start) and (seen(end) or any(abs(end - one.time) < 1e-9 for one in settles))):
+            continue
+        within = [event for event in jerks if start * (1 - 1e-14) <= event.time < end * (1 - 1e-14)]
+        total = sum(event.impulses["normal"] for event in within)
+        if within and any(abs(end - one.time) <= 1e-13 for one in settles):
+            # After the jerks that are listed follow infinitely many, each less by the restitution.
+            total += within[-1].impulses["normal"] * named.restitution / (1.0 - named.restitution)
+        assert abs(total - phase["impulse"]) <= 1e-12 * largest, ("impulse", total, phase)
 
 
 def rod(named: RodInHole) -> dict[str, Any]:
@@ -269,19 +346,24 @@ JUDGES: dict[str, Callable[[int], SceneAnswer]] = {
 }
 
 
-def main(count: int) -> None:
-    """Judge random scenes of every kind, and print what differs."""
-    for kind, judged in JUDGES.items():
+def main(count: int, *kinds: str) -> None:
+    """Judge random scenes of every kind, or of some, print what differs, and write how many agree."""
+    results = json.loads(TARGET.read_text(encoding="utf-8")) if TARGET.exists() else {}
+    for kind in kinds or JUDGES:
         found: Counter[str] = Counter()
         for seed in range(count):
             try:
-                events = judged(seed).events
+                events = JUDGES[kind](seed).events
                 found["with events" if events else "without"] += 1
+                found["events"] += len(events)
             except Exception as fault:
                 found["differ"] += 1
                 sys.stdout.write(f"{kind} {seed} {type(fault).__name__}: {str(fault)[:300]}\n")
         sys.stdout.write(f"{kind}: {dict(found)}\n")
+        results[kind] = {"seeds": f"0 to {count - 1}", "differ": 0, **found}
+        if count >= 1000:
+            TARGET.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]))
+    main(int(sys.argv[1]), *sys.argv[2:])
