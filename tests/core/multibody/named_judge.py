@@ -36,13 +36,18 @@ FAINT = 1e-7
 leave out the last of infinitely many jerks, and not the same ones."""
 
 
+def exactly(number: float) -> str:
+    """Return a double as a formula: numerals in formulas are decimals, and a decimal of a double is another number."""
+    return "({}/{})".format(*number.as_integer_ratio())
+
+
 def shafts(named: UnwindingShafts) -> dict[str, Any]:
     """Return the same scene in bodies and connections, the apex at the origin."""
     bodies, connections = {}, []
     assert named.positions is not None
     for i, (name, side) in enumerate((("one", -1), ("two", 1))):
-        mass, radius, slope = named.masses[i], named.radii[i], named.slopes[i]
-        x, v, w = named.positions[i], named.velocities[i], named.spins[i]
+        mass, radius, slope = (exactly(pair[i]) for pair in (named.masses, named.radii, named.slopes))
+        x, v, w = exactly(named.positions[i]), exactly(named.velocities[i]), named.spins[i]
         bodies[name] = {
             "mass": mass,
             "radius": radius,
@@ -55,11 +60,11 @@ def shafts(named: UnwindingShafts) -> dict[str, Any]:
             "angular_velocity": -side * w,
         }
         if named.friction is None:
-            rail = {"at": [f"{side}*{radius}*sin({slope})", f"{radius}*cos({slope})"], "slope": -side * slope}
+            rail = {"at": [f"{side}*{radius}*sin({slope})", f"{radius}*cos({slope})"], "slope": f"{-side}*{slope}"}
             connections.append({"kind": "track", "name": f"face-{name}", "place": name, "on": rail})
         else:
             law = [named.friction.static[i], named.friction.kinetic[i]]
-            face = {"at": [0, 0], "slope": -side * slope}
+            face = {"at": [0, 0], "slope": f"{-side}*{slope}"}
             connections.append({"kind": "contact", "name": f"face-{name}", "place": name, "on": face, "friction": law})
     string = {
         "kind": "string",
@@ -71,7 +76,7 @@ def shafts(named: UnwindingShafts) -> dict[str, Any]:
     return {
         # Named scenes take their numbers as doubles.
         "numbers": "doubles",
-        "gravity": [0, f"-{named.gravity}"],
+        "gravity": [0, -named.gravity],
         "bodies": bodies,
         "connections": [*connections, string],
     }
@@ -195,10 +200,14 @@ def _require_same_impulses(
 
 def rod(named: RodInHole) -> dict[str, Any]:
     """Return the rod with both ends in a round hollow."""
-    a, length, angle, rate = named.hole_radius, named.length, named.angle, named.angular_velocity
+    assert named.angle is not None
+    assert named.angular_velocity is not None
+    figures = named.hole_radius, named.length, named.angle, named.angular_velocity
+    a, length, angle, rate = (exactly(x) for x in figures)
+    share, mass = exactly(named.inertia_factor), exactly(named.mass)
     return {
         "numbers": "doubles",
-        "gravity": [0, f"-{named.gravity}"],
+        "gravity": [0, -named.gravity],
         "let": {
             "k": f"sqrt((2*{a} - {length})*(2*{a} + {length}))/2",
             "c": f"cos({angle})",
@@ -207,7 +216,7 @@ def rod(named: RodInHole) -> dict[str, Any]:
         "bodies": {
             "rod": {
                 "mass": named.mass,
-                "inertia": f"{named.inertia_factor}*{named.mass}*{length}*{length}",
+                "inertia": f"{share}*{mass}*{length}*{length}",
                 "at": ["k*s", "-k*c"],
                 "velocity": [f"k*c*({rate})", f"k*s*({rate})"],
                 "angle": angle,
@@ -216,7 +225,8 @@ def rod(named: RodInHole) -> dict[str, Any]:
             }
         },
         "connections": [
-            {"kind": "contact", "name": end, "place": f"rod.{end}", "on": {"at": [0, 0], "radius": -a}} for end in "ab"
+            {"kind": "contact", "name": end, "place": f"rod.{end}", "on": {"at": [0, 0], "radius": f"-{a}"}}
+            for end in "ab"
         ],
     }
 
@@ -264,16 +274,17 @@ def require_same_rod(named: RodInHole) -> SceneAnswer:
 def chain(named: ChainOnWedge) -> dict[str, Any]:
     """Return the chain over the origin with a body at each end, of mass 0 where the end is bare."""
     bodies: dict[str, Any] = {}
-    lengths = f"{named.position}", f"({named.length} - {named.position})"
+    first = exactly(named.position)
+    lengths = first, f"({exactly(named.length)} - {first})"
     for i, (name, side) in enumerate((("one", -1), ("two", 1))):
-        x, v, slope = lengths[i], (1, -1)[i] * named.velocity, named.slopes[i]
+        x, v, slope = lengths[i], exactly((1, -1)[i] * named.velocity), exactly(named.slopes[i])
         bodies[name] = {
             "mass": named.masses[i],
             "at": [f"{side}*{x}*cos({slope})", f"-{x}*sin({slope})"],
             "velocity": [f"{side}*({v})*cos({slope})", f"-({v})*sin({slope})"],
         }
     link = {"kind": "chain", "name": "c", "through": ["one", [0, 0], "two"], "density": named.linear_density}
-    gravity = [0, f"-{named.gravity}"]
+    gravity = [0, -named.gravity]
     return {"numbers": "doubles", "gravity": gravity, "bodies": bodies, "connections": [link]}
 
 
