@@ -20,6 +20,9 @@ from core.multibody.whole import Whole, values
 _SECTIONS = 33
 _NOISE = 2.0**-40
 """Share of a force's size below which its sign is noise."""
+_GROWN = 16.0
+"""Powers of e by which a motion grows before events are looked for beyond."""
+_MOST_REACHES = 5
 _NEIGHBOURS = 8
 """Samples after one by which the size is judged there: those of a motion that grows without bound say nothing of it."""
 
@@ -52,13 +55,15 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEven
                 found.append(SceneEvent(limit.event, limit.name, time, 2.0**-52 * abs(time)))
         watched = [limit for limit in watched if limit.force is not None]
     watched = [limit for limit in watched if not _safe(whole, limit)]
-    if watched:
-        grid = _grid(whole, end)
+    lost: list[SceneEvent] = []
+    for reach in _reaches(whole, end) if watched else ():
+        grid = _grid(whole, reach)
         curves = _curves(whole, watched, grid)[0]
-        for number, limit in enumerate(watched):
-            event = _first_loss(whole, limit, grid, curves[number])
-            if event is not None:
-                found.append(event)
+        events = (_first_loss(whole, limit, grid, curve) for limit, curve in zip(watched, curves, strict=True))
+        lost = [event for event in events if event is not None]
+        if lost:
+            break
+    found.extend(lost)
     return min(found, key=lambda event: abs(event.time)) if found else None
 
 
@@ -81,6 +86,16 @@ def _follows(whole: Whole, limit: Limit, indices: Sequence[int]) -> bool:
     """Return whether a length is one of a part."""
     length = substituted(limit.length or {}, whole.reduced.expressions)
     return bool(length) and {key[0] for key in length if key} <= set(indices)
+
+
+def _reaches(whole: Whole, end: float) -> list[float]:
+    """Return the times up to which events are looked for in turn: what grows without bound soon meets one."""
+    growths = [float(mode.growth) for _, motion in whole.parts if isinstance(motion, Modes) for mode in motion.modes]
+    # Backwards in time, what decays grows.
+    growth = max((copysign(1.0, end) * x for x in growths), default=0.0)
+    first = _GROWN / growth if growth > 0.0 else abs(end)
+    nearer = [2.0**k * first for k in range(_MOST_REACHES)]
+    return [*(copysign(reach, end) for reach in nearer if reach < abs(end)), end]
 
 
 def _grid(whole: Whole, end: float) -> Floats:
