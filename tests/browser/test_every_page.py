@@ -1,7 +1,6 @@
 """What holds for all pages: no violation of axe-core, no sideways scrolling, weight, time to load."""
 
 import gzip
-import time
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -66,7 +65,11 @@ def counting(page):
     return session
 
 
-@pytest.mark.parametrize("path", ["/", "/scenes", "/docs"])
+SHOWN = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now()))))"
+"""Milliseconds from the start of the navigation to the second frame after this was asked."""
+
+
+@pytest.mark.parametrize("path", ["/", "/scenes", "/studies", "/docs"])
 def test_weight_and_time(opened, base, path):
     sizes: dict[str, int] = {}
 
@@ -77,17 +80,16 @@ def test_weight_and_time(opened, base, path):
     seconds, busy = [], []
     for _ in range(3):
         sessions = []
-        start = time.perf_counter()
         page = opened(path, watch=weigh, before=lambda page, found=sessions: found.append(counting(page)))
-        seconds.append(time.perf_counter() - start)
+        seconds.append(page.evaluate(SHOWN) / 1e3)
         metrics = sessions[0].send("Performance.getMetrics")["metrics"]
         busy += [metric["value"] for metric in metrics if metric["name"] == "TaskDuration"]
         page.wait_for_load_state("networkidle")
     files = {url: size for url, size in sizes.items() if "/v1/" not in url}
     assert all(urlsplit(url).netloc == urlsplit(base).netloc for url in sizes)
-    assert 50_000 < sum(files.values()) <= 700_000
+    assert 0 < sum(files.values()) <= 700_000
     FIGURES.append(
-        f"{path}: {len(files)} files, {sum(files.values()) / 1e3:.0f} kB gzipped, ready after {min(seconds):.2f} s, "
+        f"{path}: {len(files)} files, {sum(files.values()) / 1e3:.0f} kB gzipped, shown after {min(seconds):.2f} s, "
         f"of which {min(busy):.2f} s of processor time in the page"
     )
 

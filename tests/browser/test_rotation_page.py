@@ -231,7 +231,7 @@ def test_long_work_shows_progress_and_can_be_cancelled(opened):
     progress.wait_for(state="visible", timeout=10_000)
     assert "computing" in progress.inner_text()
     # The service's plan says how long it will take.
-    page.wait_for_function("document.getElementById('progress').innerText.includes('of about 1 s')")
+    progress.filter(has_text="of about 1 s").wait_for()
     progress.locator("button").click()
     progress.wait_for(state="hidden")
     assert "Cancelled" in page.locator("#problem").inner_text()
