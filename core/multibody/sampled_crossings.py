@@ -123,7 +123,8 @@ class Sampled:
         before, reach = 0.0, min(end, 2.0 * scale)
         while True:
             times, singular = self.grid(reach)
-            chosen = times[times >= before] if before else times
+            # A motion followed further has other steps: without the time before, there would be a gap at the seam.
+            chosen = times[max(int(np.searchsorted(times, before, side="right")) - 1, 0) :]
             hit = self._look(chosen) if len(chosen) > 1 else None
             if near is not None and (hit is None or near[0] < hit[0]) and near[0] <= times[-1]:
                 return near
