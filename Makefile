@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check kernels environment openapi judge plans record peers peers-scenes newest clean
+.PHONY: serve test check kernels old-kernels environment openapi judge plans record peers peers-scenes newest clean
 .PHONY: browser pictures vendor site
 
 serve: $(ENV)/runs
@@ -27,6 +27,11 @@ check: environment
 # Otherwise both processes of the tests would compile all of them.
 kernels: environment
 	$(BIN)/python -c 'from service.app import app; app.answering.warm()'
+
+# What was compiled from earlier sources: it is not removed by itself, as a server that still runs from them may need it.
+old-kernels: environment
+	current=$$($(BIN)/python -c 'import core.compiled, numba, os; print(os.path.basename(numba.config.CACHE_DIR))') && \
+		find core/__pycache__ -maxdepth 1 -name 'compiled-*' ! -name "$$current" -print -exec rm -r {} +
 
 environment: $(ENV)/made
 
@@ -145,7 +150,7 @@ FUZZ ?= 2000
 # Seconds of load and faults.
 SOAK ?= 300
 
-.PHONY: fuzz fuzz-loop schemathesis soak overload health calibration image
+.PHONY: fuzz fuzz-loop schemathesis soak overload health calibration image dial studies
 
 fuzz: environment
 	POLHODE_FUZZ=$(FUZZ) $(BIN)/python -m pytest -q tests/service/test_fuzz.py
@@ -168,6 +173,15 @@ health: environment
 
 calibration: environment
 	$(BIN)/python -m benchmarks.calibration
+
+# Studies by real servers on real clusters, with kills; then what they cost.
+studies: environment
+	$(BIN)/python -m tests.service.studies.real_clusters
+	$(BIN)/python -m benchmarks.studies
+
+# Error against work of every method over 200 bodies: a study, and its figure in docs/accuracy.md.
+dial: environment
+	$(BIN)/python -m benchmarks.dial
 
 # The steps of the Dockerfile in a clean Debian, and the image as it is meant to run; needs root and debootstrap.
 image: environment

@@ -1,7 +1,8 @@
 """How long a health check waits while every core computes: ours, beside a bare application on the same loaded machine.
 
-Run: python -m benchmarks.service_health [seconds]. Everything stays on 127.0.0.1. Two kinds of load are put on the
-service by clients in a process of their own: long integrations, and answers of a million samples with attitudes. Both
+Run: python -m benchmarks.service_health [seconds]. Everything stays on 127.0.0.1. Three kinds of load are put on the
+service by clients in a process of their own: long integrations, answers of a million samples with attitudes, and a
+study that occupies every core. A small question, the precession of another body each time, waits beside them. All
 servers are asked in turn over raw sockets, 100 times a second, by a client at raised priority where that is allowed.
 What the machine itself does to a waiting process shows in the control, a bare ASGI application under uvicorn that has
 nothing else to do: its waits contain the same delays of the network, of the scheduler and of the asking client.
@@ -13,9 +14,12 @@ import contextlib
 import http.client
 import json
 import os
+import random
+import re
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
@@ -23,8 +27,12 @@ from typing import Any
 
 from benchmarks.machine import RESULTS, described
 from benchmarks.servers import ROOT, control, service
+from benchmarks.studies import LONG, asked
 
 PING = b"GET /healthz HTTP/1.1\r\nhost: x\r\n\r\n"
+SMALL = (
+    "POST /v1/rotation/precession HTTP/1.1\r\nhost: x\r\ncontent-type: application/json\r\ncontent-length: {}\r\n\r\n{}"
+)
 BODY = {"kind": "principal-moments", "moments": [1.0, 2.0, 2.5]}
 TRAJECTORY = "/v1/rotation/trajectory"
 LOADS: dict[str, dict[str, Any]] = {
@@ -41,6 +49,7 @@ LOADS: dict[str, dict[str, Any]] = {
         "times": {"start": 0.0, "stop": 1000.0, "count": 1_000_000},
     },
 }
+STUDY, QUESTION = "a study", "small question"
 CLIENTS = 4
 
 
@@ -48,6 +57,9 @@ def load(port: int, name: str) -> None:
     """Ask large questions until this process is ended."""
     # Clients are elsewhere in reality; here they are not to compete with the servers.
     os.nice(19)
+    if name == STUDY:
+        asked(port, "POST", "/v1/studies", {**LONG, "count": 3_000_000})
+        return
     body = json.dumps(LOADS[name])
 
     def ask() -> None:
@@ -64,8 +76,24 @@ def load(port: int, name: str) -> None:
         threading.Thread(target=ask).start()
 
 
+def small_question() -> bytes:
+    """Return a request that no answer is remembered for."""
+    moments = [1.0, 1.5 + 0.1 * random.random(), 2.0]
+    body = json.dumps({"body": {"kind": "principal-moments", "moments": moments}, "angular_velocity": [0.1, 1.0, 0.1]})
+    return SMALL.format(len(body), body).encode()
+
+
+def received(line: socket.socket) -> None:
+    """Read a whole answer."""
+    answer = line.recv(65536)
+    head, _, body = answer.partition(b"\r\n\r\n")
+    left = int(re.search(rb"content-length: (\d+)", head)[1]) - len(body)  # type: ignore[index]
+    while left > 0:
+        left -= len(line.recv(65536))
+
+
 def waits(ports: dict[str, int], seconds: float) -> dict[str, list[float]]:
-    """Return how long each server took to answer, asked in turn (s)."""
+    """Return how long each server took to answer, asked in turn (s); `SMALL` goes to the server that has its name."""
     found: dict[str, list[float]] = {name: [] for name in ports}
     with contextlib.ExitStack() as stack:
         lines = {
@@ -76,9 +104,10 @@ def waits(ports: dict[str, int], seconds: float) -> dict[str, list[float]]:
         until = time.perf_counter() + seconds
         while time.perf_counter() < until:
             for name, line in lines.items():
+                request = small_question() if name == QUESTION else PING
                 since = time.perf_counter()
-                line.sendall(PING)
-                line.recv(65536)
+                line.sendall(request)
+                received(line)
                 found[name].append(time.perf_counter() - since)
                 time.sleep(0.005)
     return found
@@ -110,14 +139,14 @@ def figures(found: list[float]) -> dict[str, float]:
 def main(seconds: float = 30.0) -> None:
     """Measure and write the result."""
     before, result = os.getloadavg(), {}
-    with service() as ours, control() as bare:
-        ports = {"service": ours.port, "control": bare.port}
-        for name in ("no load", *LOADS):
+    with tempfile.TemporaryDirectory() as folder, service(data=folder) as ours, control() as bare:
+        ports = {"service": ours.port, QUESTION: ours.port, "control": bare.port}
+        for name in ("no load", *LOADS, STUDY):
             driver = None
-            if name in LOADS:
+            if name != "no load":
                 command = [sys.executable, "-m", "benchmarks.service_health", "--load", str(ours.port), name]
                 driver = subprocess.Popen(command, cwd=ROOT)
-                time.sleep(3.0)
+                time.sleep(10.0 if name == STUDY else 3.0)
             try:
                 with raised() as allowed:
                     found = waits(ports, seconds)

@@ -3,6 +3,8 @@
 Run: python -m benchmarks.studies [members]. Everything stays on this machine. Wall times are those of a machine with
 whatever else runs on it; processor times are not disturbed by that, and both are reported. Peers take the same bodies
 in the same run: solve_ivp of scipy with an event in a loop, the library in multiprocessing and in joblib.
+
+More processes than the machine has cores are shown by stopping each of them, by signals, nine tenths of the time.
 """
 
 from __future__ import annotations
@@ -11,10 +13,14 @@ import http.client
 import json
 import multiprocessing
 import os
+import signal
+import sqlite3
 import sys
 import tempfile
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -58,11 +64,63 @@ LONG: dict[str, Any] = {
 }
 TICK = os.sysconf("SC_CLK_TCK")
 
+SHARE, PERIOD = 0.1, 0.2
+"""Part of its time in which a process that is held back runs, and after how long that repeats (s)."""
+HELD_BACK = (1, 2, 4, 8)
+MEMBERS_EACH = 200
+
+
+def own_time(process: int) -> float:
+    """Return the processor time of a process (s)."""
+    fields = Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / TICK
+
 
 def processor_time(process: int) -> float:
     """Return the processor time of a process and its living descendants (s)."""
-    fields = Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / TICK + sum(map(processor_time, children(process)))
+    return own_time(process) + sum(map(processor_time, children(process)))
+
+
+def engine_of(server: Server) -> int:
+    """Return the process that works on studies."""
+    until = time.monotonic() + 30.0
+    while time.monotonic() < until:
+        for child in children(server.pid):
+            if b"runner" in Path(f"/proc/{child}/cmdline").read_bytes():
+                return child
+        # The thread that has started it must have ended before it is the main thread's child.
+        time.sleep(0.05)
+    raise RuntimeError("no process works on studies")
+
+
+@contextmanager
+def held_back(processes: list[int]) -> Iterator[None]:
+    """Let each of some processes run for a part of the time only, one after the other."""
+    ended = threading.Event()
+
+    def alternate(process: int, phase: float) -> None:
+        # What else runs on the machine would take their share.
+        with suppress(PermissionError):
+            os.setpriority(os.PRIO_PROCESS, process, 0)
+        ended.wait(phase)
+        while not ended.is_set():
+            os.kill(process, signal.SIGSTOP)
+            ended.wait((1.0 - SHARE) * PERIOD)
+            os.kill(process, signal.SIGCONT)
+            ended.wait(SHARE * PERIOD)
+
+    threads = [
+        threading.Thread(target=alternate, args=(process, PERIOD * k / len(processes)))
+        for k, process in enumerate(processes)
+    ]
+    for thread in threads:
+        thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        for thread in threads:
+            thread.join()
 
 
 def asked(port: int, method: str, path: str, body: Any = None) -> Any:
@@ -74,26 +132,68 @@ def asked(port: int, method: str, path: str, body: Any = None) -> Any:
     return answer
 
 
-def study(server: Server, request: dict[str, Any]) -> dict[str, float]:
-    """Run a study to its end: wall time from its first member to its last, and processor times (s)."""
+def downloaded(port: int, path: str, media: str) -> bytes:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=120)
+    connection.request("GET", path, headers={"accept": media})
+    answer = connection.getresponse().read()
+    connection.close()
+    return answer
+
+
+def study(server: Server, folder: str, request: dict[str, Any]) -> dict[str, float]:
+    """Run a study to its end: wall time from its first member to its last, and processor times (s).
+
+    ``members`` is what its members took, ``engine`` what the process that divides and stores them, ``processes`` both
+    with everything else that the cluster does.
+    """
     state = asked(server.port, "POST", "/v1/studies", request)
     path = f"/v1/studies/{state['jobID']}"
-    runner = next(child for child in children(server.pid) if b"runner" in Path(f"/proc/{child}/cmdline").read_bytes())
-    before = processor_time(runner)
+    engine = engine_of(server)
+    before, engine_before = processor_time(engine), own_time(engine)
     while state["status"] in ("accepted", "running"):
         time.sleep(0.05)
         state = asked(server.port, "GET", path)
-    spent = processor_time(runner) - before
+    spent, engine_spent = processor_time(engine) - before, own_time(engine) - engine_before
     assert state["status"] == "successful", state
+    with sqlite3.connect(Path(folder) / "studies.sqlite") as database:
+        (chunks,) = database.execute("SELECT COUNT(*) FROM chunks WHERE study = ?", (state["jobID"],)).fetchone()
     moments = [np.datetime64(state[name][:23]) for name in ("started", "finished")]
     wall = float((moments[1] - moments[0]) / np.timedelta64(1, "s"))
-    return {"wall": wall, "members": state["seconds"], "processes": spent, "count": state["count"]}
+    return {
+        "wall": wall,
+        "members": state["seconds"],
+        "engine": engine_spent,
+        "processes": spent,
+        "count": state["count"],
+        "stretches": chunks,
+    }
 
 
-def warm(server: Server) -> None:
+def warm(server: Server, folder: str) -> None:
     """Have the processes of studies running, with everything loaded."""
     for request in (FLIPS, LONG):
-        study(server, {**request, "count": 400})
+        study(server, folder, {**request, "count": 400})
+
+
+def scaling() -> list[dict[str, float]]:
+    """Return what studies of as many members for each process take, with processes that are held back."""
+    found = []
+    for workers in HELD_BACK:
+        with tempfile.TemporaryDirectory() as folder:
+            settings = {"data": folder, "study_workers": str(workers), "study_idle_seconds": "600"}
+            with service(**settings) as server:
+                warm(server, folder)
+                computing = [
+                    inner
+                    for child in children(engine_of(server))
+                    if b"forkserver" in Path(f"/proc/{child}/cmdline").read_bytes()
+                    for inner in children(child)
+                ]
+                assert len(computing) == workers
+                with held_back(computing):
+                    result = study(server, folder, {**LONG, "count": MEMBERS_EACH * workers})
+                found.append({"workers": workers, **result, "per_second": result["count"] / result["wall"]})
+    return found
 
 
 def single_requests(server: Server, seconds: float) -> dict[str, float]:
@@ -176,11 +276,12 @@ def main(members: int = 1_000_000) -> None:
     with tempfile.TemporaryDirectory() as folder:
         for workers in (1, 2):
             with service(data=folder, study_workers=str(workers), study_idle_seconds="600") as server:
-                warm(server)
+                warm(server, folder)
                 if workers == 1:
                     result["single requests"] = single_requests(server, 5.0)
-                result[f"flips, {workers}"] = study(server, {**FLIPS, "count": members})
-                result[f"long, {workers}"] = study(server, {**LONG, "count": 3000})
+                result[f"flips, {workers}"] = study(server, folder, {**FLIPS, "count": members})
+                result[f"long, {workers}"] = study(server, folder, {**LONG, "count": 3000})
+    result["held back"] = scaling()
     result["peers"] = peers()
     one, single = result["flips, 1"], result["single requests"]
     ratios = {
@@ -198,6 +299,13 @@ def main(members: int = 1_000_000) -> None:
         "long members: 2 processes over 1, wall": result["long, 1"]["wall"] / result["long, 2"]["wall"],
         "long members: engine's share of processor time": 1.0
         - result["long, 1"]["members"] / result["long, 1"]["processes"],
+        **{
+            f"long members: {one['workers']:.0f} processes over 1, each a tenth of the time": one["per_second"]
+            / result["held back"][0]["per_second"]
+            for one in result["held back"][1:]
+        },
+        "flips: processes that one engine supplies": result["flips, 1"]["members"] / result["flips, 1"]["engine"],
+        "long members: processes that one engine supplies": result["long, 1"]["members"] / result["long, 1"]["engine"],
         "long members: wall over processor time of members, 1 process": result["long, 1"]["wall"]
         / result["long, 1"]["members"],
     }

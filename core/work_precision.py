@@ -1,10 +1,10 @@
 """Error against cost: what each method, with each setting, makes of one question.
 
-Errors are measured against the closed form where there is one, those of described scenes against their own models,
-otherwise against an integrator at the end of double precision, whose own estimated error is added. Costs are counted,
-which is the same on every machine, and on request timed as well. The conventions are those of work-precision diagrams:
-the reference is far below the tightest error, times are medians of repeated runs, and a method that fails with a
-setting is listed with its reason.
+Errors are measured against the closed form where there is one, otherwise against what the system itself knows of its
+motion (`KnownMotion`), otherwise against an integrator at the end of double precision, whose own estimated error is
+added. Costs are counted, which is the same on every machine, and on request timed as well. The conventions are those of
+work-precision diagrams: the reference is far below the tightest error, times are medians of repeated runs, and a method
+that fails with a setting is listed with its reason.
 """
 
 from __future__ import annotations
@@ -15,13 +15,12 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
-from core.multibody.generic_equation import SceneSystem
 from core.systems.budget import Budget
 from core.systems.error_statements import bound_of, drifts, estimated, known_norm, measured
 from core.systems.methods import (
@@ -49,6 +48,14 @@ LARGEST_FITTED = 0.1
 """Above this the error has not yet begun to fall with its order."""
 ABOVE_FLOOR = 10.0
 """Errors within this factor of the floor hold round-off, and are not fitted."""
+
+
+@runtime_checkable
+class KnownMotion(InitialValueProblem, Protocol):
+    """A system without a closed form whose motion is known better than an integrator would find it."""
+
+    def reference(self, times: Floats) -> tuple[str, Floats, float]:
+        """Return how the motion is known, its states at times of shape (t,), and their largest error as a norm."""
 
 
 @dataclass(frozen=True)
@@ -246,7 +253,7 @@ def _reference(system: InitialValueProblem, times: Floats, budget: Budget) -> _R
     exact = system.closed_form()
     if exact is not None:
         return _Reference("closed form", exact.sample(times), bound_of(exact, times), exact.largest_norm)
-    if isinstance(system, SceneSystem):
+    if isinstance(system, KnownMotion):
         kind, states, largest = system.reference(times)
         norm = known_norm(states, system.initial_state)
         return _known(_Reference(kind, states, largest / norm if norm > 0.0 else 0.0, norm))

@@ -26,7 +26,7 @@ from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
 from service.observability.logs import LOG, configure
 from service.observability.metrics import Metrics
-from service.openapi.document import ABOUT, document_routes, openapi
+from service.openapi.document import ABOUT, openapi, serve_routes
 from service.routes.catalogues import catalogues
 from service.routes.operations import operations
 from service.routes.pages import pages
@@ -88,7 +88,7 @@ class Service(FastAPI):
             submit=studies.submit,
         )
         self._handlers, self._bodies = dispatcher.handlers, dispatcher.bodies
-        document_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
+        serve_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
         self._http = self._with_cors(self._known_or_not)
         self._openapi_text = b""
 
@@ -116,10 +116,14 @@ class Service(FastAPI):
             max_age=3600,
         )
 
+    def openapi(self) -> dict[str, Any]:
+        """Return the OpenAPI document."""
+        return openapi(self.table)
+
     def openapi_text(self) -> bytes:
         """Return the OpenAPI document as JSON."""
         if not self._openapi_text:
-            self._openapi_text = orjson.dumps(openapi(self), option=orjson.OPT_INDENT_2)
+            self._openapi_text = orjson.dumps(self.openapi(), option=orjson.OPT_INDENT_2)
         return self._openapi_text
 
     @contextlib.asynccontextmanager

@@ -20,7 +20,7 @@ from core.quantities import Time, Unit
 from core.systems.budget import Budget
 from core.systems.rounding import ROUND_TRIP
 from service import VERSION
-from service.requests.error_messages import ARRAY, OBJECT
+from service.requests.layout import ARRAY, OBJECT
 
 SIGNATURE = {"source": "polhode", "version": VERSION}
 

@@ -26,7 +26,12 @@ def steps_of(pointer: str) -> Path:
     if not pointer.startswith("/"):
         raise InvalidParameter((), "be a JSON pointer into the answer", remedy='such as "/flip_interval"')
     plain = (step.replace("~1", "/").replace("~0", "~") for step in pointer[1:].split("/"))
-    return tuple(int(step) if step.isascii() and step.isdigit() and len(step) < 10 else step for step in plain)
+    return tuple(int(step) if _is_place(step) else step for step in plain)
+
+
+def _is_place(step: str) -> bool:
+    """Return whether a step may be a place in an array: by RFC 6901 it has no leading zeros."""
+    return step.isascii() and step.isdigit() and len(step) < 10 and str(int(step)) == step
 
 
 def value_at(answer: Any, path: Path) -> Any:

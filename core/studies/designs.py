@@ -29,7 +29,7 @@ BLOCK = 4096
 """Members whose random numbers come from one generator."""
 
 MOST_MEMBERS = 2**30
-"""Points that scipy's Sobol sequence has."""
+"""Members of a study: the points that scipy's Sobol sequence has."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,11 @@ class Design:
             if entry.levels is None:
                 rule = f"be given in the design {self.kind}"
                 raise InvalidParameter(("vary", k, "count"), rule, remedy="give a count of levels, or values")
+        if self.kind == "product" and self.members > MOST_MEMBERS:
+            rule = f"have at most {MOST_MEMBERS} combinations"
+            raise InvalidParameter(
+                "vary", rule, remedy="take fewer levels, or the design sobol, which has its own count"
+            )
         if self.kind == "zip":
             for k, entry in enumerate(self.inputs):
                 if entry.levels != self.inputs[0].levels:

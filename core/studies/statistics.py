@@ -7,7 +7,8 @@ whatever order its parts came about. Members without the figure are NaN in the c
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -19,6 +20,9 @@ STATISTICS: tuple[Statistic, ...] = get_args(Statistic)
 
 PROBABILITIES = (0.01, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99)
 BINS = 50
+
+PIECE = 65_536
+"""Numbers that are objects at a time."""
 
 
 class Quantile(NamedTuple):
@@ -92,8 +96,8 @@ def column_statistics(
     bins: int = BINS,
 ) -> ColumnStatistics:
     """Return the statistics of a column, shape (n,), NaN where a member has no such figure."""
-    members = np.flatnonzero(~np.isnan(column))
-    values = column[members]
+    known = ~np.isnan(column)
+    values = column if known.all() else column[known]
     if not values.size:
         return ColumnStatistics(0)
     found: dict[str, Any] = {}
@@ -102,11 +106,11 @@ def column_statistics(
     exponent = math.frexp(max(abs(values[low]), abs(values[high])))[1]
     if "mean" in wanted or "std" in wanted:
         scaled = np.ldexp(values, -exponent)
-        mean = math.fsum(scaled.tolist()) / values.size
+        mean = math.fsum(_floats(scaled)) / values.size
         deviation = None
         if values.size > 1:
             squares = np.square(scaled - mean)
-            deviation = math.sqrt(math.fsum(squares.tolist()) / (values.size - 1))
+            deviation = math.sqrt(math.fsum(_floats(squares)) / (values.size - 1))
         if "mean" in wanted:
             found["mean"] = _unscaled(mean, exponent)
             found["standard_error"] = _unscaled(
@@ -114,14 +118,14 @@ def column_statistics(
             )
         if "std" in wanted:
             found["std"] = _unscaled(deviation, exponent)
+    ordered = np.sort(values) if "quantiles" in wanted or "histogram" in wanted else values
     if "quantiles" in wanted:
-        ordered = np.sort(values)
         found["quantiles"] = tuple(Quantile(p, _quantile(ordered, p)) for p in probabilities)
     if "extremes" in wanted:
-        found["min"] = Extreme(float(values[low]), int(members[low]))
-        found["max"] = Extreme(float(values[high]), int(members[high]))
+        found["min"] = Extreme(float(values[low]), _member(known, low))
+        found["max"] = Extreme(float(values[high]), _member(known, high))
     if "histogram" in wanted:
-        found["histogram"] = _histogram(values, bins)
+        found["histogram"] = _histogram(ordered, bins)
     return ColumnStatistics(int(values.size), **found)
 
 
@@ -129,6 +133,17 @@ def failure_counts(codes: np.ndarray[Any, Any], names: Sequence[str]) -> Mapping
     """Return how many members have each code, by name in alphabetic order; code 0 is none, k stands for names[k-1]."""
     counted = np.bincount(codes.astype(np.int64), minlength=len(names) + 1)[1:].tolist()
     return {name: count for name, count in sorted(zip(names, counted, strict=True)) if count}
+
+
+def _floats(values: Floats) -> Iterator[float]:
+    """Return the numbers of an array one by one, of which few are objects at a time."""
+    pieces = (values[start : start + PIECE] for start in range(0, values.size, PIECE))
+    return chain.from_iterable(map(np.ndarray.tolist, pieces))
+
+
+def _member(known: np.ndarray[Any, np.dtype[np.bool_]], place: int) -> int:
+    """Return which member is the one at a place among those that have the figure."""
+    return int(np.searchsorted(np.cumsum(known), place + 1))
 
 
 def _unscaled(value: float | None, exponent: int) -> float | None:
@@ -151,14 +166,15 @@ def _quantile(ordered: Floats, probability: float) -> float:
     return low if low == high else low * (1.0 - share) + high * share
 
 
-def _histogram(values: Floats, bins: int) -> Histogram:
-    low, high = float(values.min()), float(values.max())
+def _histogram(ordered: Floats, bins: int) -> Histogram:
+    low, high = float(ordered[0]), float(ordered[-1])
     if low == high:
-        return Histogram(np.array([low, high]), np.array([values.size]))
+        return Histogram(np.array([low, high]), np.array([ordered.size]))
     shares = np.arange(bins + 1) / bins
     edges = low * (1.0 - shares) + high * shares
     edges[0], edges[-1] = low, high
     # Of a range of few ulps some edges coincide.
     edges = np.unique(edges)
-    places = np.minimum(np.searchsorted(edges, values, side="right") - 1, edges.size - 2)
-    return Histogram(edges, np.bincount(places, minlength=edges.size - 1).astype(np.int64))
+    below = np.searchsorted(ordered, edges)
+    below[-1] = ordered.size
+    return Histogram(edges, np.diff(below).astype(np.int64))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -14,8 +17,13 @@ from core.quantities import Quantity, check
 
 MOST_LEVELS = 1_000_000
 
+LARGEST = sys.float_info.max
+
 SMALLEST_CHANCE = 2.0**-54
 """In place of a chance of 0, of which a normal distribution has no number."""
+
+FARTHEST = 8.5
+"""Deviations beyond which no number of a normal distribution is: 8.3 belong to the smallest chance."""
 
 Levels = Annotated[int, Quantity("1", at_least=1, at_most=MOST_LEVELS)]
 Deviation = Annotated[float, Quantity("1", above=0)]
@@ -84,6 +92,9 @@ class StudyInput(VariedInput):
                 raise InvalidParameter(name, "be left out beside values")
         if not 1 <= len(values) <= MOST_LEVELS:
             raise InvalidParameter("values", f"have 1 to {MOST_LEVELS} entries")
+        for k, value in enumerate(values):
+            if not _has_doubles(value):
+                raise InvalidParameter(("values", k), "be finite", remedy="numbers beyond 1.8e308 are not read")
         if len(self.also) > MOST_TOGETHER:
             raise InvalidParameter("also", f"have at most {MOST_TOGETHER} pointers")
 
@@ -95,6 +106,12 @@ class StudyInput(VariedInput):
         for name in ("mean", "deviation"):
             if getattr(self, name) is None:
                 raise InvalidParameter(name, "be given for a normal distribution")
+        assert self.mean is not None
+        assert self.deviation is not None
+        if not isfinite(abs(self.mean) + FARTHEST * self.deviation):
+            raise InvalidParameter(
+                "deviation", f"leave {FARTHEST} deviations from the mean within the range of doubles"
+            )
         if len(self.also) > MOST_TOGETHER:
             raise InvalidParameter("also", f"have at most {MOST_TOGETHER} pointers")
 
@@ -136,3 +153,12 @@ class StudyInput(VariedInput):
     def value(self, number: float) -> Any:
         """Return the JSON value that an entry of `numbers` stands for."""
         return number if self.values is None else self.values[int(number)]
+
+
+def _has_doubles(value: Any) -> bool:
+    """Return whether all numbers of a JSON value are finite doubles."""
+    if isinstance(value, (int, float)):
+        return abs(value) <= LARGEST
+    if isinstance(value, Mapping):
+        return all(map(_has_doubles, value.values()))
+    return not isinstance(value, (list, tuple)) or all(map(_has_doubles, value))

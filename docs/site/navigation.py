@@ -29,6 +29,7 @@ PHYSICS = (
 def navigation() -> list[Any]:
     """Return the navigation as MkDocs reads it; a page of docs/ that is not named here fails the build."""
     guides = [
+        {"See a motion in the browser": "pages.md"},
         {"Describe a scene": "describing-scenes.md"},
         {"Grade homework": "grading.md"},
         {"Study many variations": "studies.md"},

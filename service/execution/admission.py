@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from service.execution import PRELOAD
+from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
 from service.execution.messages import decoded, encoded
 from service.execution.speed import SpeedCorrection
 from service.execution.worker import Failed, Task, answer, price, serve, terms_of
-from service.execution.worker_pool import DeadlineExceeded, Job, Processes, QueueTimeout, Stopped, WorkerDied
+from service.execution.worker_pool import Processes
 from service.http.keys import Key
 from service.http.limits import ClientGone
 from service.observability.logs import LOG

@@ -9,12 +9,13 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from functools import cache, cached_property
 from importlib import resources
-from math import exp, floor, hypot, inf, log, sqrt
+from math import exp, floor, hypot, inf, isfinite, log, sqrt
 from sys import float_info
 from typing import Any
+
+import numpy as np
 
 from core.elliptic.functions import LARGEST_QUARTER
 from core.systems.budget import Budget
@@ -23,6 +24,9 @@ Counts = Mapping[str, float]
 
 UNCOUNTABLE = 1e18
 """What is more than this is counted as this: infinite counts, times nothing, would leave a question without a price."""
+
+COUNTABLE = 1e15
+"""Steps from which on doubles do not tell whole numbers of them from others."""
 
 ROUNDED_TIME = 4 * 2.0**-52
 """By how much of itself a time may miss a grid point of a fixed step and count as that."""
@@ -177,36 +181,20 @@ def judged(method: Any, times: Any, speed: float, budget: Budget, members: int =
 
 def steps(times: Any, step: float) -> float:
     """Return the steps of a length from the start to either side, and one more for each time between two of them."""
-    if isinstance(times, list):
-        distinct = set(times)
-        whole = sum(_whole(reach / step) for reach in (max(0.0, *distinct), -min(0.0, *distinct)))
-        return min(UNCOUNTABLE, whole + sum(_between(abs(t) / step) for t in distinct))
-    ends = _ends(times)
-    whole = _whole(max(0.0, *ends) / step) + _whole(-min(0.0, *ends) / step)
-    gap: float = abs(ends[-1] - ends[0]) / max(1, times.count - 1)
-    return min(UNCOUNTABLE, whole + _points_between(gap / step, abs(times.start) / step, times.count))
+    if not isfinite(extent(times)):
+        return UNCOUNTABLE
+    instants = np.unique(times if isinstance(times, list) else times.values())
+    # Beyond the range of doubles they are uncountable.
+    with np.errstate(over="ignore", invalid="ignore"):
+        reached = np.abs(instants) / step
+        between = (reached < COUNTABLE) & (np.abs(reached - np.rint(reached)) > ROUNDED_TIME * reached)
+    sides = (_whole(max(0.0, float(end)) / step) for end in (instants[-1], -instants[0]))
+    return min(UNCOUNTABLE, sum(sides) + float(np.count_nonzero(between)))
 
 
 def _whole(number: float) -> float:
     """Return how many whole steps a number of them has, up to the rounding of a quotient of times."""
-    return float(floor(number * (1.0 + ROUNDED_TIME))) if number < 1e15 else min(number, UNCOUNTABLE)
-
-
-def _between(number: float) -> bool:
-    """Tell whether a number of steps is not whole."""
-    return number < 1e15 and abs(number - round(number)) > ROUNDED_TIME * number
-
-
-def _points_between(gap: float, offset: float, count: int) -> float:
-    """Return how many of equally spaced times lie between steps, for a spacing and a first time in steps."""
-    first = _between(offset)
-    if gap == 0.0 or not gap < 1e15:
-        return float(first)
-    nearest = Fraction(gap).limit_denominator(count)
-    period = nearest.denominator
-    if abs(gap - nearest) > ROUNDED_TIME * gap or _between(offset * period):
-        return float(count) if first else count - 1.0
-    return float(count - (count // period if first else 1 + (count - 1) // period))
+    return float(floor(number * (1.0 + ROUNDED_TIME))) if number < COUNTABLE else min(number, UNCOUNTABLE)
 
 
 def extent(times: Any) -> float:

@@ -14,6 +14,9 @@ from typing import Any
 LENGTH = 8
 """Bytes of a message that say how long the rest is, little end first."""
 
+BEGUN = bytes(LENGTH)
+"""What a process sends when it is ready, and when it begins a request: a message of no length."""
+
 ALIGNMENT = 64
 
 Buffer = bytes | memoryview

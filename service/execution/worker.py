@@ -19,9 +19,8 @@ from typing import Any, TypeVar
 
 from core.errors import MechanicsError
 from core.systems.budget import Budget
-from service.execution.messages import LENGTH, apart, decoded, encoded
+from service.execution.messages import BEGUN, LENGTH, apart, decoded, encoded
 from service.execution.request_handler import RequestHandler
-from service.execution.worker_pool import BEGUN
 from service.problems import REGISTRY, Problem, Refusal, problem_of
 from service.requests.request_reader import Limits
 from service.responses.json_stream import Document, composed

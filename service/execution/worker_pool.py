@@ -26,6 +26,7 @@ import numpy as np
 
 from service.execution.daemon_thread import call_soon_if_open, run_in_daemon_thread
 from service.execution.fair_queue import FairQueue
+from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
 from service.execution.messages import LENGTH, Buffer
 from service.observability.logs import LOG
 
@@ -40,60 +41,6 @@ LONGEST_PAUSE = 30.0
 
 _EXIT_CODES = Lock()
 """Starting a process polls all others; of two threads that read an exit code at the same time one would find none."""
-
-
-class WorkerDied(Exception):
-    """The process died while it worked on the request."""
-
-
-class DeadlineExceeded(Exception):
-    """The request was worked on for longer than it may be; its process was killed."""
-
-
-class QueueTimeout(Exception):
-    """No process became free for the request in time."""
-
-
-class Stopped(Exception):
-    """The processes are being stopped."""
-
-
-BEGUN = bytes(LENGTH)
-"""What a process sends when it is ready, and when it begins a request: a message of no length."""
-
-
-class Job:
-    """A request on its way.
-
-    Attributes
-    ----------
-    client : hashable
-        Who sent it; clients have their turns in rotation.
-    predicted : float
-        How long it is expected to take (s).
-    reply : asyncio.Future of memoryview
-        Fails with `WorkerDied`, `DeadlineExceeded`, `QueueTimeout` or `Stopped`.
-    begun : bool
-        Whether a process works on it, or has.
-    """
-
-    def __init__(self, request: Sequence[Buffer], client: Hashable, predicted: float, longest: float) -> None:
-        self.request, self.client, self.predicted, self.longest = request, client, predicted, longest
-        self.reply: asyncio.Future[memoryview] = asyncio.get_running_loop().create_future()
-        self.since = self.until = 0.0
-        self.begun = False
-        self.timer: asyncio.TimerHandle | None = None
-        self.process: Process | None = None
-
-    @property
-    def seconds(self) -> float:
-        """How long a process has worked on it, or did (s)."""
-        return (self.until or perf_counter()) - self.since if self.since else 0.0
-
-    def fail(self, error: Exception) -> None:
-        """Answer with an error, unless there is an answer or the client has left."""
-        if not self.reply.done():
-            self.reply.set_exception(error)
 
 
 class Process(asyncio.BufferedProtocol):
@@ -117,7 +64,7 @@ class Process(asyncio.BufferedProtocol):
     def give(self, job: Job) -> None:
         """Send a request."""
         assert self._transport is not None
-        self.job, job.process = job, self
+        self.job = job
         self._transport.writelines(job.request)
 
     def get_buffer(self, sizehint: int) -> memoryview:
@@ -343,7 +290,7 @@ class Processes:
         job.until = job.until or perf_counter()
         if job.timer is not None:
             job.timer.cancel()
-        process, job.process = job.process, None
+        process = next((one for one in self._all if one.job is job), None)
         if process is not None:
             process.job = None
         return process

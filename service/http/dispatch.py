@@ -166,7 +166,7 @@ class Dispatcher:
         """Refuse a request that no handler is there for."""
         context = RequestContext(self._records, "none", scope, receive, send)
         path = scope["path"].removeprefix(scope.get("root_path", ""))
-        methods = [method for method, known in self.handlers if known == path]
+        methods = [method for method, known in self.handlers if _leads_to(known, path)]
         if methods:
             allowed = ", ".join(methods)
             detail = f"this path answers {allowed}"
@@ -177,6 +177,13 @@ class Dispatcher:
             detail = f"there is nothing at this path; {meant}GET /openapi.json lists every path"
             problem = Problem(REGISTRY["not-found"], detail)
         await context.problem(problem)
+
+
+def _leads_to(template: str, path: str) -> bool:
+    """Return whether a path is a template with something in place of each parameter in braces."""
+    known, given = template.split("/"), path.split("/")
+    pairs = zip(known, given, strict=False)
+    return len(known) == len(given) and all(a == b or (a.startswith("{") and b != "") for a, b in pairs)
 
 
 def _etag_of_answer(route: PostRoute, body: bytes, media: str = "application/json") -> bytes:

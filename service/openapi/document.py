@@ -1,17 +1,16 @@
-"""The OpenAPI document, made by FastAPI from the route table."""
+"""The OpenAPI document of the route table, and how FastAPI comes to serve the table."""
 
 from __future__ import annotations
 
-import inspect
 import re
-from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
 from fastapi import FastAPI, Request
-from fastapi.routing import APIRoute
 from pydantic import TypeAdapter
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
+from starlette.routing import Route as Endpoint
 from starlette.types import ASGIApp
 
 from core import bodies
@@ -53,6 +52,13 @@ PACKED = {
 }
 """A request that is a numpy archive."""
 
+UNPACKED = {
+    "type": "string",
+    "format": "binary",
+    "description": "numpy archive: each array under its name in the JSON answer (steps joined by slashes), the "
+    "rest in the member metadata.json.",
+}
+"""An answer that is one."""
 
 ABOUT: Mapping[str, Any] = {
     "title": "Polhode",
@@ -62,7 +68,6 @@ ABOUT: Mapping[str, Any] = {
     "docs_url": None,
     "redoc_url": None,
     "redirect_slashes": False,
-    "separate_input_output_schemas": False,
 }
 """Arguments of the FastAPI application."""
 
@@ -78,12 +83,15 @@ class _Dispatched(Response):
         await self._handler(scope, receive, send)
 
 
-def document_routes(
+def serve_routes(
     app: FastAPI, routes: Sequence[Route], handlers: Mapping[tuple[str, str], ASGIApp], unrouted: ASGIApp
 ) -> None:
     """Give FastAPI the routes, their handlers by method and path, and what answers where none of them fits."""
     for route in routes:
-        app.router.routes.append(_Route(route, handlers[route.method, route.path]))
+        endpoint = Endpoint(route.path, unrouted, include_in_schema=False)
+        # An endpoint that is a function would be given a request, and not what an ASGI application is.
+        endpoint.app, endpoint.methods = handlers[route.method, route.path], {route.method}
+        app.router.routes.append(endpoint)
 
     async def refuse(request: Request, error: Exception) -> Response:
         return _Dispatched(unrouted)
@@ -92,35 +100,43 @@ def document_routes(
     app.add_exception_handler(405, refuse)
 
 
-def openapi(app: FastAPI) -> dict[str, Any]:
+def openapi(routes: Sequence[Route]) -> dict[str, Any]:
     """Return the OpenAPI document."""
-    document = app.openapi()
-    document["components"] = {"schemas": _write_schemas(document, [*app.router.routes])}
-    document["info"] |= {
-        "license": {"name": "Apache License 2.0", "identifier": "Apache-2.0"},
-        "contact": {"name": "The Polhode project"},
+    shown = [route for route in routes if isinstance(route, PostRoute) or route.documented]
+    schemas, named = _schemas(shown)
+    paths: dict[str, Any] = {}
+    for route in shown:
+        paths.setdefault(route.path, {})[route.method.lower()] = _operation(route, schemas)
+    problem = ProblemDocument.model_json_schema(ref_template=components.PREFIX + "{model}")
+    document: dict[str, Any] = {
+        "openapi": "3.1.0",
+        "info": {
+            "title": ABOUT["title"],
+            "description": DESCRIPTION,
+            "version": VERSION,
+            "license": {"name": "Apache License 2.0", "identifier": "Apache-2.0"},
+            "contact": {"name": "The Polhode project"},
+        },
+        "paths": paths,
+        "components": {
+            "schemas": named | problem.pop("$defs") | {"ProblemDocument": problem},
+            "securitySchemes": {
+                "key": {
+                    "type": "http",
+                    "scheme": "bearer",
+                    "description": "Needed where the service has a file of keys.",
+                }
+            },
+            "responses": {
+                _response_name(status): _problem(status)
+                for status in sorted({entry.status for entry in REGISTRY.values()})
+            },
+        },
+        "servers": [
+            {"url": "/", "description": "The service that serves this document."},
+            {"url": "http://127.0.0.1:8000", "description": "`python -m service` on this machine."},
+        ],
     }
-    document["servers"] = [
-        {"url": "/", "description": "The service that serves this document."},
-        {"url": "http://127.0.0.1:8000", "description": "`python -m service` on this machine."},
-    ]
-    problem = ProblemDocument.model_json_schema(ref_template="#/components/schemas/{model}")
-    document["components"]["schemas"] |= problem.pop("$defs") | {"ProblemDocument": problem}
-    document["components"]["securitySchemes"] = {
-        "key": {"type": "http", "scheme": "bearer", "description": "Needed where the service has a file of keys."}
-    }
-    document["components"]["responses"] = {
-        _response_name(status): _problem(status) for status in sorted({entry.status for entry in REGISTRY.values()})
-    }
-    for verbs in document["paths"].values():
-        if "post" in verbs:
-            verbs["post"]["security"] = [{}, {"key": []}]
-            verbs["post"]["requestBody"]["content"][archive.MEDIA_TYPE] = {"schema": PACKED}
-        for operation in verbs.values():
-            for status in operation["responses"]:
-                if int(status) >= 400:
-                    reference = f"#/components/responses/{_response_name(int(status))}"
-                    operation["responses"][status] = {"$ref": reference}
     document = components.named(document)
     describe(document["components"]["schemas"], members_of(bodies.Body))
     components.require_tags(document)
@@ -129,38 +145,83 @@ def openapi(app: FastAPI) -> dict[str, Any]:
     return document
 
 
-def _write_schemas(document: dict[str, Any], routes: Sequence[Any]) -> dict[str, Any]:
-    """Write the schemas of questions and answers into the paths, and return the components that they refer to.
+Place = tuple[str, str]
+"""An operation, and its question or its answer."""
 
-    FastAPI would make an adapter of every field of every model to collect the same; that takes a second more.
-    """
-    places = {
-        (route.entry.operation_id, part): (found, content)
-        for route in routes
-        if isinstance(route, _Route) and route.include_in_schema
-        for part, found, content in _typed_content(route.entry, document["paths"][route.path])
-    }
+
+def _schemas(routes: Sequence[Route]) -> tuple[dict[Place, Any], dict[str, Any]]:
+    """Return the schemas of questions and answers, and the components that they refer to."""
+    found = {(route.operation_id, part): kind for route in routes for part, kind in _types(route)}
     schemas, defined = TypeAdapter.json_schemas(
-        [(place, "validation", TypeAdapter(found)) for place, (found, _) in places.items()],
+        [(place, "validation", TypeAdapter(kind)) for place, kind in found.items()],
         ref_template=components.PREFIX + "{model}",
     )
-    for place, (_, content) in places.items():
-        content["schema"] = schemas[place, "validation"]
-    named: dict[str, Any] = defined["$defs"]
-    return named
+    return {place: schemas[place, "validation"] for place in found}, defined["$defs"]
 
 
-def _typed_content(route: Route, operations: dict[str, Any]) -> Iterator[tuple[str, Any, dict[str, Any]]]:
-    """Yield what has a type of its own in an operation: its part, the type, and where the schema belongs."""
-    operation = operations[route.method.lower()]
+def _types(route: Route) -> Iterator[tuple[str, Any]]:
     if isinstance(route, PostRoute):
-        yield "question", route.question, operation["requestBody"]["content"]["application/json"]
+        yield "question", route.question
     if route.answer is not None:
-        yield "answer", route.answer, operation["responses"][str(_status(route))]["content"]["application/json"]
+        yield "answer", route.answer
 
 
-def _status(route: Route) -> int:
-    return 202 if isinstance(route, StudyRoute) else 200
+def _operation(route: Route, schemas: Mapping[Place, Any]) -> dict[str, Any]:
+    """Return an operation of the document."""
+    found: dict[str, Any] = {"tags": [route.tag], "summary": route.summary}
+    if route.description:
+        found["description"] = route.description
+    found["operationId"] = route.operation_id
+    if names := re.findall(r"{(\w+)}", route.path):
+        text = {"type": "string"}
+        found["parameters"] = [
+            {"name": name, "in": "path", "required": True, "schema": text | {"title": name.capitalize()}}
+            for name in names
+        ]
+    asked = isinstance(route, PostRoute)
+    if isinstance(route, PostRoute):
+        examples = {
+            name: {"summary": example.summary, "value": dict(example.question)}
+            for name, example in route.examples.items()
+        }
+        content = {"application/json": {"examples": examples, "schema": schemas[route.operation_id, "question"]}}
+        found["requestBody"] = {"content": content | {archive.MEDIA_TYPE: {"schema": PACKED}}, "required": True}
+    found["responses"] = {
+        "202" if isinstance(route, StudyRoute) else "200": {
+            "description": "The answer." if asked else "The document.",
+            "content": dict(_representations(route, schemas.get((route.operation_id, "answer"), {}))),
+        }
+    }
+    for status in _problems_of(route):
+        found["responses"][str(status)] = {"$ref": f"#/components/responses/{_response_name(status)}"}
+    if asked:
+        found["security"] = [{}, {"key": []}]
+    return found
+
+
+def _representations(route: Route, answer: Any) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the media types of an answer, the Accept header chooses, and how each is documented."""
+    text = {"type": "string"}
+    if isinstance(route, PostRoute):
+        yield "application/json", {"schema": answer}
+        if not isinstance(route, StudyRoute):
+            for media in route.representations:
+                yield media, {"schema": text}
+            yield archive.MEDIA_TYPE, {"schema": UNPACKED}
+    elif isinstance(route, ResourceRoute):
+        if route.example is not None:
+            yield "application/json", {"schema": answer, "example": dict(route.example)}
+        for media in route.representations:
+            yield media, {"schema": text if media.startswith("text/") else text | {"format": "binary"}}
+    else:
+        schema = answer if route.media_type == "application/json" else text
+        yield route.media_type, {"schema": schema} | ({} if route.example is None else {"example": route.example()})
+
+
+def _problems_of(route: Route) -> tuple[int, ...]:
+    if isinstance(route, PostRoute):
+        return _PROBLEMS_OF_QUESTIONS
+    return _PROBLEMS_OF_RESOURCES if isinstance(route, ResourceRoute) else (406, 500)
 
 
 def _response_name(status: int) -> str:
@@ -171,100 +232,3 @@ def _problem(status: int) -> dict[str, Any]:
     codes = [entry.code for entry in REGISTRY.values() if entry.status == status]
     reference = {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
     return {"description": f"Problem: {', '.join(codes)}.", "content": {MEDIA_TYPE: reference}}
-
-
-class _Route(APIRoute):
-    """One route of the table, as FastAPI sees it."""
-
-    def __init__(self, route: Route, handler: ASGIApp) -> None:
-        self.entry, self._handler = route, handler
-        super().__init__(
-            route.path,
-            _endpoint(route),
-            methods=[route.method],
-            operation_id=route.operation_id,
-            name=route.operation_id,
-            summary=route.summary,
-            description=route.description,
-            tags=[route.tag],
-            status_code=_status(route),
-            include_in_schema=isinstance(route, PostRoute) or route.documented,
-            response_model=None,
-            response_description="The answer." if isinstance(route, PostRoute) else "The document.",
-            response_class=_response_class(route),
-            responses=_representations(route) | _problems(_problems_of(route)),
-            openapi_extra=_request_body(route),
-        )
-
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        async def handler(request: Request) -> Response:
-            return _Dispatched(self._handler)
-
-        return handler
-
-
-def _response_class(route: Route) -> type[Response]:
-    if isinstance(route, ResourceRoute):
-        return JSONResponse if route.answer is not None else Response
-    if isinstance(route, PostRoute) or route.media_type == "application/json":
-        return JSONResponse
-    return type("_Media", (Response,), {"media_type": route.media_type})
-
-
-def _endpoint(route: Route) -> Callable[..., Any]:
-    """Return a function whose signature has the parameters of the path; it is never called."""
-
-    def endpoint(**arguments: Any) -> None:
-        raise NotImplementedError
-
-    names = re.findall(r"{(\w+)}", route.path)
-    parameters = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=str) for name in names]
-    endpoint.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    endpoint.__doc__ = None
-    return endpoint
-
-
-def _request_body(route: Route) -> dict[str, Any] | None:
-    if not isinstance(route, PostRoute):
-        return None
-    examples = {
-        name: {"summary": example.summary, "value": dict(example.question)} for name, example in route.examples.items()
-    }
-    return {"requestBody": {"content": {"application/json": {"examples": examples}}, "required": True}}
-
-
-def _representations(route: Route) -> dict[int | str, dict[str, Any]]:
-    """Return how an answer is documented that is not JSON; the Accept header chooses."""
-    if isinstance(route, StudyRoute):
-        return {}
-    if isinstance(route, ResourceRoute):
-        forms: dict[str, Any] = {} if route.example is None else {"application/json": {"example": dict(route.example)}}
-        for media in route.representations:
-            text = {"type": "string"}
-            forms[media] = {"schema": text if media.startswith("text/") else text | {"format": "binary"}}
-        return {200: {"content": forms}}
-    if not isinstance(route, PostRoute):
-        if route.example is None:
-            return {}
-        return {200: {"content": {route.media_type: {"example": route.example()}}}}
-    content: dict[str, Any] = {media: {"schema": {"type": "string"}} for media in route.representations}
-    content[archive.MEDIA_TYPE] = {
-        "schema": {
-            "type": "string",
-            "format": "binary",
-            "description": "numpy archive: each array under its name in the JSON answer (steps joined by slashes), the "
-            "rest in the member metadata.json.",
-        }
-    }
-    return {200: {"description": "The answer.", "content": content}}
-
-
-def _problems_of(route: Route) -> tuple[int, ...]:
-    if isinstance(route, PostRoute):
-        return _PROBLEMS_OF_QUESTIONS
-    return _PROBLEMS_OF_RESOURCES if isinstance(route, ResourceRoute) else (406, 500)
-
-
-def _problems(statuses: Sequence[int]) -> dict[int | str, dict[str, Any]]:
-    """Return the statuses of problems; what they are is written once, among the components."""
-    return {status: {"description": ""} for status in statuses}

@@ -1,14 +1,14 @@
 """What the validator finds wrong, in words for who sent it: where, which rule, what would mend it.
 
 The validator's locations name members of unions as if they were steps; left out, they are JSON pointers into what the
-client sent. Which names and kinds there would have been is read off its schema.
+client sent. Which names and kinds there would have been is read off its schema (`service.requests.layout`).
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice
 from typing import Any
 
@@ -16,13 +16,8 @@ from core.errors import InvalidParameter, pointer_of
 from core.quantities import RADIANS
 from service.problems import KNOWN, MOST_FAULTS, Fault, code_of
 from service.requests.document_limits import LONGEST_KEY_SHOWN
+from service.requests.layout import ARRAY, OBJECT, Layout, Step
 from service.requests.suggestions import FORCES, STEPS, count_in_place_of_step, nearest, plain
-
-Step = str | int
-Names = tuple[str, ...]
-
-OBJECT, ARRAY = "<object>", "<array>"
-"""Labels of the members of a union of an object and an array; a fault in the member not meant is dropped."""
 
 LOOKED_AT = 3 * MOST_FAULTS
 """Findings among which the most useful ones are looked for."""
@@ -71,51 +66,19 @@ _NOT_FREE = f"{_NOT_KNOWN}: only torque-free motion is answered"
 _FREE_ONLY = "leave it out; motion under forces is answered for the scenes that GET /v1/scenes lists"
 
 
-@dataclass(frozen=True)
-class Layout:
-    """What a validator's schema says of the documents that it admits.
+class Wording:
+    """Words what is wrong with documents.
 
-    Attributes
+    Parameters
     ----------
-    tags : mapping of str to tuple of str
-        For each name of a field that holds members of a union, their tags.
-    names : mapping of str to tuple of str
-        For each tag, or name of a field that holds an object, the keys of the object; for ``""`` those of the document.
-    lengths : mapping of str to int
-        For each name of a field that holds an array of fixed length, that length.
+    layout : Layout
+        What the validator's schema says of the documents that it admits.
     elsewhere : mapping of str to str
         Keys of the document that only another route's question has, each with what would mend it.
-    units : mapping of str to str
-        For each name of a field that holds quantities of one SI unit, that unit.
-    maps : frozenset of str
-        Names of the fields that hold objects whose keys the client chooses.
     """
 
-    tags: Mapping[str, Names]
-    names: Mapping[str, Names]
-    lengths: Mapping[str, int]
-    elsewhere: Mapping[str, str]
-    units: Mapping[str, str]
-    maps: frozenset[str] = frozenset()
-
-    @classmethod
-    def of(cls, schema: Any, elsewhere: Mapping[str, str]) -> Layout:
-        """Return the layout that a schema describes."""
-        walk = _Walk(schema)
-        return cls(
-            {name: tuple(found) for name, found in walk.tags.items()},
-            {name: tuple(found) for name, found in walk.names.items()},
-            walk.lengths,
-            elsewhere,
-            {name: next(iter(units)) for name, units in walk.units.items() if len(units) == 1},
-            frozenset(walk.maps),
-        )
-
-    @property
-    def of_free_rotation(self) -> bool:
-        """Whether the documents ask about a body that turns freely."""
-        names = self.names.get("", ())
-        return "body" in names and not {"angular_velocity", "angular_velocities", "disturbance"}.isdisjoint(names)
+    def __init__(self, layout: Layout, elsewhere: Mapping[str, str]) -> None:
+        self._layout, self._elsewhere = layout, elsewhere
 
     def faults(self, found: Sequence[Any], document: Callable[[], Any]) -> tuple[list[Fault], set[str]]:
         """Return the validator's findings as faults, no more than a problem lists, and the codes that they have.
@@ -131,7 +94,7 @@ class Layout:
         """
         faults: list[tuple[Fault, str]] = []
         for entry in islice(_of_the_member_meant(_lengths_once(found)), LOOKED_AT):
-            steps, owner = self._steps(entry["loc"])
+            steps, owner = self._layout.steps(entry["loc"])
             cause = entry.get("ctx", {}).get("error")
             if isinstance(cause, InvalidParameter):
                 rule = f"must {cause.rule}"
@@ -141,26 +104,6 @@ class Layout:
                 faults.append((self._fault(entry, steps, owner, document), "invalid-parameter"))
         faults = sorted(faults, key=lambda one: _rank(one[0]))[:MOST_FAULTS]
         return _lists_once([fault for fault, _ in faults]), {code for _, code in faults}
-
-    def _steps(self, location: Sequence[Step]) -> tuple[tuple[Step, ...], str]:
-        """Return a location without the names of members of unions, and by what the object around its end is known."""
-        steps: list[Step] = []
-        owners = ["", ""]
-        tags = self.tags.get("", ())
-        for step in location:
-            if step in (OBJECT, ARRAY):
-                continue
-            if isinstance(step, str) and steps and steps[-1] in self.maps and owners[-1] == steps[-1]:
-                # A name that the client chose says nothing of what it names.
-                pass
-            elif isinstance(step, str):
-                owners.append(step)
-                if step in tags:
-                    tags = ()
-                    continue
-                tags = self.tags.get(step, ())
-            steps.append(step)
-        return tuple(steps), owners[-2]
 
     def _fault(self, entry: Any, steps: tuple[Step, ...], owner: str, document: Callable[[], Any]) -> Fault:
         kind, context = entry["type"], entry.get("ctx", {})
@@ -181,7 +124,7 @@ class Layout:
         detail = rule.format_map(context) if rule else str(entry["msg"]).removeprefix("Value error, ")
         named = steps[-1] if steps and isinstance(steps[-1], str) else ""
         if kind in _BOUNDS:
-            unit = self.units.get(next((step for step in reversed(steps) if isinstance(step, str)), ""), "1")
+            unit = self._layout.unit_of(next((step for step in reversed(steps) if isinstance(step, str)), ""))
             detail = detail if unit == "1" else f"{detail} {unit}"
             return Fault(pointer_of(steps), detail, RADIANS if unit == "rad" else None)
         if kind == "literal_error":
@@ -190,26 +133,28 @@ class Layout:
             return Fault(pointer_of(steps), detail, near and f"{_MEANT}'{near}'?")
         if kind == "union_tag_invalid":
             tag, discriminator = str(context["tag"]), str(context["discriminator"]).strip("'")
-            near = nearest(tag, self.tags.get(named, ()))
+            near = nearest(tag, self._layout.tags.get(named, ()))
             return Fault(pointer_of((*steps, discriminator)), detail, near and f"{_MEANT}'{near}'?")
         if kind == "union_tag_not_found":
-            return Fault(pointer_of(steps), detail, f"its values here: {', '.join(self.tags.get(named, ()))}")
-        if kind in _OBJECTS and named in self.tags:
+            return Fault(pointer_of(steps), detail, f"its values here: {', '.join(self._layout.tags.get(named, ()))}")
+        if kind in _OBJECTS and named in self._layout.tags:
             # A client that gives a name alone meant the kind.
-            return Fault(pointer_of(steps), detail, f'write {{"kind": ...}}, one of {", ".join(self.tags[named])}')
-        if kind in _OBJECTS and named in self.names:
-            return Fault(pointer_of(steps), detail, f"its keys: {', '.join(self.names[named])}")
-        if kind == "tuple_type" and named in self.lengths:
-            detail = f"{detail} of {self.lengths[named]} entries"
+            return Fault(
+                pointer_of(steps), detail, f'write {{"kind": ...}}, one of {", ".join(self._layout.tags[named])}'
+            )
+        if kind in _OBJECTS and named in self._layout.names:
+            return Fault(pointer_of(steps), detail, f"its keys: {', '.join(self._layout.names[named])}")
+        if kind == "tuple_type" and named in self._layout.lengths:
+            detail = f"{detail} of {self._layout.lengths[named]} entries"
         return Fault(pointer_of(steps), detail, _REMEDIES.get(kind))
 
     def _unknown(self, steps: tuple[Step, ...], owner: str, document: Callable[[], Any]) -> Fault:
-        key, names = str(steps[-1]), self.names.get(owner, ())
+        key, names = str(steps[-1]), self._layout.names.get(owner, ())
         if len(key) > LONGEST_KEY_SHOWN:
             return Fault(pointer_of(steps[:-1]), "has a key that is not known here", _known(names))
-        if len(steps) == 1 and key in self.elsewhere:
-            return Fault(pointer_of(steps), _NOT_KNOWN, self.elsewhere[key])
-        if len(steps) == 1 and self.of_free_rotation and plain(key) in FORCES:
+        if len(steps) == 1 and key in self._elsewhere:
+            return Fault(pointer_of(steps), _NOT_KNOWN, self._elsewhere[key])
+        if len(steps) == 1 and self._layout.of_free_rotation and plain(key) in FORCES:
             return Fault(pointer_of(steps), _NOT_FREE, _FREE_ONLY)
         if _SPAN.issuperset(names) and plain(key) in STEPS:
             span = _value_at(document(), steps[:-1])
@@ -219,7 +164,7 @@ class Layout:
         return Fault(pointer_of(steps), _NOT_KNOWN, f"{_MEANT}{near}?" if near else _known(names))
 
 
-def _known(names: Names) -> str | None:
+def _known(names: Iterable[str]) -> str | None:
     return f"{KNOWN}{', '.join(names)}" if names else None
 
 
@@ -253,69 +198,6 @@ def _value_at(document: Any, steps: Sequence[Step]) -> Any:
         else:
             return None
     return document
-
-
-class _Walk:
-    """Gathers a layout, field by field."""
-
-    def __init__(self, schema: Any) -> None:
-        self.tags: dict[str, dict[str, None]] = {}
-        self.names: dict[str, dict[str, None]] = {}
-        self.lengths: dict[str, int] = {}
-        self.units: dict[str, set[str]] = {}
-        self.maps: set[str] = set()
-        self._definitions: dict[str, Any] = {}
-        self._followed: set[tuple[str, str]] = set()
-        self._gather(schema)
-        self._walk(schema, "", "")
-
-    def _gather(self, node: Any) -> None:
-        if isinstance(node, Mapping):
-            if "ref" in node:
-                self._definitions[node["ref"]] = node
-            for value in node.values():
-                self._gather(value)
-        elif isinstance(node, (list, tuple)):
-            for value in node:
-                self._gather(value)
-
-    def _walk(self, node: Any, name: str, owner: str) -> None:
-        """Look at what a field holds that may have tags, as whose member, or an object that is known as `owner`."""
-        if isinstance(node, (list, tuple)):
-            for value in node:
-                self._walk(value, name, owner)
-        if not isinstance(node, Mapping):
-            return
-        kind = node.get("type")
-        if kind == "dict" and name:
-            self.maps.add(name)
-        if kind in ("float", "int"):
-            self.units.setdefault(owner, set()).add(node.get("metadata", {}).get("unit", "1"))
-        if kind == "definition-ref":
-            reference = node["schema_ref"]
-            if (reference, owner) not in self._followed and reference in self._definitions:
-                self._followed.add((reference, owner))
-                self._walk(self._definitions[reference], name, owner)
-        elif kind == "tagged-union":
-            self.tags.setdefault(name, {}).update(dict.fromkeys(node["choices"]))
-            for tag, member in node["choices"].items():
-                self._walk(member, "", tag)
-        elif kind == "model-fields":
-            for key, value in node["fields"].items():
-                self._field(key, value, owner)
-        elif kind == "dataclass-field":
-            self._field(node["name"], node["schema"], owner)
-        else:
-            if kind == "tuple" and name and "variadic_item_index" not in node:
-                self.lengths[name] = len(node["items_schema"])
-                name = ""
-            for key, value in node.items():
-                if key not in ("definitions", "metadata"):
-                    self._walk(value, name, owner)
-
-    def _field(self, name: str, schema: Any, owner: str) -> None:
-        self.names.setdefault(owner, {})[name] = None
-        self._walk(schema, name, name)
 
 
 def _lengths_once(found: Sequence[Any]) -> Iterator[Any]:

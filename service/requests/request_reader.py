@@ -21,7 +21,8 @@ from pydantic_core import SchemaValidator
 
 from service.problems import Refusal, headline
 from service.requests.document_limits import Limits, enforce_document_limits, require_distinct_keys
-from service.requests.error_messages import Layout
+from service.requests.error_messages import Wording
+from service.requests.layout import Layout
 from service.requests.npz_body import Arrays, taking_arrays, unpacked
 
 Q = TypeVar("Q")
@@ -51,7 +52,7 @@ class Reader(Generic[Q]):
         schema = _failing_fast(self._schema)
         # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
         self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
-        self._layout = Layout.of(schema, elsewhere or {})
+        self._wording = Wording(Layout(schema), elsewhere or {})
         self._limits = limits
         self._keeps_digits = hasattr(question, "with_digits")
 
@@ -99,7 +100,7 @@ class Reader(Generic[Q]):
         if found[0]["type"] == "json_invalid":
             # The parser's message gives line and column and quotes nothing.
             return Refusal("invalid-json", str(found[0]["ctx"]["error"]))
-        faults, codes = self._layout.faults(found, cache(partial(_parsed, document)))
+        faults, codes = self._wording.faults(found, cache(partial(_parsed, document)))
         code = codes.pop() if len(codes) == 1 else "invalid-parameter"
         return Refusal(code, headline(faults), faults=faults)
 

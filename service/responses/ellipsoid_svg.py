@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.responses.svg import COLOURS
+from service.responses.svg import COLOURS, heading, page
 
 Floats = NDArray[np.float64]
 
@@ -113,7 +113,7 @@ def ellipsoid_figure(answer: Mapping[str, Any]) -> bytes:
     colour = {regime: COLOURS[k % len(COLOURS)] for k, regime in enumerate(sorted(regimes))}
     colour["separatrix"] = "black"
     parts = [
-        f'<text x="30" y="30" font-weight="bold">Energy ellipsoid, E = {Decimal(answer["energy"]):.4g} J</text>',
+        heading(30, 30, f"Energy ellipsoid, E = {Decimal(answer['energy']):.4g} J"),
         *_axes(view, semi, away=True),
         _outline(view),
         *_graticule(view),
@@ -130,10 +130,7 @@ def ellipsoid_figure(answer: Mapping[str, Any]) -> bytes:
             f'<line x1="670" y1="{y - 4}" x2="694" y2="{y - 4}" stroke="{colour[regime]}" stroke-width="2.5"/>'
         )
         parts.append(f'<text x="702" y="{y}" fill="{colour[regime]}">{escape(label)}</text>')
-    return (
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1080 540" font-family="sans-serif" font-size="13">'
-        '<rect width="1080" height="540" fill="white"/>' + "".join(parts) + "</svg>\n"
-    ).encode()
+    return page(1080, 540, parts).encode()
 
 
 def _in_units(points: Any, unit: Decimal) -> Floats:

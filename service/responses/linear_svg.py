@@ -10,7 +10,7 @@ from math import ceil, floor, log10
 import numpy as np
 from numpy.typing import NDArray
 
-from service.responses.svg import COLOURS
+from service.responses.svg import COLOURS, Tick, framed, heading, page
 
 Floats = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ class Axis:
         found: Floats = self.start + self.length * (_divided(values, self.exponent) - self.low) / (self.high - self.low)
         return found
 
-    def ticks(self) -> Iterator[tuple[float, str]]:
+    def ticks(self) -> Iterator[Tick]:
         """Yield round values as places in pixels, with their labels."""
         width = self.high - self.low
         step = 10.0 ** floor(log10(width / 4))
@@ -100,14 +100,11 @@ class Axis:
 
 def panels(title: str, shown: Sequence[Panel]) -> str:
     """Return a figure of panels as an SVG document."""
-    parts, top = [f'<text x="{LEFT:g}" y="24" font-weight="bold">{escape(title)}</text>'], TOP
+    parts, top = [heading(LEFT, 24, title)], TOP
     for panel in shown:
         parts.extend(_drawn(panel, top))
         top += panel.height + GAP
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {PAGE:g} {top:g}" font-family="sans-serif" '
-        f'font-size="13"><rect width="{PAGE:g}" height="{top:g}" fill="white"/>' + "".join(parts) + "</svg>\n"
-    )
+    return page(PAGE, top, parts)
 
 
 def _drawn(panel: Panel, top: float) -> Iterator[str]:
@@ -115,18 +112,8 @@ def _drawn(panel: Panel, top: float) -> Iterator[str]:
     y = Axis.over(np.concatenate([line.y for line in panel.lines] or [np.zeros(0)]), top + panel.height, -panel.height)
     if panel.one_scale:
         x, y = _alike(x, y)
-    bottom = top + panel.height
-    for place, label in x.ticks():
-        yield f'<line x1="{place:.1f}" y1="{top:g}" x2="{place:.1f}" y2="{bottom:g}" stroke="#eee"/>'
-        yield f'<text x="{place:.1f}" y="{bottom + 18:g}" text-anchor="middle" fill="#555">{label}</text>'
-    for place, label in y.ticks():
-        yield f'<line x1="{LEFT:g}" y1="{place:.1f}" x2="{LEFT + WIDTH:g}" y2="{place:.1f}" stroke="#eee"/>'
-        yield f'<text x="{LEFT - 8:g}" y="{place:.1f}" dy="4" text-anchor="end" fill="#555">{label}</text>'
-    yield f'<rect x="{LEFT:g}" y="{top:g}" width="{WIDTH:g}" height="{panel.height:g}" fill="none" stroke="#999"/>'
-    yield f'<text x="{LEFT + WIDTH / 2:g}" y="{bottom + 38:g}" text-anchor="middle">{escape(panel.across)}</text>'
-    middle = top + panel.height / 2
-    turned = f'transform="rotate(-90 18 {middle:g})"'
-    yield f'<text x="18" y="{middle:g}" {turned} text-anchor="middle">{escape(panel.up)}</text>'
+    box = (LEFT, top, WIDTH, panel.height)
+    yield from framed(box, panel.across, panel.up, x.ticks(), y.ticks(), 38)
     for k, line in enumerate(panel.lines):
         colour = COLOURS[k % len(COLOURS)]
         every = slice(None, None, max(1, ceil(len(line.x) / MOST_POINTS)))

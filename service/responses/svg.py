@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from math import ceil, floor, log10
@@ -13,6 +13,9 @@ SVG = "image/svg+xml"
 COLOURS = ("#c1440e", "#1f4e8c", "#2a6f4e", "#7a1fa2", "#b8860b", "#008b8b", "#8b2252", "#555555")
 LEFT, TOP, WIDTH, HEIGHT = 70.0, 40.0, 560.0, 400.0
 MOST_TICKS = 9
+
+Tick = tuple[float, str]
+"""A place on an axis (pixels), and what is written there."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +68,14 @@ class Scale:
         return self.start + self.length * (exponent - self.low) / (self.high - self.low)
 
     @property
-    def ticks(self) -> range:
+    def exponents(self) -> range:
         """Exponents that are marked."""
         return range(self.low, self.high + 1, ceil((self.high - self.low + 1) / MOST_TICKS))
+
+    def ticks(self) -> Iterator[Tick]:
+        """Yield the powers of ten that are marked."""
+        for exponent in self.exponents:
+            yield self.at(exponent), f'10<tspan dy="-5" font-size="9">{exponent}</tspan>'
 
 
 def log_log(title: str, across: str, up: str, curves: Sequence[Curve], levels: Sequence[Level] = ()) -> str:
@@ -76,7 +84,8 @@ def log_log(title: str, across: str, up: str, curves: Sequence[Curve], levels: S
     points = [point for _, own in shown for point in own]
     x = Scale.over([px for px, _ in points], LEFT, WIDTH)
     y = Scale.over([py for _, py in points] + [level.value for level in levels], TOP + HEIGHT, -HEIGHT)
-    parts = [*_frame(title, across, up, x, y), *_levels(levels, y)]
+    box = (LEFT, TOP, WIDTH, HEIGHT)
+    parts = [heading(LEFT, 24, title), *framed(box, across, up, x.ticks(), y.ticks(), 42), *_levels(levels, y)]
     for curve, own in shown:
         if curve.emphasised and own:
             parts.append(_line(own, x, y, "#cccccc", 7.0))
@@ -88,30 +97,50 @@ def log_log(title: str, across: str, up: str, curves: Sequence[Curve], levels: S
         parts += [f'<circle cx="{x(px):.1f}" cy="{y(py):.1f}" r="3" fill="{colour}"/>' for px, py in own]
         height = TOP + 14 + 20 * k
         parts.append(f'<text x="{LEFT + WIDTH + 16:g}" y="{height:g}" fill="{colour}">{escape(curve.label)}</text>')
+    return page(840, 500, parts)
+
+
+def framed(
+    box: tuple[float, float, float, float], across: str, up: str, x: Iterable[Tick], y: Iterable[Tick], below: float
+) -> Iterator[str]:
+    """Yield a frame with its ticks and the names of its axes.
+
+    Parameters
+    ----------
+    box : tuple of 4 floats
+        Left, top, width and height (pixels).
+    across, up : str
+        Names.
+    x, y : iterable of (float, str)
+        Places (pixels) and labels; labels are SVG.
+    below : float
+        Distance of the lower name from the frame (pixels).
+    """
+    left, top, width, height = box
+    bottom, right, middle = top + height, left + width, top + height / 2
+    for place, label in x:
+        yield f'<line x1="{place:.1f}" y1="{top:g}" x2="{place:.1f}" y2="{bottom:g}" stroke="#eee"/>'
+        yield f'<text x="{place:.1f}" y="{bottom + 18:g}" text-anchor="middle" fill="#555">{label}</text>'
+    for place, label in y:
+        yield f'<line x1="{left:g}" y1="{place:.1f}" x2="{right:g}" y2="{place:.1f}" stroke="#eee"/>'
+        yield f'<text x="{left - 8:g}" y="{place:.1f}" dy="4" text-anchor="end" fill="#555">{label}</text>'
+    yield f'<rect x="{left:g}" y="{top:g}" width="{width:g}" height="{height:g}" fill="none" stroke="#999"/>'
+    yield f'<text x="{left + width / 2:g}" y="{bottom + below:g}" text-anchor="middle">{escape(across)}</text>'
+    turned = f'transform="rotate(-90 18 {middle:g})"'
+    yield f'<text x="18" y="{middle:g}" {turned} text-anchor="middle">{escape(up)}</text>'
+
+
+def page(width: float, height: float, parts: Iterable[str]) -> str:
+    """Return parts on a white page as an SVG document."""
     return (
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 840 500" font-family="sans-serif" font-size="13">'
-        '<rect width="840" height="500" fill="white"/>' + "".join(parts) + "</svg>\n"
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" font-family="sans-serif" '
+        f'font-size="13"><rect width="{width:g}" height="{height:g}" fill="white"/>{"".join(parts)}</svg>\n'
     )
 
 
-def _frame(title: str, across: str, up: str, x: Scale, y: Scale) -> list[str]:
-    bottom, right = TOP + HEIGHT, LEFT + WIDTH
-    parts = [f'<text x="{LEFT:g}" y="24" font-weight="bold">{escape(title)}</text>']
-    for exponent in x.ticks:
-        at = f"{x.at(exponent):.1f}"
-        parts.append(f'<line x1="{at}" y1="{TOP:g}" x2="{at}" y2="{bottom:g}" stroke="#eee"/>')
-        parts.append(f'<text x="{at}" y="{bottom + 18:g}" text-anchor="middle" fill="#555">{_power(exponent)}</text>')
-    for exponent in y.ticks:
-        at = f"{y.at(exponent):.1f}"
-        parts.append(f'<line x1="{LEFT:g}" y1="{at}" x2="{right:g}" y2="{at}" stroke="#eee"/>')
-        parts.append(f'<text x="{LEFT - 8:g}" y="{at}" dy="4" text-anchor="end" fill="#555">{_power(exponent)}</text>')
-    parts.append(f'<rect x="{LEFT:g}" y="{TOP:g}" width="{WIDTH:g}" height="{HEIGHT:g}" fill="none" stroke="#999"/>')
-    parts.append(f'<text x="{LEFT + WIDTH / 2:g}" y="{bottom + 42:g}" text-anchor="middle">{escape(across)}</text>')
-    middle = TOP + HEIGHT / 2
-    parts.append(
-        f'<text x="18" y="{middle:g}" transform="rotate(-90 18 {middle:g})" text-anchor="middle">{escape(up)}</text>'
-    )
-    return parts
+def heading(left: float, top: float, title: str) -> str:
+    """Return the title of a figure."""
+    return f'<text x="{left:g}" y="{top:g}" font-weight="bold">{escape(title)}</text>'
 
 
 def _levels(levels: Sequence[Level], y: Scale) -> list[str]:
@@ -131,7 +160,3 @@ def _line(points: Sequence[tuple[float, float]], x: Scale, y: Scale, colour: str
     return (
         f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linejoin="round"/>'
     )
-
-
-def _power(exponent: int) -> str:
-    return f'10<tspan dy="-5" font-size="9">{exponent}</tspan>'

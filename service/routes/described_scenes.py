@@ -22,7 +22,7 @@ from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
 from service.routes.described_answer import DescribedAccuracy, DescribedSceneAnswer, SceneColumn
-from service.routes.described_figure import drawn
+from service.routes.motion_figures import draw_described
 from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routes.scene_catalogue import scene_catalogue
 from service.routing import Answer, PlanningProbe, PostRoute
@@ -294,7 +294,7 @@ DESCRIBED_SCENES = (
         # A heavy body about a point has kernels of its own, one of them for its start alone.
         warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}),
         description=DESCRIPTION,
-        representations={SVG: drawn},
+        representations={SVG: draw_described},
     ),
 )
 

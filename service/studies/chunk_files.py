@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -60,21 +61,29 @@ def unpacked(data: bytes) -> Chunk:
 
 
 class ChunkFiles:
-    """The files below a URL of fsspec, or a path."""
+    """The files below a URL of fsspec, or a path.
+
+    Raises
+    ------
+    OSError
+        By every method, where the storage cannot be used; its libraries have errors of their own.
+    """
 
     def __init__(self, url: str) -> None:
         from fsspec.core import url_to_fs
         from fsspec.implementations.local import LocalFileSystem
 
-        self._files, self._root = url_to_fs(url)
+        with _storage_errors():
+            self._files, self._root = url_to_fs(url)
         # Object stores write whole objects and know no folders.
         self._in_folder = isinstance(self._files, LocalFileSystem)
 
     def write(self, study: str, start: int, stop: int, data: bytes) -> None:
-        """Write a file; it is there as a whole or not at all. Raises `OSError`."""
+        """Write a file; it is there as a whole or not at all."""
         path = self._path(study, start, stop)
         if not self._in_folder:
-            self._files.pipe_file(path, data)
+            with _storage_errors():
+                self._files.pipe_file(path, data)
             return
         self._files.makedirs(self._folder(study), exist_ok=True)
         part = path + ".part"
@@ -95,7 +104,8 @@ class ChunkFiles:
             If the file is missing or damaged.
         """
         try:
-            data = self._files.cat_file(self._path(study, start, stop))
+            with _storage_errors():
+                data = self._files.cat_file(self._path(study, start, stop))
         except FileNotFoundError:
             raise CorruptedChunk("the file is missing") from None
         found = unpacked(data)
@@ -106,11 +116,23 @@ class ChunkFiles:
     def remove(self, study: str) -> None:
         """Remove every file of a study."""
         folder = self._folder(study)
-        if self._files.exists(folder):
-            self._files.rm(folder, recursive=True)
+        with _storage_errors():
+            if self._files.exists(folder):
+                self._files.rm(folder, recursive=True)
 
     def _folder(self, study: str) -> str:
         return f"{self._root}/{study}"
 
     def _path(self, study: str, start: int, stop: int) -> str:
         return f"{self._folder(study)}/{start}-{stop}.npz"
+
+
+@contextmanager
+def _storage_errors() -> Iterator[None]:
+    """Raise the errors of whatever library the storage has as `OSError`."""
+    try:
+        yield
+    except OSError:
+        raise
+    except Exception as fault:
+        raise OSError(str(fault)) from fault

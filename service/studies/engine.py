@@ -13,6 +13,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
@@ -21,14 +22,17 @@ from typing import Any
 from service.execution.worker import Terms
 from service.observability.logs import LOG
 from service.problems import Refusal
-from service.studies.chunk_files import ChunkFiles, CorruptedChunk
+from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
 from service.studies.cluster import Cluster
 from service.studies.store import FAILED, Store, Study
 from service.studies.summary import summary
 from service.studies.task import Computed, compute, end_process, without_answer
 
 CHUNK_SECONDS = 0.5
-"""Processor time that a stretch should take, and time after which it begins no further member."""
+"""Processor time that a stretch should take, unless many processes have to be supplied."""
+
+SUPPLY_SECONDS = 0.025
+"""Time in which the engine hands out a stretch and stores another, at most half of the time of a process."""
 
 LEAST_SECONDS = 0.05
 """Processor time below which a stretch is not divided among processes."""
@@ -50,6 +54,9 @@ TURN = 0.1
 
 GATHERING = 60.0
 """Seconds in which a result must have travelled."""
+
+ENDING = 10.0
+"""Seconds in which a process that is ended must have gone."""
 
 PAUSE = 2.0
 """Seconds after which something is tried again that failed for reasons outside of the study."""
@@ -74,11 +81,16 @@ class Work:
         How many processes the study has ended.
     each : float
         Processor time of a member (s), as predicted and then as measured.
+    request : bytes
+    finishing : Future or None
+        Of the damaged stretches, or the statistics where there are none.
     """
 
     study: Study
     missing: deque[Stretch]
     each: float
+    request: bytes
+    finishing: Future[tuple[list[Stretch], Any]] | None = None
     in_flight: dict[Any, tuple[Stretch, float]] = field(default_factory=dict)
     suspects: deque[Stretch] = field(default_factory=deque)
     deaths: dict[Stretch, int] = field(default_factory=dict)
@@ -90,10 +102,10 @@ class Work:
         return not (self.missing or self.suspects or self.in_flight)
 
     def next_stretch(self, processes: int) -> Stretch:
-        """Take a stretch of about `CHUNK_SECONDS`, less where otherwise some processes would have none."""
+        """Take a stretch of about `stretch_seconds`, less where otherwise some processes would have none."""
         start, stop = self.missing.popleft()
         share = max(-(-(stop - start) // processes), int(LEAST_SECONDS / self.each))
-        size = max(1, min(LARGEST_CHUNK, int(CHUNK_SECONDS / self.each), share))
+        size = max(1, min(LARGEST_CHUNK, int(stretch_seconds(processes) / self.each), share))
         if start + size < stop:
             self.missing.appendleft((start + size, stop))
         return start, min(stop, start + size)
@@ -108,6 +120,7 @@ class Engine:
         self._done: SimpleQueue[Any] = SimpleQueue()
         self._processes, self._counted = 0, 0.0
         self._alone = False
+        self._aside = ThreadPoolExecutor(1, "statistics")
 
     def turn(self) -> bool:
         """Do what there is to do now, waiting a moment for results; return whether studies are unfinished."""
@@ -132,6 +145,7 @@ class Engine:
     def stop(self) -> None:
         """Leave everything as it is stored."""
         self._works.clear()
+        self._aside.shutdown(wait=False, cancel_futures=True)
         self._cluster.close()
 
     def _follow(self) -> None:
@@ -140,12 +154,17 @@ class Engine:
         for identity in [*self._works]:
             if identity not in unfinished:
                 self._let_go(self._works.pop(identity))
-                self._files.remove(identity)
+                try:
+                    self._files.remove(identity)
+                except OSError as fault:
+                    # They go when the study is removed.
+                    LOG.error("results cannot be removed", extra={"study": identity, "reason": str(fault)})
         for identity, study in unfinished.items():
             if identity not in self._works:
                 stored = self._store.chunks(identity)
                 each = max(study.plan["seconds"] / study.count, FASTEST)
-                self._works[identity] = Work(study, deque(_gaps(stored, study.count)), each)
+                missing = deque(_gaps(stored, study.count))
+                self._works[identity] = Work(study, missing, each, self._store.request(identity))
                 self._store.begin(identity)
                 LOG.info("a study is worked on", extra={"study": identity, "members": study.count, "done": study.done})
 
@@ -157,9 +176,18 @@ class Engine:
             long = work.each > CHUNK_SECONDS
             busy = _processes_with({future.key for future in futures}, client) if long else []
             client.cancel(futures, force=True)
-            if busy:
-                client.run(end_process, workers=busy, wait=False, on_error="ignore")
+            self._end_processes(busy)
         work.in_flight.clear()
+
+    def _end_processes(self, addresses: list[str]) -> None:
+        """End processes and wait until they are gone: what they would be given meanwhile would go with them."""
+        if not addresses:
+            return
+        client = self._cluster.client
+        client.run(end_process, workers=addresses, wait=False, on_error="ignore")
+        until = time.monotonic() + ENDING
+        while set(addresses) & set(client.nthreads()) and time.monotonic() < until:
+            time.sleep(0.02)
 
     def _hand_over(self) -> None:
         client = self._cluster.open()
@@ -185,9 +213,9 @@ class Engine:
             self._submit(work, work.next_stretch(self._processes))
 
     def _submit(self, work: Work, stretch: Stretch) -> None:
-        future = self._cluster.client.submit(
-            compute, self._terms, work.study.request, *stretch, CHUNK_SECONDS, pure=False
-        )
+        # A process that others hold up comes back in time nevertheless.
+        longest = 2.0 * stretch_seconds(self._processes)
+        future = self._cluster.client.submit(compute, self._terms, work.request, *stretch, longest, pure=False)
         work.in_flight[future] = stretch, time.monotonic()
         future.add_done_callback(self._done.put)
 
@@ -237,7 +265,7 @@ class Engine:
             work.deaths[stretch] = deaths
             work.suspects.append(stretch)
         else:
-            self._keep(work, stretch, without_answer(self._terms, work.study.request, start, code))
+            self._keep(work, stretch, without_answer(self._terms, work.request, start, code))
 
     def _fail(self, work: Work, message: str) -> None:
         LOG.error("a study has failed", extra={"study": work.study.id, "reason": message})
@@ -276,22 +304,47 @@ class Engine:
                     continue
                 del work.in_flight[future]
                 client.cancel([future], force=True)
-                client.run(end_process, workers=busy, wait=False, on_error="ignore")
+                self._end_processes(busy)
                 self._after_death(work, stretch, "deadline-exceeded")
 
     def _finish(self, work: Work) -> None:
-        """Form the statistics; stretches whose files are damaged are computed again."""
-        study, chunks = work.study, []
-        for start, stop in self._store.chunks(study.id):
-            try:
-                chunks.append(self._files.read(study.id, start, stop))
-            except CorruptedChunk as fault:
-                LOG.error("results are damaged and computed again", extra={"study": study.id, "fault": str(fault)})
-                self._store.drop_chunk(study.id, start)
-                work.missing.append((start, stop))
-        if not work.missing:
-            self._store.finish(study.id, summary(study, chunks))
+        """Have the statistics formed, beside what other studies compute; damaged stretches are computed again."""
+        study = work.study
+        if work.finishing is None:
+            work.finishing = self._aside.submit(self._statistics, work)
+            work.finishing.add_done_callback(lambda _: self._done.put(None))
+            return
+        if not work.finishing.done():
+            return
+        finished, work.finishing = work.finishing, None
+        try:
+            damaged, statistics = finished.result()
+        except Exception as fault:
+            self._say(f"results cannot be read, which is tried again: {fault}")
+            time.sleep(PAUSE)
+            return
+        for stretch in damaged:
+            self._store.drop_chunk(study.id, stretch[0])
+            work.missing.append(stretch)
+        if not damaged:
+            self._store.finish(study.id, statistics)
             del self._works[study.id]
+
+    def _statistics(self, work: Work) -> tuple[list[Stretch], Any]:
+        """Return the stretches whose files are damaged, and the statistics if there are none."""
+        stored, damaged = self._store.chunks(work.study.id), []
+
+        def chunks() -> Iterator[Chunk]:
+            for stretch in stored:
+                try:
+                    yield self._files.read(work.study.id, *stretch)
+                except CorruptedChunk as fault:
+                    extra = {"study": work.study.id, "fault": str(fault)}
+                    LOG.error("results are damaged and computed again", extra=extra)
+                    damaged.append(stretch)
+
+        found = summary(work.study, work.request, chunks)
+        return [*dict.fromkeys(damaged)], found
 
     def _say(self, message: str) -> None:
         LOG.error(message)
@@ -299,6 +352,11 @@ class Engine:
             # On a full disk there may be no room for it.
             with suppress(Refusal):
                 self._store.note(work.study.id, message)
+
+
+def stretch_seconds(processes: int) -> float:
+    """Return the processor time that a stretch should take (s), for that many processes."""
+    return max(CHUNK_SECONDS, SUPPLY_SECONDS * processes)
 
 
 def _gaps(stored: list[Stretch], count: int) -> Iterator[Stretch]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from datetime import UTC, datetime
 from typing import Any
 from urllib.parse import parse_qs
@@ -16,7 +16,7 @@ from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
 from service.http.limits import negotiated
 from service.http.request_context import RequestContext
-from service.problems import Fault, Refusal, headline
+from service.problems import MOST_FAULTS, Fault, Refusal, headline
 from service.responses import npz as archive
 from service.responses.svg import SVG
 from service.routes.studies import PATH
@@ -36,6 +36,13 @@ MOST_LISTED = 200
 PAGE = 1000
 LONGEST_PAGE = 10_000
 """Members of a page of results, unless asked for otherwise, and at most."""
+
+WORDS_OF_PAGE = ("start", "count")
+"""What a page of results may be chosen by."""
+
+LONGEST_WORD = 40
+"""Characters of an unknown name that are repeated."""
+
 
 EVENTS_EVERY = 0.25
 """Seconds between two looks at a study that is watched."""
@@ -119,6 +126,8 @@ class Studies:
         if seconds > limit:
             remedy = "take fewer members, or several studies"
             raise BudgetExceeded("seconds", round(seconds), round(limit), path=("vary",), remedy=remedy)
+        # What has no place for its results is refused at once.
+        await self._in_thread(self._supervisor.files)
         if context.key is not None:
             context.key.work(seconds)
         try:
@@ -181,7 +190,7 @@ class Studies:
                     grids.MEDIA_TYPE: lambda: grids.grid(found, self._store.folder / "scratch"),
                     SVG: lambda: figure(found),
                 }[media]()
-                await context.stream_made_elsewhere(pieces, media.encode(), self._settings.stalled_seconds)
+                await context.stream_made_elsewhere(_stored(pieces), media.encode(), self._settings.stalled_seconds)
         except ImportError as missing:
             detail = f"this service is installed without {missing.name}, which writes {media}"
             raise Refusal("not-acceptable", detail) from None
@@ -191,7 +200,11 @@ class Studies:
             raise Refusal("results-not-ready", detail, retry_after=2.0) from None
 
     async def _page(self, context: RequestContext, study: Study, found: Results) -> None:
-        query = parse_qs(context.scope.get("query_string", b"").decode("latin-1"))
+        query = parse_qs(context.scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True)
+        faults = [Fault(f"?{name[:LONGEST_WORD]}", "is not known here") for name in query if name not in WORDS_OF_PAGE]
+        faults += [Fault(f"?{name}", "must be given once") for name in WORDS_OF_PAGE if len(query.get(name, ())) > 1]
+        if faults:
+            raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
         start = _whole(query, "start", 0, study.count - 1, 0)
         size = _whole(query, "count", 1, LONGEST_PAGE, PAGE)
         stop = min(study.count, start + size)
@@ -253,6 +266,14 @@ class Studies:
         self, context: RequestContext, document: Any, status: int = 200, headers: tuple[tuple[bytes, bytes], ...] = ()
     ) -> None:
         await context.document(orjson.dumps(document), status, headers)
+
+
+def _stored(pieces: Iterator[bytes]) -> Iterator[bytes]:
+    """Yield what is made of stored results, or raise that they cannot be read now."""
+    try:
+        yield from pieces
+    except OSError as fault:
+        raise storage_unavailable(fault) from fault
 
 
 def state_of(study: Study) -> dict[str, Any]:

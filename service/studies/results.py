@@ -28,7 +28,7 @@ class Results:
     def __init__(self, study: Study, store: Store, files: ChunkFiles) -> None:
         self.study, self._store, self._files = study, store, files
         self._stretches = store.chunks(study.id)
-        self.request = json.loads(study.request)
+        self.request = json.loads(store.request(study.id))
 
     def chunks(self, start: int = 0, stop: int | None = None) -> Iterator[Chunk]:
         """Yield the results of some members, in member order.

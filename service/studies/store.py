@@ -6,7 +6,9 @@ members whose results are stored.
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import secrets
 import sqlite3
 import time
@@ -32,7 +34,8 @@ PATIENCE = 5.0
 _TABLES = """
 CREATE TABLE IF NOT EXISTS studies (
     id TEXT PRIMARY KEY, owner TEXT NOT NULL, request BLOB NOT NULL, plan TEXT NOT NULL, status TEXT NOT NULL,
-    message TEXT NOT NULL, created REAL NOT NULL, started REAL, finished REAL, statistics TEXT
+    message TEXT NOT NULL, created REAL NOT NULL, started REAL, finished REAL, statistics TEXT,
+    done INTEGER NOT NULL DEFAULT 0, failed INTEGER NOT NULL DEFAULT 0, seconds REAL NOT NULL DEFAULT 0.0
 );
 CREATE TABLE IF NOT EXISTS chunks (
     study TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL, failed INTEGER NOT NULL,
@@ -50,8 +53,6 @@ class Study:
     ----------
     id, owner : str
         The owner is the name of a key, empty where none are required.
-    request : bytes
-        As it was sent.
     plan : mapping
         What was answered at its submission.
     status, message : str
@@ -65,7 +66,6 @@ class Study:
 
     id: str
     owner: str
-    request: bytes
     plan: Mapping[str, Any]
     status: str
     message: str
@@ -87,11 +87,7 @@ class Study:
         return self.status in UNFINISHED
 
 
-_STUDY = """SELECT id, owner, request, plan, status, message, created, started, finished,
-    COALESCE((SELECT SUM(stop - start) FROM chunks WHERE study = id), 0),
-    COALESCE((SELECT SUM(failed) FROM chunks WHERE study = id), 0),
-    COALESCE((SELECT SUM(seconds) FROM chunks WHERE study = id), 0.0)
-    FROM studies """
+_STUDY = """SELECT id, owner, plan, status, message, created, started, finished, done, failed, seconds FROM studies """
 
 
 class Store:
@@ -133,11 +129,17 @@ class Store:
                 yield self._connection
             except (OSError, sqlite3.Error) as fault:
                 self._drop()
-                raise storage_unavailable(fault) from fault
+                raise storage_unavailable(self._reason(fault)) from fault
             except BaseException:
                 # Nothing is left half written.
                 self._drop()
                 raise
+
+    def _reason(self, fault: Exception) -> Exception:
+        # SQLite says of every folder that it cannot write to that a file cannot be opened.
+        if self.folder.is_dir() and not os.access(self.folder, os.W_OK):
+            return PermissionError(errno.EROFS, "it cannot be written to")
+        return fault
 
     def _opened(self) -> sqlite3.Connection:
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -173,7 +175,8 @@ class Store:
                 detail = f"{open_} studies are unfinished already, the limit max_studies"
                 raise Refusal("too-busy", detail, retry_after=10.0)
             connection.execute(
-                "INSERT INTO studies VALUES (?, ?, ?, ?, ?, '', ?, NULL, NULL, NULL)",
+                "INSERT INTO studies (id, owner, request, plan, status, message, created)"
+                " VALUES (?, ?, ?, ?, ?, '', ?)",
                 (identity, owner, request, json.dumps(plan), ACCEPTED, time.time()),
             )
             connection.execute("COMMIT")
@@ -187,6 +190,12 @@ class Store:
             row = connection.execute(_STUDY + "WHERE id = ?", (identity,)).fetchone()
         found = None if row is None else _study(row)
         return found if found is not None and owner in (None, found.owner) else None
+
+    def request(self, identity: str) -> bytes:
+        """Return the request of a study as it was sent, which may have megabytes."""
+        with self._connected() as connection:
+            row = connection.execute("SELECT request FROM studies WHERE id = ?", (identity,)).fetchone()
+        return b"" if row is None else bytes(row[0])
 
     def listed(self, owner: str, limit: int) -> list[Study]:
         """Return an owner's studies, the latest first."""
@@ -214,16 +223,34 @@ class Store:
 
     def add_chunk(self, identity: str, start: int, stop: int, failed: int, seconds: float) -> None:
         """Record that the results of a stretch are stored; what hindered the study no longer does."""
-        self._write("INSERT OR REPLACE INTO chunks VALUES (?, ?, ?, ?, ?)", (identity, start, stop, failed, seconds))
-        self._write("UPDATE studies SET message = '' WHERE id = ? AND message != '' AND finished IS NULL", (identity,))
+        with self._connected() as connection:
+            connection.execute("BEGIN IMMEDIATE")
+            connection.execute("INSERT INTO chunks VALUES (?, ?, ?, ?, ?)", (identity, start, stop, failed, seconds))
+            connection.execute(
+                "UPDATE studies SET done = done + ?, failed = failed + ?, seconds = seconds + ?,"
+                " message = CASE WHEN finished IS NULL THEN '' ELSE message END WHERE id = ?",
+                (stop - start, failed, seconds, identity),
+            )
+            connection.execute("COMMIT")
 
     def drop_chunk(self, identity: str, start: int) -> None:
         """Record that the results of a stretch cannot be read; a study that was finished goes on."""
-        self._write("DELETE FROM chunks WHERE study = ? AND start = ?", (identity, start))
-        self._write(
-            "UPDATE studies SET status = ?, finished = NULL, statistics = NULL WHERE id = ? AND status = ?",
-            (RUNNING, identity, SUCCESSFUL),
-        )
+        with self._connected() as connection:
+            connection.execute("BEGIN IMMEDIATE")
+            gone = connection.execute(
+                "DELETE FROM chunks WHERE study = ? AND start = ? RETURNING stop - start, failed, seconds",
+                (identity, start),
+            ).fetchall()
+            for counted in gone:
+                connection.execute(
+                    "UPDATE studies SET done = done - ?, failed = failed - ?, seconds = seconds - ? WHERE id = ?",
+                    (*counted, identity),
+                )
+            connection.execute(
+                "UPDATE studies SET status = ?, finished = NULL, statistics = NULL WHERE id = ? AND status = ?",
+                (RUNNING, identity, SUCCESSFUL),
+            )
+            connection.execute("COMMIT")
 
     def begin(self, identity: str) -> None:
         """Record that a study is being worked on."""
@@ -267,8 +294,8 @@ class Store:
 
 
 def _study(row: tuple[Any, ...]) -> Study:
-    identity, owner, request, plan, *rest = row
-    return Study(identity, owner, request, json.loads(plan), *rest)
+    identity, owner, plan, *rest = row
+    return Study(identity, owner, json.loads(plan), *rest)
 
 
 def storage_unavailable(fault: Exception) -> Refusal:

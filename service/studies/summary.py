@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,32 +13,51 @@ from core.studies.statistics import ColumnStatistics, column_statistics, failure
 from service.studies.chunk_files import Chunk
 from service.studies.store import Study
 
+LARGEST_COLUMNS = 2**25
+"""Numbers that are held at once, of as many figures; for the others the results are read again."""
 
-def summary(study: Study, chunks: Sequence[Chunk]) -> dict[str, Any]:
-    """Return the statistics that a study's request names, as they are written."""
-    request = json.loads(study.request)
+
+def summary(study: Study, sent: bytes, chunks: Callable[[], Iterator[Chunk]]) -> dict[str, Any]:
+    """Return the statistics that a study's request names, as they are written.
+
+    Parameters
+    ----------
+    study : Study
+    sent : bytes
+        Its request.
+    chunks : callable
+        Yields the results in member order, each time that it is called.
+    """
+    request = json.loads(sent)
     settings = {name: request[name] for name in ("probabilities", "bins") if name in request}
     wanted = request.get("statistics")
-    figures = {}
-    for k, figure in enumerate(study.plan["figures"]):
-        column = np.concatenate([chunk.figures[:, k] for chunk in chunks])
-        found = column_statistics(column, **({} if wanted is None else {"wanted": wanted}), **settings)
-        figures[figure["pointer"]] = {"unit": figure["unit"], **_written(found)}
-    answer: dict[str, Any] = {"figures": figures}
+    if wanted is not None:
+        settings["wanted"] = wanted
+    named, found = study.plan["figures"], {}
+    failures, warnings = Counter[str](), Counter[str]()
+    together = max(1, LARGEST_COLUMNS // study.count)
+    for first in range(0, len(named), together):
+        columns = np.full((len(named[first : first + together]), study.count), np.nan)
+        for chunk in chunks():
+            columns[:, chunk.start : chunk.stop] = chunk.figures[:, first : first + together].T
+            if first == 0:
+                failures.update(_counted(chunk.failures, chunk.failure_names))
+                warnings.update(_counted(chunk.warnings, chunk.warning_names))
+        for figure, column in zip(named[first : first + together], columns, strict=True):
+            found[figure["pointer"]] = {"unit": figure["unit"], **_written(column_statistics(column, **settings))}
+    answer: dict[str, Any] = {"figures": found}
     if wanted is None or "failures" in wanted:
-        answer["failures"] = _counted((chunk.failures, chunk.failure_names) for chunk in chunks)
-        answer["warnings"] = _counted((chunk.warnings, chunk.warning_names) for chunk in chunks)
+        answer["failures"], answer["warnings"] = dict(sorted(failures.items())), dict(sorted(warnings.items()))
     return answer
 
 
-def _counted(labels: Any) -> Mapping[str, int]:
-    total = Counter[str]()
-    for codes, names in labels:
-        for joined, count in failure_counts(codes, names).items():
-            # An answer may have several warnings.
-            for name in joined.split(","):
-                total[name] += count
-    return dict(sorted(total.items()))
+def _counted(codes: np.ndarray[Any, Any], names: tuple[str, ...]) -> Mapping[str, int]:
+    counted = Counter[str]()
+    for joined, count in failure_counts(codes, names).items():
+        # An answer may have several warnings.
+        for name in joined.split(","):
+            counted[name] += count
+    return counted
 
 
 def _written(found: ColumnStatistics) -> dict[str, Any]:

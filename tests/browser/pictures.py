@@ -21,6 +21,7 @@ PICTURES = {
     "page-phone": ("/#body=racket", 390, 844, "light", 300),
     "scenes-desktop": ("/scenes#scene=spool", 1280, 860, "light", 330),
     "scenes-phone": ("/scenes#scene=lagrange-top", 390, 844, "dark", 330),
+    "studies-desktop": ("/studies", 1280, 860, "light", None),
     "docs-desktop": ("/docs#/rotation/rotation_trajectory", 1280, 860, "light", None),
 }
 """By name: path, width, height, colours, thousandths of the time shown."""
@@ -36,6 +37,11 @@ def take(base: str, folder: Path) -> None:
             page.goto(base + path)
             page.wait_for_selector("body[data-ready]", timeout=60_000)
             page.wait_for_timeout(1_000)
+            if path == "/studies":
+                page.locator("#start").click()
+                page.get_by_text("successful").wait_for()
+                page.locator("#list button").first.click()
+                page.locator("#map").wait_for()
             if time is not None:
                 page.locator("#player input").fill(str(time))
                 page.locator("#player input").blur()

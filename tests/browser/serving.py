@@ -6,6 +6,7 @@ import os
 import shutil
 import socket
 import subprocess
+import tempfile
 import time
 import urllib.error
 import urllib.request
@@ -36,8 +37,8 @@ def serving() -> Iterator[str]:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     url = f"http://127.0.0.1:{port}"
-    process = subprocess.Popen([ROOT / ".venv/bin/python", "-m", "service", "--port", str(port)], cwd=ROOT)
-    try:
+    command: list[object] = [ROOT / ".venv/bin/python", "-m", "service", "--port", str(port)]
+    with tempfile.TemporaryDirectory() as data, _running(command, os.environ | {"POLHODE_DATA": data}) as process:
         while True:
             try:
                 urllib.request.urlopen(f"{url}/readyz")
@@ -47,6 +48,13 @@ def serving() -> Iterator[str]:
                     raise RuntimeError("the service has ended before it was ready") from None
                 time.sleep(0.5)
         yield url
+
+
+@contextmanager
+def _running(command: list[object], environment: dict[str, str]) -> Iterator[subprocess.Popen[bytes]]:
+    process = subprocess.Popen([str(part) for part in command], cwd=ROOT, env=environment)
+    try:
+        yield process
     finally:
         process.terminate()
         process.wait(20)

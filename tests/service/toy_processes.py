@@ -9,8 +9,7 @@ import socket
 import time
 from pathlib import Path
 
-from service.execution.messages import LENGTH
-from service.execution.worker_pool import BEGUN
+from service.execution.messages import BEGUN, LENGTH
 
 
 def framed(message: bytes) -> bytes:

@@ -1326,23 +1326,6 @@ class ChainSamples(TypedDict):
     apex_tension: NotRequired[Floats | None]
 
 
-class SceneCatalogue(TypedDict):
-    """The catalogue of scenes."""
-
-    signature: Signature
-    scenes: list[SceneEntry]
-
-
-class SceneEntry(TypedDict):
-    """One scene of the catalogue."""
-
-    name: str
-    path: str
-    summary: str
-    outputs: list[str]
-    example: dict[str, Any]
-
-
 class DescribedSceneRequest(TypedDict):
     """Bodies, what connects them, and what is requested of them."""
 
@@ -1599,6 +1582,23 @@ class DescribedAccuracy(TypedDict):
     inherited: float | None
     horizon: float | None
     why: str | None
+
+
+class SceneCatalogue(TypedDict):
+    """The catalogue of scenes."""
+
+    signature: Signature
+    scenes: list[SceneEntry]
+
+
+class SceneEntry(TypedDict):
+    """One scene of the catalogue."""
+
+    name: str
+    path: str
+    summary: str
+    outputs: list[str]
+    example: dict[str, Any]
 
 
 class CertifiedTrajectoryRequest(TypedDict):
@@ -2528,16 +2528,40 @@ class VariantFigure(TypedDict):
     condition: float | None
 
 
-class StudyList(TypedDict):
-    """The studies of a client, the latest first."""
+class StudyRequest(TypedDict):
+    """One question with varied inputs, and the figures of its answers that are wanted."""
+
+    question: EndpointRequest
+    vary: Sequence[StudyInput]
+    design: NotRequired[Literal["product", "zip", "sobol", "random"]]
+    count: NotRequired[int | None]
+    seed: NotRequired[int]
+    quantities: Sequence[str]
+    statistics: NotRequired[Sequence[Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]]]
+    probabilities: NotRequired[Numbers]
+    bins: NotRequired[int]
+
+
+class StudyInput(TypedDict):
+    """An input that varies: a range from `min` to `max`, `values`, or a normal distribution."""
+
+    min: NotRequired[float | None]
+    max: NotRequired[float | None]
+    distribution: NotRequired[Literal["uniform", "log-uniform", "normal"]]
+    step: NotRequired[float | None]
+    digits: NotRequired[int | None]
+    values: NotRequired[Sequence[float | str | bool | Mapping[str, Any] | Numbers] | None]
+    also: NotRequired[Sequence[str]]
+    pointer: NotRequired[str]
+    mean: NotRequired[float | None]
+    deviation: NotRequired[float | None]
+    count: NotRequired[int | None]
+
+
+class StudyState(TypedDict):
+    """The state of one study."""
 
     signature: Signature
-    studies: list[StudyStatus]
-
-
-class StudyStatus(TypedDict):
-    """The state of a study, in the shape of OGC API Processes' statusInfo."""
-
     jobID: str
     type: Literal["process"]
     processID: Literal["study"]
@@ -2585,40 +2609,16 @@ class Link(TypedDict):
     type: str
 
 
-class StudyRequest(TypedDict):
-    """One question with varied inputs, and the figures of its answers that are wanted."""
-
-    question: EndpointRequest
-    vary: Sequence[StudyInput]
-    design: NotRequired[Literal["product", "zip", "sobol", "random"]]
-    count: NotRequired[int | None]
-    seed: NotRequired[int]
-    quantities: Sequence[str]
-    statistics: NotRequired[Sequence[Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]]]
-    probabilities: NotRequired[Numbers]
-    bins: NotRequired[int]
-
-
-class StudyInput(TypedDict):
-    """An input that varies: a range from `min` to `max`, `values`, or a normal distribution."""
-
-    min: NotRequired[float | None]
-    max: NotRequired[float | None]
-    distribution: NotRequired[Literal["uniform", "log-uniform", "normal"]]
-    step: NotRequired[float | None]
-    digits: NotRequired[int | None]
-    values: NotRequired[Sequence[float | str | bool | Mapping[str, Any] | Numbers] | None]
-    also: NotRequired[Sequence[str]]
-    pointer: NotRequired[str]
-    mean: NotRequired[float | None]
-    deviation: NotRequired[float | None]
-    count: NotRequired[int | None]
-
-
-class StudyState(TypedDict):
-    """The state of one study."""
+class StudyList(TypedDict):
+    """The studies of a client, the latest first."""
 
     signature: Signature
+    studies: list[StudyStatus]
+
+
+class StudyStatus(TypedDict):
+    """The state of a study, in the shape of OGC API Processes' statusInfo."""
+
     jobID: str
     type: Literal["process"]
     processID: Literal["study"]

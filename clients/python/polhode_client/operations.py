@@ -76,13 +76,13 @@ OPERATIONS: Mapping[str, Operation] = {
         "/v1/scenes/chain-on-wedge",
         "An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end",
     ),
-    "list_scenes": Operation(
-        "GET", "/v1/scenes", "Every named scene and what it answers, and examples of described ones"
-    ),
     "described_scene": Operation(
         "POST",
         "/v1/scenes",
         "A scene of your own: bodies and what connects them, answered by the smallest model that suffices",
+    ),
+    "list_scenes": Operation(
+        "GET", "/v1/scenes", "Every named scene and what it answers, and examples of described ones"
     ),
     "certified_rotation_trajectory": Operation(
         "POST",
@@ -137,10 +137,10 @@ OPERATIONS: Mapping[str, Operation] = {
         "/v1/variants",
         "Well-conditioned variants of any other question from a seed, each with its figures, their error and condition",
     ),
-    "list_studies": Operation("GET", "/v1/studies", "The client's own studies"),
     "create_study": Operation(
         "POST", "/v1/studies", "A study: any other question with varied inputs, its members answered in the background"
     ),
+    "list_studies": Operation("GET", "/v1/studies", "The client's own studies"),
     "get_study": Operation("GET", "/v1/studies/{study}", "The state of a study"),
     "dismiss_study": Operation(
         "DELETE", "/v1/studies/{study}", "Stop a study, or remove one that has ended with its results"
@@ -271,11 +271,6 @@ class Operations(ABC):
         found: str = self._ask("scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
-    def list_scenes(self) -> documents.SceneCatalogue:
-        """Every named scene and what it answers, and examples of described ones."""
-        found: documents.SceneCatalogue = self._ask("list_scenes", None, None)
-        return found
-
     def described_scene(self, **question: Unpack[documents.DescribedSceneRequest]) -> documents.DescribedSceneAnswer:
         """A scene of your own: bodies and what connects them, answered by the smallest model that suffices."""
         found: documents.DescribedSceneAnswer = self._ask("described_scene", question, None)
@@ -284,6 +279,11 @@ class Operations(ABC):
     def described_scene_svg(self, **question: Unpack[documents.DescribedSceneRequest]) -> str:
         """A scene of your own: bodies and what connects them, answered by the smallest model that suffices, as a drawing."""
         found: str = self._ask("described_scene", question, "image/svg+xml")
+        return found
+
+    def list_scenes(self) -> documents.SceneCatalogue:
+        """Every named scene and what it answers, and examples of described ones."""
+        found: documents.SceneCatalogue = self._ask("list_scenes", None, None)
         return found
 
     def certified_rotation_trajectory(
@@ -389,14 +389,14 @@ class Operations(ABC):
         found: documents.VariantsAnswer = self._ask("vary", question, None)
         return found
 
-    def list_studies(self) -> documents.StudyList:
-        """The client's own studies."""
-        found: documents.StudyList = self._ask("list_studies", None, None)
-        return found
-
     def create_study(self, **question: Unpack[documents.StudyRequest]) -> documents.StudyState:
         """A study: any other question with varied inputs, its members answered in the background."""
         found: documents.StudyState = self._ask("create_study", question, None)
+        return found
+
+    def list_studies(self) -> documents.StudyList:
+        """The client's own studies."""
+        found: documents.StudyList = self._ask("list_studies", None, None)
         return found
 
     def get_study(self, study: str) -> documents.StudyState:
@@ -590,11 +590,6 @@ class AsyncOperations(ABC):
         found: str = await self._ask("scene_chain_on_wedge", question, "image/svg+xml")
         return found
 
-    async def list_scenes(self) -> documents.SceneCatalogue:
-        """Every named scene and what it answers, and examples of described ones."""
-        found: documents.SceneCatalogue = await self._ask("list_scenes", None, None)
-        return found
-
     async def described_scene(
         self, **question: Unpack[documents.DescribedSceneRequest]
     ) -> documents.DescribedSceneAnswer:
@@ -605,6 +600,11 @@ class AsyncOperations(ABC):
     async def described_scene_svg(self, **question: Unpack[documents.DescribedSceneRequest]) -> str:
         """A scene of your own: bodies and what connects them, answered by the smallest model that suffices, as a drawing."""
         found: str = await self._ask("described_scene", question, "image/svg+xml")
+        return found
+
+    async def list_scenes(self) -> documents.SceneCatalogue:
+        """Every named scene and what it answers, and examples of described ones."""
+        found: documents.SceneCatalogue = await self._ask("list_scenes", None, None)
         return found
 
     async def certified_rotation_trajectory(
@@ -714,14 +714,14 @@ class AsyncOperations(ABC):
         found: documents.VariantsAnswer = await self._ask("vary", question, None)
         return found
 
-    async def list_studies(self) -> documents.StudyList:
-        """The client's own studies."""
-        found: documents.StudyList = await self._ask("list_studies", None, None)
-        return found
-
     async def create_study(self, **question: Unpack[documents.StudyRequest]) -> documents.StudyState:
         """A study: any other question with varied inputs, its members answered in the background."""
         found: documents.StudyState = await self._ask("create_study", question, None)
+        return found
+
+    async def list_studies(self) -> documents.StudyList:
+        """The client's own studies."""
+        found: documents.StudyList = await self._ask("list_studies", None, None)
         return found
 
     async def get_study(self, study: str) -> documents.StudyState:

@@ -15,8 +15,8 @@ from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP
 from service.routes.described_answer import AtStart, OwnUnit
-from service.routes.described_figure import drawn
 from service.routes.described_scenes import DESCRIBED_SCENES, model_fields
+from service.routes.motion_figures import draw_described
 from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routing import Answer, PlanningProbe
 from service.schemas import DecimalString, Seconds, View, fields_of, sample_count
@@ -135,5 +135,5 @@ CERTIFIED_DESCRIBED = certified_route(
     handle=answer_certified_scene,
     price=certified_scene_cost,
     planning_probe=certified_scene_probe,
-    representations={SVG: drawn},
+    representations={SVG: draw_described},
 )

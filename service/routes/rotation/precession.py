@@ -155,7 +155,8 @@ def precession_counts(question: PrecessionRequest, budget: Budget) -> dict[str, 
     measure, found = question.measure, counts(question, budget)
     if measure is None:
         return found
-    times = Span(start=0.0, stop=measure.duration, count=measure.samples)
+    # More samples are refused.
+    times = Span(start=0.0, stop=measure.duration, count=min(measure.samples, budget.samples))
     speed = speed_to_follow((measure.method,), question.body, speed_of(question.angular_velocity))
     found |= effort(measure.method, times, speed, measure.samples)
     return found | judged(measure.method, times, speed, budget)

@@ -65,7 +65,9 @@ class StudyRequest(Request):
         max_length=MOST_QUANTITIES,
         description="Figures of each member, by pointer into its answer: numbers, and truth values as 1 and 0.",
     )
-    statistics: list[Statistic] = Field(default=[*STATISTICS], description="Of each figure over all members.")
+    statistics: list[Statistic] = Field(
+        default=[*STATISTICS], max_length=len(STATISTICS), description="Of each figure over all members."
+    )
     probabilities: list[Probability] = Field(default=[*PROBABILITIES], max_length=100, description="Of quantiles.")
     bins: Bins = Field(default=BINS, description="Of histograms.")
 
@@ -171,7 +173,13 @@ def _paths(question: StudyRequest) -> tuple[list[Path], list[Path]]:
                 raise InvalidParameter(within, "vary nothing that another entry varies")
             taken.add(path)
         inputs.append(_steps(entry.pointer, ("vary", k, "pointer")))
-    return inputs, [_steps(pointer, ("quantities", k)) for k, pointer in enumerate(question.quantities)]
+    figures: list[Path] = []
+    for k, pointer in enumerate(question.quantities):
+        path = _steps(pointer, ("quantities", k))
+        if path in figures:
+            raise InvalidParameter(("quantities", k), "name another figure than those before it")
+        figures.append(path)
+    return inputs, figures
 
 
 def _steps(pointer: str, within: Path) -> Path:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isfinite, nan
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,9 @@ FAULT = "internal-error"
 """Code of a member whose answer is a fault of the service."""
 
 NO_ROOM = "no-room"
+
+TOGETHER = 8192
+"""Members that are answered at a time where many are: few enough that their process answers its scheduler between."""
 
 Labels = NDArray[np.uint16]
 
@@ -68,6 +71,31 @@ class Block:
         }
 
 
+class _Names:
+    """Names in the order in which they occur, and their labels from 1; no name has 0."""
+
+    def __init__(self) -> None:
+        self._labels: dict[tuple[str, ...], int] = {}
+
+    def label(self, codes: tuple[str, ...]) -> int:
+        return self._labels.setdefault(codes, len(self._labels) + 1) if codes else 0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(map(",".join, self._labels))
+
+
+class _Rows(NamedTuple):
+    """Members that follow each other, and where their results are written; see `Block`."""
+
+    numbers: Floats
+    figures: Floats
+    failures: Labels
+    warnings: Labels
+    failed: _Names
+    warned: _Names
+
+
 class Members:
     """Answers members.
 
@@ -108,31 +136,39 @@ class Members:
         figures = np.full((stop - start, len(self._figures)), nan)
         failures, warnings = np.zeros(stop - start, np.uint16), np.zeros(stop - start, np.uint16)
         failed, warned = _Names(), _Names()
-        rest: Sequence[int] = range(stop - start)
-        many = self._many(numbers)
+        done = 0
+        while done < stop - start and not (done and perf_counter() > until):
+            piece = slice(done, done + TOGETHER)
+            rows = _Rows(numbers[piece], figures[piece], failures[piece], warnings[piece], failed, warned)
+            done += self._answer(rows, until)
+        names = failed.names, warned.names
+        return Block(start, numbers[:done], figures[:done], failures[:done], warnings[:done], *names)
+
+    def _answer(self, rows: _Rows, until: float) -> int:
+        """Fill in the results of some members, and return of how many before the time was up; at least of one."""
+        many = self._many(rows.numbers)
+        single: Sequence[int] = range(len(rows.numbers))
         if many is not None:
-            figures[many.answered] = many.figures[many.answered]
+            rows.figures[many.answered] = many.figures[many.answered]
             for code, which in many.warned.items():
                 if (which & many.answered).any():
-                    warnings[which & many.answered] = warned.label((code,))
-            rest = np.flatnonzero(~many.answered).tolist()
-        done = stop - start
-        for k in rest:
+                    rows.warnings[which & many.answered] = rows.warned.label((code,))
+            single = np.flatnonzero(~many.answered).tolist()
+        for k in single:
             if k and perf_counter() > until:
-                done = k
-                break
-            answer = self._answered(numbers[k].tolist())
+                return k
+            answer = self._answered(rows.numbers[k].tolist())
             if isinstance(answer, str):
-                failures[k] = failed.label((answer,))
+                rows.failures[k] = rows.failed.label((answer,))
                 continue
             row = [_figure(answer, path) for path in self._figures]
             if not all(value is None or isfinite(value) for value in row):
-                failures[k] = failed.label((FAULT,))
+                rows.failures[k] = rows.failed.label((FAULT,))
                 continue
-            figures[k] = [nan if value is None else value for value in row]
-            warnings[k] = warned.label(tuple(sorted({notice.code for notice in answer.get("warnings", ())})))
-        names = failed.names, warned.names
-        return Block(start, numbers[:done], figures[:done], failures[:done], warnings[:done], *names)
+            rows.figures[k] = [nan if value is None else value for value in row]
+            codes = sorted({notice.code for notice in answer.get("warnings", ())})
+            rows.warnings[k] = rows.warned.label(tuple(codes))
+        return len(rows.numbers)
 
     def failed(self, start: int, stop: int, code: str) -> Block:
         """Return members that could not be answered, all for one reason."""
@@ -174,20 +210,6 @@ class Members:
             return NO_ROOM
         except Exception:
             return FAULT
-
-
-class _Names:
-    """Names in the order in which they occur, and their labels from 1; no name has 0."""
-
-    def __init__(self) -> None:
-        self._labels: dict[tuple[str, ...], int] = {}
-
-    def label(self, codes: tuple[str, ...]) -> int:
-        return self._labels.setdefault(codes, len(self._labels) + 1) if codes else 0
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(map(",".join, self._labels))
 
 
 def number_of(value: Any) -> float | None:

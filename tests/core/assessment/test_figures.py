@@ -50,6 +50,8 @@ ANSWER: dict[str, Any] = {
         ("/infinite", None),
         ("/held", None),
         ("/rows/0/0", None),
+        ("/vector/02", None),
+        ("/vector/\u0662", None),
     ],
 )
 def test_values_are_found_by_pointer(pointer: str, value: Any) -> None:

@@ -82,6 +82,7 @@ def test_sobol_points_fill_the_square_better_than_random_ones() -> None:
         (((U,), "random"), ("count",)),
         (((A,), "random", 5), ("vary", 0, "count")),
         (((U,), "sobol", MOST_MEMBERS + 1), ("count",)),
+        (((StudyInput(pointer="/a", min=0.0, max=1.0, count=1_000_000),) * 20,), ("vary",)),
     ],
 )
 def test_inputs_that_do_not_fit_the_design_are_refused(arguments: Any, path: Any) -> None:

@@ -22,15 +22,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.execution.worker_pool import (
-    DeadlineExceeded,
-    Job,
-    Process,
-    Processes,
-    QueueTimeout,
-    Stopped,
-    WorkerDied,
-)
+from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
+from service.execution.worker_pool import Process, Processes
 from tests.service.toy_processes import framed, main
 
 pytestmark = pytest.mark.anyio
@@ -568,8 +561,7 @@ class TestKilled:
         async with warm(place) as (processes, _):
             late = ask(processes, b"wait a")
             await until(lambda: late.begun)
-            process = late.process
-            assert process is not None
+            (process,) = (one for one in processes._all if one.job is late)
             processes.drop(late)
             job = ask(processes, b"echo b")
             receive(process, framed(b"a") + framed(b""))

@@ -72,11 +72,11 @@ class TestScale:
     @settings(derandomize=True)
     def test_few_decades_are_marked_evenly(self, values: list[float]) -> None:
         scale = Scale.over(values, 0.0, 1.0)
-        assert 2 <= len(scale.ticks) <= MOST_TICKS
-        assert scale.ticks[0] == scale.low
-        assert scale.ticks[-1] <= scale.high
+        assert 2 <= len(scale.exponents) <= MOST_TICKS
+        assert scale.exponents[0] == scale.low
+        assert scale.exponents[-1] <= scale.high
         # Of so few decades each is.
-        assert scale.high - scale.low >= MOST_TICKS or [*scale.ticks] == [*range(scale.low, scale.high + 1)]
+        assert scale.high - scale.low >= MOST_TICKS or [*scale.exponents] == [*range(scale.low, scale.high + 1)]
 
 
 class TestFigure:

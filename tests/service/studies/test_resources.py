@@ -99,7 +99,16 @@ async def test_results_page_by_page(desk_on: Desks, in_process: str, tmp_path: P
         for name in ("inputs", "figures"):
             for pointer, column in whole[name].items():
                 assert [entry for page in pages for entry in page[name][pointer]] == column
-        for query in ("start=300", "count=0", "count=10001", "start=-1", "start=1.5"):
+        for query in (
+            "start=300",
+            "count=0",
+            "count=10001",
+            "start=-1",
+            "start=1.5",
+            "start=",
+            "first=1",
+            "count=1&count=2",
+        ):
             response = await client.get(f"{place}/results?{query}")
             assert (response.status_code, response.json()["code"]) == (422, "invalid-parameter"), query
 
@@ -225,7 +234,9 @@ async def test_dismissing_gives_back_what_was_not_computed(tmp_path: Path) -> No
         ({}, {"max_study_seconds": 1e-6}, "budget-exceeded", "/vary"),
         ({"quantities": ["/absent"]}, {}, "invalid-parameter", "/quantities/0"),
         ({"quantities": ["/position/0"]}, {}, "invalid-parameter", "/quantities/0"),
+        ({"quantities": ["/position/0/0", "/position/1/0"] * 2}, {}, "invalid-parameter", "/quantities/2"),
         ({"quantities": []}, {}, "invalid-parameter", "/quantities"),
+        ({"statistics": ["mean"] * 7}, {}, "invalid-parameter", "/statistics"),
         ({"vary": []}, {}, "invalid-parameter", "/vary"),
         ({"vary": [{"pointer": "/nowhere", "values": [1.0]}]}, {}, "invalid-parameter", "/vary/0/pointer"),
         (
@@ -280,6 +291,28 @@ async def test_a_folder_that_cannot_be_used_is_said(tmp_path: Path) -> None:
         assert "Not a directory" in response.json()["detail"]
 
 
+async def test_results_that_cannot_be_stored_anywhere_are_refused_before(tmp_path: Path) -> None:
+    async with client_at(tmp_path, studies_results="nowhere://results") as client:
+        response = await client.post("/v1/studies", json=GRID)
+        assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
+        assert (await client.get("/v1/studies")).json()["studies"] == []
+
+
+async def test_storage_that_cannot_be_reached_is_said(
+    desk_on: Desks, in_process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unreachable(*arguments: Any) -> Any:
+        raise OSError("no connection")
+
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        monkeypatch.setattr("service.studies.chunk_files.ChunkFiles.read", unreachable)
+        monkeypatch.setattr("service.studies.chunk_files.ChunkFiles.remove", unreachable)
+        for media in ("application/json", "application/x-npz", "image/svg+xml"):
+            response = await get(client, place, media)
+            assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable"), media
+        assert (await client.delete(place)).json()["code"] == "storage-unavailable"
+
+
 async def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import sqlite3
 
@@ -293,12 +326,29 @@ async def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert "disk is full" in response.json()["detail"]
 
 
+async def test_a_folder_that_cannot_be_written_to_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sqlite3
+
+    def unable(*arguments: Any, **settings: Any) -> Any:
+        raise sqlite3.OperationalError("unable to open database file")
+
+    async with client_at(tmp_path) as client:
+        monkeypatch.setattr("service.studies.store.sqlite3.connect", unable)
+        # Tests may run as root, whom no permission stops.
+        monkeypatch.setattr("service.studies.store.os.access", lambda folder, wish: False)
+        response = await client.post("/v1/studies", json=GRID)
+        assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
+        assert "cannot be written to" in response.json()["detail"]
+
+
 async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> None:
     async with client_at(tmp_path) as client:
         headers = {"content-type": "application/x-npz"}
         assert (await client.post("/v1/studies", content=b"PK", headers=headers)).status_code == 415
         assert (await client.post("/v1/studies", json=GRID, headers={"accept": "text/html"})).status_code == 406
         assert (await client.put("/v1/studies", json=GRID)).status_code == 405
+        other = await client.patch("/v1/studies/of-somebody")
+        assert (other.status_code, other.headers["allow"]) == (405, "GET, HEAD, DELETE")
 
 
 async def test_old_studies_are_removed(desk_on: Desks, in_process: str, tmp_path: Path) -> None:

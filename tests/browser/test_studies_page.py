@@ -1,0 +1,67 @@
+"""The page of studies: what is started runs to its end, is drawn with the numbers of the API, and goes away."""
+
+import json
+from urllib.request import urlopen
+
+REFUSED = ("422",)
+
+
+def test_a_map_has_the_numbers_of_the_api(opened, base):
+    page = opened("/studies")
+    page.locator("#price").click()
+    page.locator("#told", has_text="s of one processor").wait_for()
+    page.locator("#start").click()
+    row = page.locator("#list li")
+    row.get_by_text("successful").wait_for(timeout=120_000)
+    row.locator("button").first.click()
+    page.locator("#map").wait_for()
+    (study,) = json.load(urlopen(f"{base}/v1/studies"))["studies"]
+    answer = json.load(urlopen(f"{base}/v1/studies/{study['jobID']}/results?count=1"))
+    figures = answer["statistics"]["figures"]
+    assert page.locator("#figure option").all_inner_texts() == list(figures)
+    for pointer, found in figures.items():
+        page.locator("#figure").select_option(pointer)
+        said = page.locator("#numbers").inner_text()
+        assert said.startswith(f"{found['present']} members have it; mean {found['mean']:.6g}")
+        assert "Map over /body/moments/0 and /body/moments/1" in page.locator("#map").get_attribute("aria-label")
+        assert page.locator("#histogram").get_attribute("aria-label").startswith("Histogram from ")
+    with page.expect_download() as download:
+        page.locator("#links button", has_text="npz").click()
+    assert download.value.suggested_filename.endswith(".npz")
+    page.reload()
+    page.wait_for_selector("body[data-ready]")
+    assert "successful, 6400 of 6400 members" in page.locator("#list li").inner_text()
+    page.locator("#list li button", has_text="Remove").click()
+    page.locator("#none").wait_for()
+    assert json.load(urlopen(f"{base}/v1/studies"))["studies"] == []
+
+
+def test_a_fault_is_shown_with_its_place(opened):
+    page = opened("/studies", expected=REFUSED)
+    study = json.loads(page.locator("#editor").input_value())
+    study["quantities"] = ["/no_such_figure"]
+    page.locator("#editor").fill(json.dumps(study))
+    page.locator("#start").click()
+    page.locator("#problem", has_text="/quantities/0").wait_for()
+    assert page.locator("#list li").count() == 0
+
+
+def test_a_running_study_shows_progress_and_can_be_stopped(opened, base):
+    page = opened("/studies")
+    study = json.loads(page.locator("#editor").input_value())
+    study["question"]["path"] = "/v1/rotation/trajectory"
+    study["question"]["request"]["times"] = {"start": 0, "stop": 1000, "count": 1000}
+    study["quantities"] = ["/angular_velocity/999/1"]
+    for axis in study["vary"]:
+        axis["count"] = 300
+    page.locator("#editor").fill(json.dumps(study))
+    page.locator("#start").click()
+    row = page.locator("#list li")
+    row.get_by_text("s left").wait_for(timeout=60_000)
+    row.locator("button", has_text="Stop").click()
+    row.get_by_text("dismissed").wait_for(timeout=10_000)
+    (state,) = json.load(urlopen(f"{base}/v1/studies"))["studies"]
+    assert state["status"] == "dismissed"
+    assert state["done"] < state["count"] == 90_000
+    row.locator("button", has_text="Remove").click()
+    page.locator("#none").wait_for()

@@ -1,0 +1,69 @@
+"""What is written to a connection: one write for a response of one piece, whatever ends it."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from service.http.connection import OneWrite
+
+pytestmark = pytest.mark.anyio
+
+
+class Written:
+    """Takes the place of a transport."""
+
+    def __init__(self) -> None:
+        self.parts: list[bytes] = []
+        self.closed = False
+
+    def write(self, data: bytes) -> None:
+        assert not self.closed
+        self.parts.append(data)
+
+    def close(self) -> None:
+        self.closed = True
+
+
+@pytest.fixture
+async def pair() -> tuple[Any, Written]:
+    written = Written()
+    return OneWrite(written, asyncio.get_running_loop()), written  # type: ignore[arg-type]
+
+
+async def test_head_and_body_are_one_write(pair: tuple[Any, Written]) -> None:
+    transport, written = pair
+    for part in (b"head", b"body", b""):
+        transport.write(part)
+    assert written.parts == [b"headbody"]
+    await asyncio.sleep(0)
+    assert written.parts == [b"headbody"]
+
+
+async def test_every_piece_of_a_stream_is_written_in_its_order(pair: tuple[Any, Written]) -> None:
+    transport, written = pair
+    for part in (b"head", b"1", b"2", b"3", b"4"):
+        transport.write(part)
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        assert b"".join(written.parts).endswith(part)
+    assert b"".join(written.parts) == b"head1234"
+
+
+async def test_a_head_alone_waits_no_longer_than_the_turn_of_the_loop(pair: tuple[Any, Written]) -> None:
+    transport, written = pair
+    transport.write(b"head")
+    assert written.parts == []
+    await asyncio.sleep(0)
+    assert written.parts == [b"head"]
+
+
+async def test_what_is_held_is_written_before_the_connection_closes(pair: tuple[Any, Written]) -> None:
+    transport, written = pair
+    transport.write(b"refused")
+    transport.close()
+    assert (written.parts, written.closed) == ([b"refused"], True)
+    await asyncio.sleep(0)
+    assert written.parts == [b"refused"]
