@@ -159,12 +159,13 @@ def _group(
             if in_turn is not None:
                 outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn))
     first = rates_after(at_once, rates, found)
-    if len(group) <= _MOST_ORDERED and all(alike(first, rates_after(one, rates, found)) for _, one in outcomes[1:]):
+    in_order = [rates_after(one, rates, found) for _, one in outcomes[1:]]
+    if len(group) <= _MOST_ORDERED and all(alike(first, then, rates) for then in in_order):
         return at_once
     different: list[tuple[str, Rates]] = []
     for told, one in outcomes:
         then = rates_after(one, rates, found)
-        if not any(alike(then, other) for _, other in different):
+        if not any(alike(then, other, rates) for _, other in different):
             different.append((told, then))
     return Problem(
         "simultaneous-impacts",

@@ -30,7 +30,7 @@ def test_random_scenes_are_physical_and_their_mirror_images_alike(kind: int) -> 
         assert end in ENDS
 
 
-@pytest.mark.parametrize("seed", [4094, 6113, 6678, 7872])
+@pytest.mark.parametrize("seed", [4094, 6113, 6678, 7401, 7872])
 def test_scenes_in_which_the_judge_found_a_fault_are_physical(seed: int) -> None:
     """A slip that ends just after the time up to which events were looked for; impacts in turn; bounces in a bowl.
 
