@@ -74,6 +74,7 @@ peers: $(PEERS)/made
 
 peers-scenes: $(PEERS)/made
 	$(PEERS)/bin/python -m benchmarks.described_scenes
+	$(PEERS)/bin/python -m benchmarks.contact_peers
 
 $(PEERS)/made: requirements-dev.lock benchmarks/peers.txt
 	$(PYTHON) -m venv $(PEERS)

@@ -165,7 +165,7 @@ async def test_examples_run_and_fit_their_schemas(route: PostRoute, name: str) -
 @pytest.mark.anyio
 async def test_pages_fit_their_schemas() -> None:
     async with httpx.AsyncClient(transport=httpx.ASGITransport(SERVICE), base_url="http://test") as client:
-        for path in ("/v1/errors", "/v1/methods", "/v1/mistakes", "/healthz"):
+        for path in ("/v1/errors", "/v1/methods", "/v1/mistakes", "/v1/undecided", "/healthz"):
             schema = DOCUMENT["paths"][path]["get"]["responses"]["200"]["content"]["application/json"]["schema"]
             jsonschema.validate((await client.get(path)).json(), resolved(schema))
         problem = await client.post("/v1/bodies/mass-properties", json={})

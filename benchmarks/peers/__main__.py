@@ -15,6 +15,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from benchmarks.contact_peers.page import with_section
 from benchmarks.machine import RESULTS, described
 from benchmarks.peers.cases import CASES, NEAR_SEPARATRIX, SAMPLES, T_HANDLE
 from benchmarks.peers.catalogue import LEFT_OUT, PEERS
@@ -69,7 +70,8 @@ def main() -> None:
     if not asked.draw:
         TARGET.write_text(json.dumps(measured(quick=False), indent=1) + "\n", encoding="utf-8")
     result = json.loads(TARGET.read_text(encoding="utf-8"))
-    (DOCS / "peers.md").write_text(page(result), encoding="utf-8")
+    text = with_section(page(result), RESULTS / "contact_peers.json")
+    (DOCS / "peers.md").write_text(text, encoding="utf-8")
     pictures = DOCS / "pictures"
     cases = result["cases"]
     short = [T_HANDLE.name, NEAR_SEPARATRIX.name]

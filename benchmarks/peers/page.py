@@ -14,11 +14,11 @@ REACHED = (1e-6, 1e-12)
 HEAD = """\
 # Beside its peers
 
-*Written by `make peers`, which measures everything on this page in one run; all figures, with every setting, are in
-[benchmarks/results/peers.json](../benchmarks/results/peers.json). The rules are in
+*Written by `make peers`, which measures everything up to the last section in one run; all figures, with every
+setting, are in [benchmarks/results/peers.json](../benchmarks/results/peers.json). The rules are in
 [decision 12](decisions/0012-fair-comparison.md).*
 
-Each is asked for {samples} samples of the free body's angular velocity, or attitude, and swept through its settings.
+Each computes {samples} samples of the free body's angular velocity, or attitude, and swept through its settings.
 Errors are the largest of any sample against the motion at 50 digits, relative to its largest norm (attitudes: the angle
 in radians). Milliseconds are medians of warm runs that include all that a new question needs.
 {machine}
@@ -62,7 +62,7 @@ def page(result: Mapping[str, Any]) -> str:
             "The setting with the smallest error. Final and by component are errors too; the drifts are not.\n",
             _near(cases[NEAR]),
             "## The horizon\n",
-            "Milliseconds for 10000 samples over numbers of periods, and their largest error. Integrators were asked "
+            "Milliseconds for 10000 samples over numbers of periods, and their largest error. Integrators ran "
             "for up to 1000 periods, at their tightest tolerance.\n",
             _horizons(result["horizons"]),
             "## Set-up and cold start\n",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Annotated
 
+from core.multibody.undecided import Code
 from core.quantities import Unit
 from core.systems.trajectory import How, Trajectory
 
@@ -262,9 +263,7 @@ class SceneProblem:
     Attributes
     ----------
     code : str
-        no-motion (Painleve), several-motions, undetermined-friction, simultaneous-impacts, several-impacts, no-impact,
-        energy-gain, grazing-contact, several-onsets, turning-onset, no-progress, event-limit or lost-event; each has a
-        section in docs/physics/undecided.md.
+        One of `core.multibody.undecided`.
     connections : tuple of str
         Between which it is undecided.
     candidates : tuple of mapping
@@ -273,7 +272,7 @@ class SceneProblem:
         Which further assumption would decide it.
     """
 
-    code: str
+    code: Code
     explanation: str
     time: Seconds
     connections: tuple[str, ...]

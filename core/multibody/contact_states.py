@@ -10,6 +10,7 @@ from core.multibody.expansion import product
 from core.multibody.measures import COMPONENTS, Force, Unilateral
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, is_zero
 from core.multibody.table import Rates, Row, Table
+from core.multibody.undecided import Code
 
 
 class State(Enum):
@@ -78,7 +79,8 @@ class Problem:
 
     Attributes
     ----------
-    code : {"no-motion", "several-motions", "undetermined-friction", "simultaneous-impacts", "energy-gain", ...}
+    code : str
+        One of `core.multibody.undecided`.
     explanation : str
     contacts : tuple of str
         Those between which it is undecided.
@@ -88,7 +90,7 @@ class Problem:
         Which further assumption would decide it.
     """
 
-    code: str
+    code: Code
     explanation: str
     contacts: tuple[str, ...]
     candidates: tuple[Mapping[str, str], ...] = ()

@@ -44,10 +44,10 @@ class Expansion:
             if not key:
                 total[0] = total[0] + x
             elif len(key) == 1:
-                total = [a + x * b for a, b in zip(total, self.places[key[0]], strict=True)]
+                total = _added(total, x, self.places[key[0]])
             else:
                 part = product(self.places[key[0]], self.places[key[1]])
-                total = [a + x * b for a, b in zip(total, part, strict=True)]
+                total = _added(total, x, part)
         return total
 
     def of_rates(self, rates: Rates) -> Series:
@@ -60,9 +60,25 @@ class Expansion:
         return total
 
 
+def _added(total: Series, factor: Ball, series: Sequence[Ball]) -> Series:
+    """Return a sum with a multiple of a series of the same length."""
+    return [a if b == 0 else a + factor * b for a, b in zip(total, series, strict=True)]
+
+
 def product(first: Sequence[Ball], second: Sequence[Ball]) -> Series:
     """Return the product of two series of one length, cut off there."""
-    return [sum((first[a] * second[k - a] for a in range(k + 1)), ZERO) for k in range(len(first))]
+    size = len(first)
+    total = [ZERO] * size
+    # Motions with constant accelerations have exact zeros beyond the square of time; what may be zero is not left out.
+    others = [(b, y) for b, y in enumerate(second) if not y.is_zero()]
+    for a, x in enumerate(first):
+        if x == 0:
+            continue
+        for b, y in others:
+            if a + b >= size:
+                break
+            total[a + b] = total[a + b] + x * y
+    return total
 
 
 def value(series: Sequence[Ball], time: Ball) -> Ball:

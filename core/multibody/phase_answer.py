@@ -27,7 +27,7 @@ from core.multibody.phases import motion_in_phases
 from core.multibody.polynomials import Ball
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.tracks import FLOOR, TOLD
-from core.multibody.trajectories import SceneRequest, require_affordable
+from core.multibody.trajectories import Output, SceneRequest, require_affordable
 from core.multibody.whole import WholeStates
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.question import MotionQuestion
@@ -63,13 +63,13 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         raise NotApplicable(
             f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",
             path=("outputs", unknown[0]),
-            remedy="leave it out; events are found without being requested",
+            remedy=_instead_of(request.outputs[unknown[0]]),
         )
     if "equilibria" in request.outputs:
         raise NotApplicable(
             "equilibria are not answered where something may touch, slide or be slack",
             path=("outputs", list(request.outputs).index("equilibria")),
-            remedy="hold what touches by a connection of another kind",
+            remedy='ask between which values of a number it stays at rest: {"thresholds": {"vary", "between"}}',
         )
     before = np.flatnonzero(request.times < 0.0)
     if len(before):
@@ -114,6 +114,15 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         phases=tuple(_told(phase, motion) for phase in motion.phases),
         problem=_problem(motion),
     )
+
+
+def _instead_of(output: Output) -> str:
+    """Return what answers most of a question that is not answered about scenes with contacts."""
+    if output == "work-in-time":
+        return "ask for energy-in-time: what it and the energy_loss of the events leave over is the work on the scene"
+    if output == "paths-in-time":
+        return "ask for the trajectory at enough times: between the events, which are listed, paths are smooth"
+    return "ask for the trajectory at enough times; touches, slips and stops are events, found without being requested"
 
 
 def _conserved(motion: PhaseMotion) -> bool:

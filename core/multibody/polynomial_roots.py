@@ -12,6 +12,8 @@ from core.multibody.polynomials import ZERO, Ball, is_zero
 
 _HALVINGS = 60
 """Halvings of an interval, after which Newton's method has the last digits of a double right from its start."""
+_SHARP = 2.0**-290
+"""Share of a root by which it may be wrong that was begun in doubles."""
 _ROUNDS = 12
 """Of Newton's method: digits double in each, from those of a double to beyond those of balls."""
 
@@ -76,7 +78,12 @@ def _sign(x: Ball) -> int:
 
 
 def _between(p: Sequence[Ball], low: Ball, high: Ball) -> Ball:
-    """Return the only root between two times: bisected, then by Newton's method in balls."""
+    """Return the only root between two times: bisected, in doubles where those see it, then by Newton's method."""
+    about = _in_doubles(p, float(low), float(high))
+    if about is not None:
+        root = _sharpened(p, arb(about))
+        if root > low and root < high and float(root.rad()) <= _SHARP * float(root):
+            return root
     a, b, rising = arb(low.mid()), arb(high.mid()), value(p, high) > 0
     for _ in range(_HALVINGS):
         middle = (a + b) / 2
@@ -85,9 +92,38 @@ def _between(p: Sequence[Ball], low: Ball, high: Ball) -> Ball:
             b = middle
         else:
             a = middle
-    root, derivative = arb(((a + b) / 2).mid()), slope(p)
+    return _sharpened(p, arb(((a + b) / 2).mid()))
+
+
+def _in_doubles(p: Sequence[Ball], low: float, high: float) -> float | None:
+    """Return about where a polynomial changes its sign between two times, None where doubles do not show that."""
+    coefficients = [float(x.mid()) for x in reversed(p)]
+
+    def at(time: float) -> float:
+        total = 0.0
+        for x in coefficients:
+            total = total * time + x
+        return total
+
+    first, last = at(low), at(high)
+    if not (first < 0.0 < last or last < 0.0 < first):
+        return None
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if (at(middle) > 0.0) == (last > 0.0):
+            high = middle
+        else:
+            low = middle
+    return 0.5 * (low + high)
+
+
+def _sharpened(p: Sequence[Ball], root: Ball) -> Ball:
+    """Return a root as a ball, by Newton's method from a start that is near enough."""
+    derivative = slope(p)
     for _ in range(_ROUNDS):
         step = value(p, root) / value(derivative, root)
+        if is_zero(step) or not step.is_finite():
+            break
         root = arb((root - step).mid())
     off = abs(value(p, root) / value(derivative, root))
     return arb(root.mid(), 2 * float(off.upper()) + 2.0**-300 * abs(float(root)))

@@ -73,25 +73,32 @@ def recurring(
     exact = is_uniform(phase.models[0]) and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
     if exact and not listed:
         return None
-    tails = [_tail(unilateral, i, phase, k) for k in range(len(phase.tracks))]
-    found = [tail for tail in tails if tail is not None]
-    if len(found) < len(tails) or not (exact or found[0].length < SHORT * own_time):
-        return None
+    found: list[Accumulation] = []
+    for k in range(len(phase.tracks)):
+        tail = _tail(unilateral, i, phase, k, None if exact or k else SHORT * own_time)
+        if tail is None:
+            return None
+        found.append(tail)
     if phase.start + found[0].length > end or not _alone(unilateral, i, phase, found[0]):
         return None
     return Recurring(found, exact)
 
 
-def _tail(unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int) -> Accumulation | None:
-    """Return the bounces of a measure as they follow the start of a track of a phase, None where they are not alike."""
+def _tail(unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int, most: float | None) -> Accumulation | None:
+    """Return the bounces of a measure as they follow the start of a track of a phase, None where they are not alike.
+
+    Nor where they last for `most` seconds, if that is given.
+    """
     track, table = phase.tracks[k], phase.tables[k].table
     one = along_slip(unilateral, [i], track.q, track.v)[i]
     acceleration = list(phase.models[k].whole.acceleration)
-    found = responses(table, [one], [0])
     opening = gap_rate(one, track.q, track.v)
     closing = -_acceleration(table, Row.held(one.name, one.gap), acceleration)
     if not opening > 0 or not closing > 0:
         return None
+    if most is not None and not 2 * opening / closing / (1 - one.restitution) < most:
+        return None
+    found = responses(table, [one], [0])
     ratio: Ball | None = ZERO
     if one.slip is not None:
         gain = _acceleration(table, Row(one.name, None, one.slip), acceleration)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -26,12 +27,16 @@ class Uniform:
     how: str = "closed form"
     period: Ball | None = None
 
-    def states(self, times: Floats, *, finer: bool = False) -> States:
-        """Return the states, right to the last bit of a pair or so."""
-        numbers = [
+    @cached_property
+    def _numbers(self) -> list[Floats]:
+        return [
             np.array([pair(x, 0) for x in values]).reshape(-1, 2)
             for values in (self.table.q, self.table.v, self.acceleration)
         ]
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the states, right to the last bit of a pair or so."""
+        numbers = self._numbers
         n = len(self.table.q)
         q, v = np.empty((len(times), n, 2)), np.empty((len(times), n, 2))
         start, rate, gain = numbers

@@ -79,6 +79,11 @@ class Whole:
         units = units_of(table, self.acceleration)
         return packed(table, chosen, units), units, chosen
 
+    @cached_property
+    def _glanced(self) -> list[tuple[int, Glanced]]:
+        # Whether a motion has a protocol takes longer to find out than what it then answers.
+        return [(k, motion) for k, (_, motion) in enumerate(self.parts) if isinstance(motion, Glanced)]
+
     def motion_of(self, coordinates: Sequence[int]) -> Motion | None:
         """Return the motion of the part that these coordinates of the scene follow, None where they stay."""
         seen = {key[0] for i in coordinates for key in self.reduced.expressions[i] if key}
@@ -137,7 +142,7 @@ class Whole:
 
     def glance(self, times: Floats) -> tuple[Floats, Floats, bool]:
         """Return the states as `in_pairs`, or faster to a few roundings of doubles, and whether it is the latter."""
-        found = {k: m.glance(times) for k, (_, m) in enumerate(self.parts) if isinstance(m, Glanced)}
+        found = {k: motion.glance(times) for k, motion in self._glanced}
         if all(one is None for one in found.values()):
             return *self.in_pairs(times), False
         shape = (len(times), len(self.reduced.table.names), 2)

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from core.multibody.undecided import UNDECIDED
 from docs.site.navigation import DOCS, GENERATED
 from service.problems import REGISTRY
 from service.settings import Settings
@@ -146,6 +147,14 @@ def _problems() -> Iterator[str]:
     yield from ("", "| code | status | title | |", "|---|---|---|---|")
     for entry in REGISTRY.values():
         yield f"| `{entry.code}` | {entry.status} | {_one_line(entry.title)} | {_one_line(entry.meaning)} |"
+    yield from ("", "## Undecided", "")
+    yield "An answer about a described scene with contacts may carry a `problem`: the motion ends there, because"
+    yield "mechanics does not decide or because it is not followed any further."
+    yield "`GET /v1/undecided` answers this table as JSON."
+    yield from ("", "| code | title | |", "|---|---|---|")
+    for kind in UNDECIDED.values():
+        link = f"[`{kind.code}`](../physics/undecided.md#{kind.code})"
+        yield f"| {link} | {_one_line(kind.title)} | {_one_line(kind.meaning)} |"
 
 
 def _settings() -> Iterator[str]:

@@ -145,6 +145,10 @@ class Processes:
         """Whether there is a process that works or waits for work."""
         return any(process.ready and not process.killed for process in self._all)
 
+    def process_of(self, job: Job) -> Process | None:
+        """Return the process that works on a request."""
+        return next((process for process in self._all if process.job is job), None)
+
     async def start(self) -> None:
         """Start all processes and return when each is ready."""
         for _ in range(self.size):
@@ -290,7 +294,7 @@ class Processes:
         job.until = job.until or perf_counter()
         if job.timer is not None:
             job.timer.cancel()
-        process = next((one for one in self._all if one.job is job), None)
+        process = self.process_of(job)
         if process is not None:
             process.job = None
         return process

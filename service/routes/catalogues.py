@@ -1,4 +1,4 @@
-"""Catalogues: methods of integration, scenes, and problems."""
+"""Catalogues: methods of integration, scenes, problems, mistakes, and what mechanics leaves undecided."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ import orjson
 from pydantic import Field
 
 from core.assessment.catalogue import MISTAKES
+from core.multibody.undecided import UNDECIDED, Code
 from core.quantities import members_of
 from core.systems.accuracy import record
 from core.systems.methods import Method
 from core.systems.methods.method import AbstractMethod, Family, Invariance
 from service.problems import registry
+from service.routes.described_answer import UNDECIDED_PATH
 from service.routes.described_scenes import described_examples
 from service.routes.scenes import SceneCatalogue, members, scene_entries
 from service.routing import GetRoute, Reply
@@ -36,6 +38,23 @@ class ProblemRegistry(Signed):
     """The registry of problems."""
 
     errors: list[ProblemEntry]
+
+
+class UndecidedEntry(View):
+    """One kind of thing that is left undecided about a scene with contacts."""
+
+    code: Code = Field(description="Stable name for machines.")
+    type: str = Field(description="URI reference that problem carries in an answer.")
+    title: str = Field(description="The same for every occurrence.")
+    meaning: str
+    of_mechanics: bool = Field(description="Whether mechanics leaves it open; otherwise it is a limit of the solver.")
+    documentation: str = Field(description="Its section in the documentation, from the root of the repository.")
+
+
+class UndecidedRegistry(Signed):
+    """What can be left undecided about a scene with contacts."""
+
+    undecided: list[UndecidedEntry]
 
 
 class MethodRecord(View):
@@ -85,6 +104,21 @@ def mistakes() -> list[dict[str, Any]]:
     """Return the catalogue of recognised mistakes as it is published."""
     names = ("tag", "summary", "feedback", "credit")
     return [{name: getattr(entry, name) for name in names} for entry in MISTAKES]
+
+
+def undecided() -> list[dict[str, Any]]:
+    """Return what can be undecided as it is published."""
+    return [
+        {
+            "code": kind.code,
+            "type": f"{UNDECIDED_PATH}#{kind.code}",
+            "title": kind.title,
+            "meaning": kind.meaning,
+            "of_mechanics": kind.of_mechanics,
+            "documentation": kind.section,
+        }
+        for kind in UNDECIDED.values()
+    ]
 
 
 def methods() -> list[dict[str, Any]]:
@@ -141,6 +175,13 @@ def catalogues() -> tuple[GetRoute, ...]:
             "Every mistake that is recognised in submitted answers",
             MistakeCatalogue,
             mistakes,
+        ),
+        _catalogue(
+            UNDECIDED_PATH,
+            "list_undecided",
+            "Everything that can be left undecided about a scene with contacts",
+            UndecidedRegistry,
+            undecided,
         ),
         _catalogue(
             "/v1/scenes",

@@ -6,7 +6,8 @@ from typing import Annotated, Generic, Literal
 
 from pydantic import Field
 
-from core.multibody.answer import MotionPhase, RestRange, SceneExtremes, SceneProblem
+from core.multibody.answer import MotionPhase, RestRange, SceneExtremes
+from core.multibody.undecided import Code
 from core.quantities import Unit
 from core.systems.trajectory import Work
 from service.schemas import Envelope, Joules, N, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
@@ -15,6 +16,8 @@ Metres = Annotated[list[float], Unit("m"), Field(min_length=2, max_length=3)]
 How = Literal["closed form", "measured against pairs", "measured against closed form"]
 """How errors of described scenes are known."""
 OwnUnit = Unit("as in the field unit")
+UNDECIDED_PATH = "/v1/undecided"
+"""Where the kinds of what is undecided are published."""
 
 
 class SmallMotion(View, Generic[N]):
@@ -114,6 +117,18 @@ class EndEvent(View):
         description="Of an impact: normal (of a stop, N m s), and friction where there is some."
     )
     energy_loss: Joules[float] = Field(description="Of an impact; of several at once, it stands with the first.")
+
+
+class SceneProblem(View):
+    """Something that mechanics does not decide, or that is not followed any further: the motion ends there."""
+
+    code: Code = Field(description="Stable name for machines; GET /v1/undecided lists them all.")
+    type: str = Field(description="URI reference of its entry in GET /v1/undecided, which names its documentation.")
+    explanation: str
+    time: Seconds[float]
+    connections: list[str] = Field(description="Between which it is undecided.")
+    candidates: list[dict[str, str]] = Field(description="What is possible.")
+    decided_by: str = Field(description="Which further assumption would decide it.")
 
 
 class SceneOccurrence(View):

@@ -21,7 +21,7 @@ from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, evaluations, extent
 from service.requests.described_scene import DescribedSceneRequest
 from service.responses.svg import SVG
-from service.routes.described_answer import DescribedAccuracy, DescribedSceneAnswer, SceneColumn
+from service.routes.described_answer import UNDECIDED_PATH, DescribedAccuracy, DescribedSceneAnswer, SceneColumn
 from service.routes.motion_figures import draw_described
 from service.routes.planning_probes import FEW_STEPS, OF_FEW_STEPS, few_of, in_closed_form
 from service.routes.scene_catalogue import scene_catalogue
@@ -105,7 +105,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if found.phases is not None:
         answer["phases"] = [fields_of(phase) for phase in found.phases]
     if found.problem is not None:
-        answer["problem"] = fields_of(found.problem)
+        answer["problem"] = fields_of(found.problem) | {"type": f"{UNDECIDED_PATH}#{found.problem.code}"}
     if motion is not None:
         columns = {name: _picked(column, SceneColumn) for name, column in motion.columns.items()}
         answer["trajectory"] = {"time": motion.time, "rows": motion.rows, "columns": columns}

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from core.multibody.undecided import UNDECIDED
 from docs.site.__main__ import write
 from docs.site.figures import FIGURES, FOLDER, polhodes
 from docs.site.links import linked_files, moved
@@ -50,6 +51,8 @@ def test_the_reference_lists_all_endpoints_objects_problems_and_settings() -> No
     assert listed == {f"{method.upper()} {path}" for path, methods in document["paths"].items() for method in methods}
     assert set(re.findall(r"^## (\w+)$", texts[1], re.MULTILINE)) == set(document["components"]["schemas"])
     assert set(re.findall(r"^\| `([a-z-]+)`", texts[2], re.MULTILINE)) == set(REGISTRY)
+    sections = re.findall(r"^\| \[`[a-z-]+`\]\((\S+)#([a-z-]+)\)", texts[2], re.MULTILINE)
+    assert sections == [("../physics/undecided.md", code) for code in UNDECIDED]
     variables = {f"POLHODE_{name.upper()}" for name in Settings.model_fields}
     assert set(re.findall(r"^\| `(\w+)`", texts[3], re.MULTILINE)) == variables
     # A link in a table leads to an object.

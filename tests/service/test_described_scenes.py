@@ -283,6 +283,14 @@ async def test_a_ball_bounces_and_mechanics_leaves_two_impacts_undecided() -> No
     assert stopped["ended"] == "simultaneous-impacts"
     assert stopped["trajectory"]["rows"] == [0]
     assert {candidate["order"] for candidate in stopped["problem"]["candidates"]} >= {"together"}
+    # The problem leads to its entry in the registry, and that to the section of its documentation.
+    path, _, code = stopped["problem"]["type"].partition("#")
+    async with client_of(SERVICE) as client:
+        entries = {entry["code"]: entry for entry in (await client.get(path)).json()["undecided"]}
+    assert code == stopped["problem"]["code"]
+    assert entries[code]["type"] == stopped["problem"]["type"]
+    document, _, section = entries[code]["documentation"].partition("#")
+    assert f"\n## {section}\n" in (EXAMPLES.parents[1] / document).read_text(encoding="utf-8")
 
 
 async def test_figures_beyond_doubles_are_null_with_a_warning() -> None:

@@ -1493,7 +1493,22 @@ class MotionPhase(TypedDict):
 class SceneProblem(TypedDict):
     """Something that mechanics does not decide, or that is not followed any further: the motion ends there."""
 
-    code: str
+    code: Literal[
+        "no-motion",
+        "several-motions",
+        "undetermined-friction",
+        "simultaneous-impacts",
+        "several-impacts",
+        "no-impact",
+        "energy-gain",
+        "grazing-contact",
+        "several-onsets",
+        "turning-onset",
+        "no-progress",
+        "event-limit",
+        "lost-event",
+    ]
+    type: str
     explanation: str
     time: float
     connections: list[str]
@@ -2771,6 +2786,38 @@ class MistakeEntry(TypedDict):
     summary: str
     feedback: str
     credit: float
+
+
+class UndecidedRegistry(TypedDict):
+    """What can be left undecided about a scene with contacts."""
+
+    signature: Signature
+    undecided: list[UndecidedEntry]
+
+
+class UndecidedEntry(TypedDict):
+    """One kind of thing that is left undecided about a scene with contacts."""
+
+    code: Literal[
+        "no-motion",
+        "several-motions",
+        "undetermined-friction",
+        "simultaneous-impacts",
+        "several-impacts",
+        "no-impact",
+        "energy-gain",
+        "grazing-contact",
+        "several-onsets",
+        "turning-onset",
+        "no-progress",
+        "event-limit",
+        "lost-event",
+    ]
+    type: str
+    title: str
+    meaning: str
+    of_mechanics: bool
+    documentation: str
 
 
 class Status(TypedDict):

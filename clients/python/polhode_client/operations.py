@@ -154,6 +154,9 @@ OPERATIONS: Mapping[str, Operation] = {
     "list_errors": Operation("GET", "/v1/errors", "Every problem that can be answered"),
     "list_methods": Operation("GET", "/v1/methods", "Every method that can be chosen, and when to use it"),
     "list_mistakes": Operation("GET", "/v1/mistakes", "Every mistake that is recognised in submitted answers"),
+    "list_undecided": Operation(
+        "GET", "/v1/undecided", "Everything that can be left undecided about a scene with contacts"
+    ),
     "get_health": Operation("GET", "/healthz", "Whether the process answers"),
     "get_readiness": Operation("GET", "/readyz", "Whether every kernel is compiled and the compute processes are up"),
     "get_metrics": Operation("GET", "/metrics", "Counters in Prometheus' text format"),
@@ -437,6 +440,11 @@ class Operations(ABC):
     def list_mistakes(self) -> documents.MistakeCatalogue:
         """Every mistake that is recognised in submitted answers."""
         found: documents.MistakeCatalogue = self._ask("list_mistakes", None, None)
+        return found
+
+    def list_undecided(self) -> documents.UndecidedRegistry:
+        """Everything that can be left undecided about a scene with contacts."""
+        found: documents.UndecidedRegistry = self._ask("list_undecided", None, None)
         return found
 
     def get_health(self) -> documents.Status:
@@ -762,6 +770,11 @@ class AsyncOperations(ABC):
     async def list_mistakes(self) -> documents.MistakeCatalogue:
         """Every mistake that is recognised in submitted answers."""
         found: documents.MistakeCatalogue = await self._ask("list_mistakes", None, None)
+        return found
+
+    async def list_undecided(self) -> documents.UndecidedRegistry:
+        """Everything that can be left undecided about a scene with contacts."""
+        found: documents.UndecidedRegistry = await self._ask("list_undecided", None, None)
         return found
 
     async def get_health(self) -> documents.Status:

@@ -561,7 +561,8 @@ class TestKilled:
         async with warm(place) as (processes, _):
             late = ask(processes, b"wait a")
             await until(lambda: late.begun)
-            (process,) = (one for one in processes._all if one.job is late)
+            process = processes.process_of(late)
+            assert process is not None
             processes.drop(late)
             job = ask(processes, b"echo b")
             receive(process, framed(b"a") + framed(b""))
