@@ -24,6 +24,8 @@ from numba import types
 from numba.core import caching, serialize
 from numba.extending import intrinsic
 
+from core.lanes import LANES, fused
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -135,12 +137,12 @@ def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
 
 @intrinsic
 def _fma(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
-    signature = types.float64(types.float64, types.float64, types.float64)
+    kind = LANES if a == LANES else types.float64
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.fma(*arguments)
+        return fused(builder, arguments) if kind is LANES else builder.fma(*arguments)
 
-    return signature, generate
+    return kind(kind, kind, kind), generate
 
 
 @intrinsic
@@ -164,7 +166,7 @@ def _bits_of(typing_context: Any, number: Any) -> Any:
 
 
 fma = cast(Callable[[float, float, float], float], _fma)
-"""a*b + c rounded once, in compiled code."""
+"""a*b + c rounded once, in compiled code; of doubles or of `core.lanes`."""
 
 bits_of = cast(Callable[[float], int], _bits_of)
 """The 64-bit integer that has the bit pattern of a double, in compiled code."""

@@ -1,7 +1,7 @@
 """A double pendulum of two rods released at rest, for 10 s: by this project and by its peers.
 
-Integrators get the equations in the rods' angles, derived by hand or by sympy. MuJoCo gets links and hinges. Every
-number is a double, so that all solve the same problem. Each is swept through its setting; the error is the larger
+Integrators get the equations in the rods' angles, derived by hand or by sympy. MuJoCo and Drake get links and hinges.
+Every number is a double, so that all solve the same problem. Each is swept through its setting; the error is the larger
 difference of the two angles after 10 s (rad) from the motion at 30 digits. What a new scene costs is measured apart
 from what a motion costs.
 """
@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.described_scenes.drake import prepared
 from core.multibody.reading import scene_from
 from core.multibody.solve import solve_scene
 
@@ -171,10 +172,15 @@ def _mujoco(step: float) -> Run:
     return run
 
 
+def _drake(accuracy: float) -> Run:
+    return prepared(accuracy, G, INERTIA, HALF, START, END)
+
+
 ENTRANTS = (
     Entrant("Polhode, whole question with error statement", "numpy", _ours, (1e-6, 1e-9, 1e-12, 1e-15)),
     Entrant("heyoka, equations by hand", "heyoka", _heyoka, TOLERANCES),
     Entrant("SciPy solve_ivp DOP853, equations by hand", "scipy", _scipy, TOLERANCES),
     Entrant("SciPy solve_ivp DOP853, equations by sympy", "sympy", _sympy, TOLERANCES[2:]),
     Entrant("MuJoCo, RK4", "mujoco", _mujoco, STEPS),
+    Entrant("Drake, RungeKutta3 with error control", "drake", _drake, TOLERANCES[:4]),
 )

@@ -12,6 +12,7 @@ import numpy as np
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.measures import Force
 from core.multibody.momenta import StateFunction, momenta
+from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, WholeStates
 from core.systems.trajectory import Column, How
@@ -220,6 +221,9 @@ class Columns:
                 continue
             times = self.times[chosen]
             grid = motion.nodes(float(times[np.argmax(np.abs(times))]))
+            if isinstance(motion, Numerical):
+                # Of eight nodes a step two do, because nothing turns by more than some two radians in a step.
+                grid = np.append(grid[:-1:4], grid[-1])
             # A motion that repeats is followed for one period, and turns alike in each.
             period = None if motion.name != "one period" or motion.period is None else float(motion.period)
             if period is not None and abs(grid[-1]) >= period * (1 - 1e-9):

@@ -15,9 +15,7 @@ from core.compiled import kernel
 from core.double_double import dd_add, dd_add_d, dd_div_d, dd_mul_d
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.numerical import (
-    CHECK_ORDER,
     CHECK_TOLERANCE,
-    FINE_ORDER,
     FINE_TOLERANCE,
     MOST_STEPS,
     Numerical,
@@ -35,8 +33,8 @@ _CHUNK = 64
 _ORDERS = {
     "doubles": (22, 2.0**-66),
     "judge": (26, 2.0**-78),
-    "fine": (FINE_ORDER, FINE_TOLERANCE),
-    "check": (CHECK_ORDER, CHECK_TOLERANCE),
+    "fine": (32, FINE_TOLERANCE),
+    "check": (30, CHECK_TOLERANCE),
 }
 
 

@@ -22,9 +22,13 @@ from core.multibody.packed import Floats, pair
 from core.multibody.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.table import Table
 from core.multibody.turning import FEW_RADIANS
+from core.work import spend
 
 MOST_NODES = 20000
 """Times at which events may be looked for."""
+_UNITS_OF_ROOTS = 0.4
+"""Units of work (`core.work`) for characteristic roots, times the cube of their number."""
+_BITS = 192
 MOST_CANCELLED = 64.0
 """How much larger the terms of a sum over modes may be than the start that they add up to, where doubles have to do."""
 
@@ -110,6 +114,7 @@ class Modes:
         """The characteristic roots of the motion about its equilibrium, slowest first; () where they are not found."""
         n = len(self.table.names)
         inner = acb_mat([row[: 2 * n] for row in self.matrix[: 2 * n]])
+        spend(_UNITS_OF_ROOTS * (2 * n) ** 3)
         try:
             roots = inner.eig(multiple=True)
         except ValueError:
@@ -147,7 +152,8 @@ class Modes:
         largest = float(np.max(np.abs(times), initial=0.0))
         size = max((float(abs(x)) for row in self.matrix for x in row), default=1.0)
         growth = math.log2(1.0 + size * largest) if size * largest < 1e300 else 1000.0
-        with precision(min(BITS, 160 + int(growth))):
+        # In whole steps, so that other times and bounds find the same roots.
+        with precision(min(BITS, _BITS * (1 + (159 + int(growth)) // _BITS))):
             terms = self._terms(start)
             for s, t in enumerate(times):
                 # A sum over modes would make a width of the zeros of the start.
@@ -175,6 +181,7 @@ class Modes:
     def _new_terms(self, start: list[Ball]) -> Any:
         seen = self._seen(start)
         inner = acb_mat([[self.matrix[i][j] for j in seen] for i in seen])
+        spend(_UNITS_OF_ROOTS * len(seen) ** 3)
         try:
             roots, vectors = inner.eig(right=True)
             weights = vectors.solve(acb_mat([[acb(start[i])] for i in seen])).entries()
@@ -252,7 +259,8 @@ class Modes:
     def lowest(self, poly: Poly) -> float:
         """Return what an affine polynomial of the coordinates is never below, minus infinity without a bound."""
         start = [*self.table.q, *self.table.v, ONE]
-        terms = self._terms(start)
+        with precision(_BITS):
+            terms = self._terms(start)
         if terms is None or any(root.real > 0 for root, _ in terms if not is_zero(root.real)):
             return -math.inf
         total = entry(poly, ())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -11,7 +12,7 @@ from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.motion import States
 from core.multibody.packed import Floats, Integers, Packed, Units, packed, state, two_to, units_of
 from core.multibody.polynomials import Ball
-from core.multibody.series import DONE, FULL, LOST, advance, sampled
+from core.multibody.series import DONE, FULL, LOST, advance, placed, sampled
 from core.multibody.series_pairs import advance_pairs, sampled_pairs
 from core.multibody.table import Table
 
@@ -21,11 +22,17 @@ MOST_STEPS = 20000
 _SAME_PLACE = 1e-3
 """Relative difference of the times at which doubles and pairs may meet one singular place."""
 
-_CHUNK = 64
+_SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
+"""Largest error of a judge's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
+
+_CHUNK = 2**21
+"""Bytes for the first steps of a run; memory that is not used is not touched."""
+# A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
+# motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
 ORDER, TOLERANCE = 24, 2.0**-56
-JUDGE_ORDER, JUDGE_TOLERANCE = 26, 2.0**-72
-FINE_ORDER, FINE_TOLERANCE = 32, 2.0**-100
-CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
+JUDGE_ORDER, JUDGE_TOLERANCE = 28, 2.0**-72
+FINE_ORDER, FINE_TOLERANCE = 36, 2.0**-100
+CHECK_ORDER, CHECK_TOLERANCE = 34, 2.0**-94
 
 
 @dataclass
@@ -86,9 +93,8 @@ class Numerical:
         """Return the states, and how far they are from a run in pairs."""
         names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "judge")
         (q, v), (other, rate) = (self.by(kind, times) for kind in names)
-        q_error, v_error = (
-            np.abs((a[..., 0] - b[..., 0]) + (a[..., 1] - b[..., 1])) for a, b in ((q, other), (v, rate))
-        )
+        share = _SHARE if names[0] == "doubles" else _FINE_SHARE
+        q_error, v_error = (self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
         if self.lost_to_doubles:
             q_error, v_error = 16.0 * q_error, 16.0 * v_error
         elif finer:
@@ -97,6 +103,14 @@ class Numerical:
             q_error = 4.0 * q_error + 2.0**-50 * coarse.q_error
             v_error = 4.0 * v_error + 2.0**-50 * coarse.v_error
         return States(q, v, q_error, v_error, (other, rate))
+
+    def _apart(self, first: Floats, second: Floats, share: float) -> Floats:
+        """Return differences of places or rates, shape (t, n), with a share of the largest of all coordinates."""
+        up = np.array([two_to(e) for e in self.units.lengths])
+        each = np.abs((first[..., 0] - second[..., 0]) + (first[..., 1] - second[..., 1]))
+        # Where the difference of one coordinate passes through zero, the judge's own error is larger.
+        found: Floats = each + share * np.max(each / up, axis=1, initial=0.0, keepdims=True) * up
+        return found
 
     def by(self, kind: str, times: Floats) -> tuple[Floats, Floats]:
         """Return coordinates and rates by one kind of run, each of shape (t, n, 2)."""
@@ -115,7 +129,12 @@ class Numerical:
         """Return coordinates alone, shape (t, n), without a judge: enough to count turns."""
         scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
         run = self.run("fine" if self.lost_to_doubles else "doubles", float(scaled[np.argmax(np.abs(scaled))]))
-        found: Floats = evaluate(run, scaled)[0][..., 0] * np.array([two_to(e) for e in self.units.lengths])
+        if run.series.ndim == 3:
+            q = np.empty((len(times), run.series.shape[1]))
+            placed(run.starts, run.series, np.ascontiguousarray(scaled), run.which(scaled), q)
+        else:
+            q = evaluate(run, scaled)[0][..., 0]
+        found: Floats = q * np.array([two_to(e) for e in self.units.lengths])
         return found
 
     def nodes(self, end: float) -> Floats:
@@ -187,14 +206,12 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
     clock = np.zeros(2)
     starts, series = [], []
     steps = 0
+    shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
+    many = max(16, _CHUNK // (8 * math.prod(shape)))
     while True:
-        chunk_starts = np.empty((_CHUNK + 1, 2))
-        if kind == "doubles":
-            chunk = np.empty((_CHUNK, len(q), order + 1))
-            ended, count = advance(arrays, q, v, clock, end, tolerance, chunk_starts, chunk)
-        else:
-            chunk = np.empty((_CHUNK, len(q), order + 1, 2))
-            ended, count = advance_pairs(arrays, q, v, clock, end, tolerance, chunk_starts, chunk)
+        chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
+        take = advance if kind == "doubles" else advance_pairs
+        ended, count = take(arrays, q, v, clock, end, tolerance, chunk_starts, chunk)
         starts.append(chunk_starts[:count])
         series.append(chunk[:count])
         steps += count
@@ -207,11 +224,10 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
     starts.append(clock[None, :].copy())
     if not steps:
         # A run of no duration has one step, so that the start can be evaluated.
-        shape = (1, len(q), order + 1) if kind == "doubles" else (1, len(q), order + 1, 2)
-        single = np.zeros(shape)
+        single = np.zeros((1, *shape))
         single[0, :, 0], single[0, :, 1] = (q[:, 0], v[:, 0]) if kind == "doubles" else (q, v)
         return Run(np.zeros((2, 2)), single, ended != DONE)
-    return Run(np.concatenate(starts), np.concatenate(series), ended != DONE)
+    return Run(np.concatenate(starts), series[0] if len(series) == 1 else np.concatenate(series), ended != DONE)
 
 
 def evaluate(run: Run, times: Floats) -> tuple[Floats, Floats]:

@@ -165,10 +165,12 @@ def _located(sampler: Sampler, search: When, low: float, high: float, number: in
         if k == 0:
             break
         low, high = fine[k - 1], fine[k]
-        # The chord's zero is close where the curve is smooth: the next times crowd around it.
+        # The chord's zero is close where the curve is smooth: the next times crowd around it. Where all of them are
+        # rounded to the ends, the middle goes on.
         near = low + (high - low) * values[k - 1] / (values[k - 1] - values[k])
         around = near + (high - low) * _CROWDED
-        fine = np.unique(np.concatenate([[low, high], around[(around > low) & (around < high)]]))
+        inner = np.append(around[(around > low) & (around < high)], 0.5 * (low + high))
+        fine = np.unique(np.concatenate([[low, high], inner]))
     reach = (high - low) + 1e-6 * max(abs(high), np.finfo(float).tiny)
     around = sampler(np.array([low - reach, high, high + reach]))
     slope = abs(around.values[2] - around.values[0]) / (2 * reach + (high - low))

@@ -4,7 +4,7 @@ At order k the unknowns x = (k+1)(k+2) q_{k+2} and the multipliers' coefficient 
 
     [M  -W_0^T; W_0  0] (x, lambda_k) = (F_k + sum_{a<k} lambda_a W_{k-a},  -(k+1) sum_{a>=1} W_a u_{k+1-a}),
 
-with u_k = (k+1) q_{k+1}: one product with one inverse a step, and no reduction of the index. At the end of a step the
+with u_k = (k+1) q_{k+1}: one inverse a step, and no reduction of the index. At the end of a step the
 place is put back on the measures by one weighted Newton correction, then the rates at the corrected place.
 
 References
@@ -15,12 +15,17 @@ high-index DAE solving", Acta Cybernetica 24 (2020).
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from core.compiled import kernel
+from core.compiled import fma, kernel
 from core.double_double import dd_add, dd_add_d, dd_mul, two_prod, two_sum
+from core.lanes import WIDTH, alike, lanes_at, put_lanes
 from core.multibody.packed import Floats, Integers, Packed
 from core.multibody.pair_arrays import gathered
+from core.multibody.products import ROW, Products, products_of, spread, started, summed
+from core.multibody.saddle import Saddle, inverted, saddle_space
 
 SHORTEST = 1e-12
 """Shortest step, in the table's own unit of time or of the time reached: below it a place is singular."""
@@ -40,124 +45,40 @@ def entries_of_lines(table: Packed, q: Floats, lines: Floats) -> None:
 
 
 @kernel()
-def invert(a: Floats, out: Floats) -> bool:
-    """Invert a matrix by Gauss-Jordan elimination with scaled pivots; `a` is used up. Return whether it could be."""
-    n = a.shape[0]
-    scale = np.empty(n)
-    for i in range(n):
-        largest = 0.0
-        for j in range(n):
-            largest = max(largest, abs(a[i, j]))
-            out[i, j] = 1.0 if i == j else 0.0
-        if not largest > 0.0:
-            return False
-        scale[i] = 1.0 / largest
-    for k in range(n):
-        pivot, best = k, -1.0
-        for i in range(k, n):
-            size = abs(a[i, k]) * scale[i]
-            if size > best:
-                pivot, best = i, size
-        if not best > 1e-14:
-            return False
-        if pivot != k:
-            for j in range(n):
-                a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
-                out[k, j], out[pivot, j] = out[pivot, j], out[k, j]
-            scale[pivot] = scale[k]
-        factor = 1.0 / a[k, k]
-        for j in range(n):
-            a[k, j] *= factor
-            out[k, j] *= factor
-        for i in range(n):
-            if i != k and a[i, k] != 0.0:
-                factor = a[i, k]
-                for j in range(n):
-                    a[i, j] -= factor * a[k, j]
-                    out[i, j] -= factor * out[k, j]
-    return True
-
-
-@kernel()
-def saddle_inverse(table: Packed, lines: Floats, work: Floats, inverse: Floats) -> bool:
-    """Fill in the inverse of [M -W^T; W 0]; return whether there is one."""
-    n = table.load.shape[0]
-    work[:] = 0.0
-    for i in range(n):
-        for j in range(n):
-            work[i, j] = table.mass[i, j, 0]
-    for e in range(lines.shape[0]):
-        r, j = table.lines_at[e, 0], table.lines_at[e, 1]
-        work[j, n + r] = -lines[e]
-        work[n + r, j] = lines[e]
-    return invert(work, inverse)
-
-
-@kernel()
-def coefficients(table: Packed, inverse: Floats, order: int, q: Floats, multipliers: Floats) -> None:
-    """Fill in the Taylor coefficients q[:, 2:] and those of the multipliers, q[:, 0:2] being given.
-
-    Parameters
-    ----------
-    q : (n, order + 1)
-    multipliers : (m, order - 1)
-    """
+def coefficients(table: Packed, space: Saddle, products: Products, since: int) -> None:
+    """Fill in the Taylor coefficients of the path from since + 2 on, in doubles, the earlier ones being taken up."""
     n, m = table.load.shape[0], table.rate.shape[0]
-    count = table.lines.shape[0]
-    u = np.zeros((n, order + 1))
-    w = np.zeros((count, order + 1))
-    right = np.empty(n + m)
-    varying = np.zeros(count, dtype=np.bool_)
-    for p in range(table.slopes.shape[0]):
-        varying[table.slopes_at[p, 0]] = True
-    for i in range(n):
-        u[i, 0] = q[i, 1]
-    for a in range(2):
-        for e in range(count):
-            w[e, a] = table.lines[e, 0] if a == 0 else 0.0
-        for p in range(table.slopes.shape[0]):
-            w[table.slopes_at[p, 0], a] += table.slopes[p, 0] * q[table.slopes_at[p, 1], a]
-    for k in range(order - 1):
-        for i in range(n):
-            right[i] = table.load[i, 0] if k == 0 else 0.0
-        for r in range(m):
-            right[n + r] = 0.0
+    at, factor, sums, columns = products.at, products.factor, products.sums[0], space.columns[0]
+    path, right, now, size = products.path[0], products.right[0], products.now[0], products.right.shape[1]
+    last = products.inverses.shape[0] - 3
+    for k in range(since, last + 1):
+        for b in range(0, size, WIDTH):
+            put_lanes(right, b, alike(0.0))
+        if k == 0:
+            for i in range(n):
+                right[i] = table.load[i, 0]
         for p in range(table.stiff.shape[0]):
-            right[table.stiff_at[p, 0]] -= table.stiff[p, 0] * q[table.stiff_at[p, 1], k]
+            right[table.stiff_at[p, 0]] -= table.stiff[p, 0] * path[k * size + table.stiff_at[p, 1]]
         for p in range(table.damp.shape[0]):
-            right[table.damp_at[p, 0]] -= table.damp[p, 0] * u[table.damp_at[p, 1], k]
-        for p in range(table.gyre.shape[0]):
-            j, l = table.gyre_at[p, 1], table.gyre_at[p, 2]  # noqa: E741
-            total = 0.0
-            for a in range(k + 1):
-                total += q[j, a] * u[l, k - a]
-            right[table.gyre_at[p, 0]] += table.gyre[p, 0] * total
-        for e in range(count):
-            if not varying[e]:
-                continue
-            r, j = table.lines_at[e, 0], table.lines_at[e, 1]
-            total = 0.0
-            for a in range(k):
-                total += multipliers[r, a] * w[e, k - a]
-            right[j] += total
-            total = 0.0
-            for a in range(1, k + 2):
-                total += w[e, a] * u[j, k + 1 - a]
-            right[n + r] -= (k + 1) * total
-        for i in range(n):
-            total = 0.0
+            right[table.damp_at[p, 0]] -= table.damp[p, 0] * (k + 1) * path[(k + 1) * size + table.damp_at[p, 1]]
+        summed(products, k)
+        for p in range(at.shape[0]):
+            row = np.uintp(at[p, ROW])
+            right[row] = fma(factor[p, 0], sums[p], right[row])
+        for i in range(n, n + m):
+            right[i] *= -(k + 1.0)
+        for b in range(0, size, WIDTH):
+            total = alike(0.0)
             for j in range(n + m):
-                total += inverse[i, j] * right[j]
-            q[i, k + 2] = total / ((k + 1) * (k + 2))
-            u[i, k + 1] = total / (k + 1)
-        for r in range(m):
-            total = 0.0
-            for j in range(n + m):
-                total += inverse[n + r, j] * right[j]
-            multipliers[r, k] = total
-        if k + 2 < order:
-            for p in range(table.slopes.shape[0]):
-                w[table.slopes_at[p, 0], k + 2] += table.slopes[p, 0] * q[table.slopes_at[p, 1], k + 2]
+                if right[j] != 0.0:
+                    total = fma(lanes_at(columns, j * size + b), alike(right[j]), total)
+            second = total / alike((k + 1.0) * (k + 2.0))
+            put_lanes(now, b, second)
+            put_lanes(now, size + b, total / alike(k + 1.0))
+            put_lanes(now, 2 * size + b, total)
+            put_lanes(path, (k + 2) * size + b, second)
+        if k < last:
+            spread(table, products, k)
 
 
 @kernel()
@@ -174,21 +95,21 @@ def step_size(q: Floats, group: Integers, tolerance: float) -> float:
                 zeroth = max(zeroth, abs(q[i, 0]))
                 first = max(first, abs(q[i, 1]))
                 second = max(second, abs(q[i, 2]))
-        for power, size in ((order, last), (order - 1, before)):
-            if size > 0.0:
-                scale = 1.0 if g == 2 else zeroth
+        # The logarithms of sizes and scales; that of zero is minus infinity.
+        rate, gain = math.log(first), math.log(second)
+        for power, number in ((order, last), (order - 1, before)):
+            if number > 0.0:
+                size = math.log(number)
+                scale = 0.0 if g == 2 else math.log(zeroth)
                 # What starts at zero is measured by how far it comes within the radius of convergence.
-                if second > 0.0:
-                    radius = (second / size) ** (1.0 / (power - 2))
-                    scale = max(scale, second * radius * radius)
-                if first > 0.0:
-                    scale = max(scale, first * (first / size) ** (1.0 / (power - 1)))
-                best = min(best, (tolerance * scale / size) ** (1.0 / power))
-    return best
+                scale = max(scale, gain + 2.0 * (gain - size) / (power - 2))
+                scale = max(scale, rate + (rate - size) / (power - 1))
+                best = min(best, (math.log(tolerance) + scale - size) / power)
+    return math.exp(best)
 
 
 @kernel()
-def correct(table: Packed, inverse: Floats, lines: Floats, q: Floats, v: Floats) -> None:
+def correct(table: Packed, space: Saddle, lines: Floats, q: Floats, v: Floats) -> None:
     """Put a place back on the measures, and the rates onto the rows there.
 
     Residuals are formed with the tails of the state and of the table, or their rounding would be the error of a step.
@@ -200,6 +121,7 @@ def correct(table: Packed, inverse: Floats, lines: Floats, q: Floats, v: Floats)
     q, v : (n, 2)
     """
     n, m = table.load.shape[0], table.rate.shape[0]
+    columns = space.columns[0]
     residual = np.zeros((m, 2))
     for r in range(m):
         residual[r, 0], residual[r, 1] = -table.offset[r, 0], -table.offset[r, 1]
@@ -220,7 +142,7 @@ def correct(table: Packed, inverse: Floats, lines: Floats, q: Floats, v: Floats)
         total = 0.0
         for r in range(m):
             if table.held[r] == 1:
-                total += inverse[i, n + r] * (residual[r, 0] + residual[r, 1])
+                total += columns[n + r, i] * (residual[r, 0] + residual[r, 1])
         q[i, 0], q[i, 1] = dd_add_d(q[i, 0], q[i, 1], total)
     entries_of_lines(table, q[:, 0], lines)
     for r in range(m):
@@ -240,7 +162,7 @@ def correct(table: Packed, inverse: Floats, lines: Floats, q: Floats, v: Floats)
     for i in range(n):
         total = 0.0
         for r in range(m):
-            total += inverse[i, n + r] * (residual[r, 0] + residual[r, 1])
+            total += columns[n + r, i] * (residual[r, 0] + residual[r, 1])
         v[i, 0], v[i, 1] = dd_add_d(v[i, 0], v[i, 1], total)
 
 
@@ -276,12 +198,12 @@ def advance(
     n, m = table.load.shape[0], table.rate.shape[0]
     order = series.shape[2] - 1
     lines = np.empty(table.lines.shape[0])
-    work = np.empty((n + m, n + m))
-    inverse = np.empty((n + m, n + m))
-    multipliers = np.empty((m, order - 1))
+    space, products = saddle_space(table, 1), products_of(table, order, 1)
+    path, size = products.path[0], products.right.shape[1]
+    changes = np.empty((2, size))
     place = q[:, 0].copy()
     entries_of_lines(table, place, lines)
-    if not saddle_inverse(table, lines, work, inverse):
+    if not inverted(table, lines, space):
         return SINGULAR, 0
     way = 1.0 if end >= clock[0] else -1.0
     for step in range(series.shape[0]):
@@ -289,35 +211,42 @@ def advance(
         left = (end - clock[0]) - clock[1]
         if left * way <= 0.0:
             return DONE, step
-        c = series[step]
         for i in range(n):
-            c[i, 0], c[i, 1] = q[i, 0], v[i, 0]
-        coefficients(table, inverse, order, c, multipliers)
+            path[i], path[size + i] = q[i, 0], v[i, 0]
+        started(table, products)
+        coefficients(table, space, products, 0)
+        c = series[step]
+        for k in range(order + 1):
+            for i in range(n):
+                c[i, k] = path[k * size + i]
         h = way * step_size(c, table.group, tolerance)
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return (SINGULAR if abs(h) >= 0.0 else LOST), step
         if abs(h) >= abs(left):
             h = left
-        for i in range(n):
-            moved, rate = 0.0, 0.0
-            for k in range(order, 1, -1):
-                moved = (moved + c[i, k]) * h
+        for b in range(0, n, WIDTH):
+            moved, rate, by = alike(0.0), alike(0.0), alike(h)
             for k in range(order, 2, -1):
-                rate = (rate + k * c[i, k]) * h
+                own = lanes_at(path, k * size + b)
+                moved = (moved + own) * by
+                rate = fma(own, alike(float(k)), rate) * by
+            moved = (moved + lanes_at(path, 2 * size + b)) * by
+            put_lanes(changes, b, moved * by)
+            put_lanes(changes, size + b, rate * by)
+        for i in range(n):
             # The largest terms, rate times step, are formed exactly; the rest is as much smaller as the step is short.
             ph, pl = two_prod(v[i, 0], h)
-            pl += moved * h + v[i, 1] * h
-            q[i, 0], q[i, 1] = dd_add(q[i, 0], q[i, 1], ph, pl)
+            q[i, 0], q[i, 1] = dd_add(q[i, 0], q[i, 1], ph, pl + changes[0, i] + v[i, 1] * h)
             ph, pl = two_prod(2.0 * c[i, 2], h)
-            v[i, 0], v[i, 1] = dd_add(v[i, 0], v[i, 1], ph, pl + rate * h)
+            v[i, 0], v[i, 1] = dd_add(v[i, 0], v[i, 1], ph, pl + changes[1, i])
             place[i] = q[i, 0]
             if not (abs(q[i, 0]) < 1e150 and abs(v[i, 0]) < 1e150):
                 return LOST, step
         entries_of_lines(table, place, lines)
-        if not saddle_inverse(table, lines, work, inverse):
+        if not inverted(table, lines, space):
             return SINGULAR, step
         if m > 0:
-            correct(table, inverse, lines, q, v)
+            correct(table, space, lines, q, v)
         sh, sl = two_sum(clock[0], h)
         clock[0], clock[1] = two_sum(sh, sl + clock[1])
         starts[step + 1, 0], starts[step + 1, 1] = clock[0], clock[1]
@@ -341,3 +270,17 @@ def sampled(starts: Floats, series: Floats, times: Floats, which: Integers, q: F
                 rate = (rate + k * c[i, k]) * h
             q[s, i] = c[i, 0] + moved
             v[s, i] = c[i, 1] + rate
+
+
+@kernel()
+def placed(starts: Floats, series: Floats, times: Floats, which: Integers, q: Floats) -> None:
+    """Evaluate the places alone, into q of shape (t, n)."""
+    n, order = series.shape[1], series.shape[2] - 1
+    for s in range(times.shape[0]):
+        h = (times[s] - starts[which[s], 0]) - starts[which[s], 1]
+        c = series[which[s]]
+        for i in range(n):
+            moved = c[i, order]
+            for k in range(order - 1, -1, -1):
+                moved = fma(moved, h, c[i, k])
+            q[s, i] = moved

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -47,7 +48,7 @@ class Column:
     inherited: float | None = None
     scale: float | None = None
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """Largest magnitude of a sample."""
         greatest = float(np.max(np.abs(self.values), initial=0.0))

@@ -219,6 +219,32 @@ async def test_refusals_name_the_limit() -> None:
     assert "20000 keys" in many.json()["detail"]
 
 
+async def test_the_largest_scene_answers_as_foreseen_and_one_body_more_is_refused() -> None:
+    """A horizontal chain of points, released: under its rods' tensions the last one falls freely at first."""
+
+    def chain(count: int) -> dict[str, Any]:
+        bodies = {f"p{i}": {"mass": 1, "at": [i + 1, 0]} for i in range(count)}
+        rods = [{"kind": "rod", "a": f"p{i}", "b": f"p{i - 1}" if i else [0, 0]} for i in range(count)]
+        return {"gravity": [0, -9.81], "bodies": bodies, "connections": rods, "times": [0.02], "accuracy": 1e-9}
+
+    async with client_of(SERVICE) as client:
+        plans = [
+            (await client.post("/v1/plan", json={"path": "/v1/scenes", "request": chain(count)})).json()
+            for count in (MOST_BODIES // 10, MOST_BODIES)
+        ]
+    response = await asked(chain(MOST_BODIES))
+    answer = response.json()
+    assert (response.status_code, answer["model"]["degrees_of_freedom"]) == (200, MOST_BODIES)
+    # A rod that starts level and at rest pulls on nothing: to third order in time every point falls freely.
+    fall = answer["trajectory"]["columns"][f"p{MOST_BODIES - 1}.position"]
+    assert fall["values"][0][1] == pytest.approx(-9.81 * 0.02**2 / 2, abs=1e-6)
+    assert 0.5 <= plans[1]["cost"]["bytes"] / len(response.content) <= 2.0
+    assert plans[1]["cost"]["milliseconds"] > 10 * plans[0]["cost"]["milliseconds"]
+    refused = await asked(chain(MOST_BODIES + 1))
+    assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/bodies")
+    assert f"at most {MOST_BODIES}" in refused.json()["detail"]
+
+
 async def test_a_misspelt_field_of_a_body_is_recognised_whatever_the_body_is_called() -> None:
     for name in ("p", "times", "ball", "body"):
         response = await asked({"bodies": {name: {"mass": 1, "at": [0, 0], "velocty": [0, 0]}}})
