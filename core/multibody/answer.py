@@ -134,7 +134,7 @@ class SceneEvent:
     ----------
     kind : str
         "touch", "lift-off", "slip", "stick", "roll", "settle" (bounces end), "taut", "slack", "stop", "release",
-        "singular", or the code of a problem.
+        "end-of-chain", "singular", or the code of a problem.
     name : str
         The connection; "" where several make a place singular.
     time : float

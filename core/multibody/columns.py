@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.measures import Force
-from core.multibody.momenta import momenta
+from core.multibody.momenta import StateFunction, momenta
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, WholeStates
@@ -32,6 +33,10 @@ COLUMNS_OF_STATES = ("trajectory", "forces-in-time", "energy-in-time", "momenta-
 """Outputs that are columns of the state, in the order in which they are answered."""
 
 
+Unknown = tuple[Floats, Floats]
+"""By how much places and rates, each of shape (t, n), are wrong without their judge showing it."""
+
+
 @dataclass(frozen=True)
 class Columns:
     """Makes the columns of a scene at many times."""
@@ -41,6 +46,7 @@ class Columns:
     states: WholeStates
     how: How
     rounding: float = _SMALL
+    unknown: Unknown | None = None
     _along: dict[tuple[int, bool], Floats] = field(default_factory=dict, repr=False)
 
     def trajectory(self) -> dict[str, Column]:
@@ -96,23 +102,52 @@ class Columns:
         judged = None
         if self.states.reference is not None:
             judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
+        moved = self._moved(len(chosen), lambda q, v: self._forces(chosen, q, v))
         found: dict[str, Column] = {}
-        for force in chosen:
+        for k, force in enumerate(chosen):
             values, size = self.whole.force(force, q, v, multipliers)
-            error = _SMALL * float(np.max(size, initial=0.0)) + floor
+            error = _SMALL * float(np.max(size, initial=0.0)) + floor + float(moved[k])
             if judged is not None:
                 other = self.whole.force(force, *judged)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
             found[force.name] = Column(values, force.unit, error, self.how)
         return found
 
+    def _forces(self, chosen: Sequence[Force], q: Floats, v: Floats) -> Floats:
+        """Return forces at states, shape (forces, t, 1)."""
+        multipliers = self.whole.multipliers(q, v)
+        found = [self.whole.force(force, q, v, multipliers)[0] for force in chosen]
+        return np.array(found).reshape(len(chosen), len(q), 1)
+
+    def _moved(self, count: int, functions: Callable[[Floats, Floats], Floats]) -> Floats:
+        """Return by how much functions of the state are wrong for what is unknown of it, to first order.
+
+        Parameters
+        ----------
+        functions : callable
+            Returns the functions at states, shape (functions, t, components).
+        """
+        q, v = self.states.q, self.states.v
+        if self.unknown is None or not len(q):
+            return np.zeros(count)
+        here = functions(q, v)
+        total = np.zeros((count, len(q)))
+        for which, sizes in enumerate(self.unknown):
+            for i in np.flatnonzero(sizes.any(axis=0)):
+                state = [q.copy(), v.copy()]
+                state[which][:, i, 0] += sizes[:, i]
+                total += np.linalg.norm(functions(*state) - here, axis=2)
+        found: Floats = total.max(axis=1, initial=0.0)
+        return found
+
     def momenta(self) -> dict[str, Column]:
         """Return momentum and angular momentum about the origin in time, of every body and of all."""
         measures = self.whole.measures
         found: dict[str, Column] = {}
-        for name, function in momenta(measures.table, measures.coordinates.frames).items():
+        for name, function in momenta(measures.table, measures.coordinates.frames, measures.momenta).items():
             values, size = function.at(self.states.q, self.states.v)
             error = _SMALL * float(np.max(np.linalg.norm(size, axis=1), initial=0.0))
+            error += float(self._moved(1, partial(_at, function))[0])
             if self.states.reference is not None:
                 other = function.at(*self.states.reference)[0]
                 error += 4.0 * float(np.max(np.linalg.norm(values - other, axis=1), initial=0.0))
@@ -126,10 +161,11 @@ class Columns:
         if self.states.reference is not None:
             pairs.append(self.states.reference)
         curves = [self._energies(*entry) for entry in pairs]
+        moved = self._moved(2, lambda q, v: np.array([both[0][:, None] for both in self._energies(q, v)]))
         found: dict[str, Column] = {}
         for number, name in enumerate(("energy.kinetic", "energy.potential")):
             values, size = curves[0][number]
-            error = _SMALL * float(np.max(size, initial=0.0))
+            error = _SMALL * float(np.max(size, initial=0.0)) + float(moved[number])
             if len(curves) > 1:
                 error += 4.0 * float(np.max(np.abs(values - curves[1][number][0]), initial=0.0))
             found[name] = Column(values, "J", error, self.how)
@@ -232,6 +268,11 @@ class Columns:
             f"{name}.attitude": Column(quaternion, "1", _stated(quaternion, off), self.how),
             f"{name}.angular_velocity": Column(omega, "rad/s", _stated(omega, off_rate + fast * off), self.how),
         }
+
+
+def _at(function: StateFunction, q: Floats, v: Floats) -> Floats:
+    """Return a function of the state as `Columns._moved` takes it."""
+    return function.at(q, v)[0][None]
 
 
 def quaternions(axes: Floats) -> Floats:

@@ -8,6 +8,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody import attraction, laws
+from core.multibody.chains import chain
 from core.multibody.contacts import contact
 from core.multibody.coordinates import Coordinates, dimension_of
 from core.multibody.language import GROUND, Scene
@@ -61,7 +62,7 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
 
 def _weight(measures: Measures) -> list[Work]:
     """Return what gravity does, where there is any."""
-    fall: Poly = {}
+    fall: Poly = dict(measures.fall)
     for frame in measures.coordinates.frames.values():
         for i, pull in zip(frame.position, measures.coordinates.gravity, strict=True):
             mass = measures.table.mass.get((i, i))
@@ -100,11 +101,11 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
         elif kind in ("weld", "slider") or (kind == "pin" and connection.axis is not None):
             see(connection.a, "direction", "orientation")
             see(connection.b, "direction", "orientation")
-        if kind == "string" and isinstance(connection.through, (list, tuple)):
+        if kind in ("string", "chain") and isinstance(connection.through, (list, tuple)):
             for place in connection.through:
                 see(place)
                 body = scene.bodies.get(place) if isinstance(place, str) else None
-                if body is not None and body.radius is not None:
+                if kind == "string" and body is not None and body.radius is not None:
                     see(place, "turn")
         if kind == "rolling" or (kind == "contact" and (plane or connection.friction is not None)):
             for place in (connection.place, connection.a, connection.b):
@@ -139,6 +140,8 @@ def _connect(measures: Measures, name: str, connection: Any, path: Path) -> None
     point, kind = measures.coordinates.point, connection.kind
     if kind == "string":
         string(measures, name, connection, path)
+    elif kind == "chain":
+        chain(measures, name, connection, path)
     elif kind == "rolling":
         (rolling if measures.dimension == 2 else rolling_in_space)(measures, name, connection, path)
     elif kind == "contact":

@@ -261,6 +261,8 @@ def _force(measures: Measures, force: Force, elimination: Elimination) -> ForceA
     total = evaluated(force.of_state, table.q)
     for j, value in force.of_rates.items():
         total = total + value * table.v[j]
+    for j, value in force.of_squares.items():
+        total = total + value * table.v[j] * table.v[j]
     line = {row: evaluated(poly, table.q) for row, poly in force.terms}
     free, value = elimination.reduced({row: x for row, x in line.items() if not is_zero(x)}, -total)
     if not free:

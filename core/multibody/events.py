@@ -1,4 +1,4 @@
-"""What ends a scene: a string that would have to push, a length that reaches zero, a singular place."""
+"""What ends a scene: a string that would have to push, a chain that lifts off, a length of zero, a singular place."""
 
 from __future__ import annotations
 
@@ -20,6 +20,11 @@ from core.multibody.whole import Whole, values
 _SECTIONS = 33
 _NOISE = 2.0**-40
 """Share of a force's size below which its sign is noise."""
+_GROWN = 16.0
+"""Powers of e by which a motion grows before events are looked for beyond."""
+_MOST_REACHES = 5
+_NEIGHBOURS = 8
+"""Samples after one by which the size is judged there: those of a motion that grows without bound say nothing of it."""
 
 
 def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEvent | None:
@@ -47,16 +52,18 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEven
             root = first_zero(length, table, whole.gains, end < 0.0)
             time = None if root is None else float(root)
             if time is not None and abs(time) <= abs(end):
-                found.append(SceneEvent("singular", limit.name, time, 2.0**-52 * abs(time)))
+                found.append(SceneEvent(limit.event, limit.name, time, 2.0**-52 * abs(time)))
         watched = [limit for limit in watched if limit.force is not None]
     watched = [limit for limit in watched if not _safe(whole, limit)]
-    if watched:
-        grid = _grid(whole, end)
-        curves = _curves(whole, watched, grid)
-        for number, limit in enumerate(watched):
-            event = _first_loss(whole, limit, grid, curves[number])
-            if event is not None:
-                found.append(event)
+    lost: list[SceneEvent] = []
+    for reach in _reaches(whole, end) if watched else ():
+        grid = _grid(whole, reach)
+        curves = _curves(whole, watched, grid)[0]
+        events = (_first_loss(whole, limit, grid, curve) for limit, curve in zip(watched, curves, strict=True))
+        lost = [event for event in events if event is not None]
+        if lost:
+            break
+    found.extend(lost)
     return min(found, key=lambda event: abs(event.time)) if found else None
 
 
@@ -81,27 +88,41 @@ def _follows(whole: Whole, limit: Limit, indices: Sequence[int]) -> bool:
     return bool(length) and {key[0] for key in length if key} <= set(indices)
 
 
+def _reaches(whole: Whole, end: float) -> list[float]:
+    """Return the times up to which events are looked for in turn: what grows without bound soon meets one."""
+    growths = [float(mode.growth) for _, motion in whole.parts if isinstance(motion, Modes) for mode in motion.modes]
+    # Backwards in time, what decays grows.
+    growth = max((copysign(1.0, end) * x for x in growths), default=0.0)
+    first = _GROWN / growth if growth > 0.0 else abs(end)
+    nearer = [2.0**k * first for k in range(_MOST_REACHES)]
+    return [*(copysign(reach, end) for reach in nearer if reach < abs(end)), end]
+
+
 def _grid(whole: Whole, end: float) -> Floats:
     times = np.unique(np.abs(np.concatenate([motion.nodes(end) for _, motion in whole.parts] or [np.zeros(1)])))
     return copysign(1.0, end) * times[times <= abs(end)]
 
 
-def _curves(whole: Whole, watched: Sequence[Limit], times: Floats, *, judged: bool = False) -> Floats:
-    """Return every watched quantity at the times, shape (limits, t), by the answer or by its judge."""
+def _curves(whole: Whole, watched: Sequence[Limit], times: Floats, *, judged: bool = False) -> tuple[Floats, Floats]:
+    """Return every watched quantity at the times, by the answer or by its judge, and the sizes of its terms.
+
+    Both have the shape (limits, t).
+    """
     states = whole.states(times)
     q, v = (states.q, states.v) if not judged or states.reference is None else states.reference
     multipliers = whole.multipliers(q, v) if any(limit.force is not None for limit in watched) else np.zeros((0, 0))
-    found = np.empty((len(watched), len(times)))
+    found, size = np.empty((len(watched), len(times))), np.empty((len(watched), len(times)))
     for number, limit in enumerate(watched):
         if limit.force is not None:
-            found[number] = whole.force(whole.measures.forces[limit.force], q, v, multipliers)[0]
+            found[number], size[number] = whole.force(whole.measures.forces[limit.force], q, v, multipliers)
         else:
-            found[number] = values(limit.length or {}, q)[0]
-    return found
+            found[number], size[number] = values(limit.length or {}, q)
+    return found, size
 
 
 def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> SceneEvent | None:
-    threshold = -_NOISE * float(np.max(np.abs(curve), initial=0.0))
+    largest = np.maximum.accumulate(np.maximum(np.abs(curve), limit.scale))
+    threshold = -_NOISE * largest[np.minimum(np.arange(len(curve)) + _NEIGHBOURS, len(curve) - 1)]
     lost = curve < threshold
     if lost[0]:
         return SceneEvent(limit.event, limit.name, 0.0, 0.0)
@@ -120,7 +141,7 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Scen
             break
         if dips[i]:
             fine = np.linspace(grid[i - 1], grid[i + 1], 4 * _SECTIONS)
-            closer = _curves(whole, [limit], fine)[0] < threshold
+            closer = _curves(whole, [limit], fine)[0][0] < threshold[i]
             if np.any(closer):
                 k = int(np.argmax(closer))
                 low, high = fine[k - 1], fine[k]
@@ -129,15 +150,15 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Scen
         return None
     for _ in range(14):
         fine = np.linspace(low, high, _SECTIONS)
-        below = _curves(whole, [limit], fine)[0] < 0.0
+        below = _curves(whole, [limit], fine)[0][0] < 0.0
         k = int(np.argmax(below)) if np.any(below) else _SECTIONS - 1
         if k == 0 or (fine[k - 1] == low and fine[k] == high):
             break
         low, high = fine[k - 1], fine[k]
     around = np.array([low - (high - low) - 1e-7 * abs(high), high, high + (high - low) + 1e-7 * abs(high)])
-    curve = _curves(whole, [limit], around)[0]
-    judged = _curves(whole, [limit], around, judged=True)[0]
+    curve, size = (x[0] for x in _curves(whole, [limit], around))
+    judged = _curves(whole, [limit], around, judged=True)[0][0]
     slope = (curve[2] - curve[0]) / (around[2] - around[0])
-    off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(np.abs(curve)))
+    off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(size))
     error = off / abs(slope) if slope != 0.0 else abs(high)
     return SceneEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))

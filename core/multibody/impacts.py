@@ -14,6 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations
 
+from flint import arb
+
 from core.multibody.contact_responses import (
     Forces,
     Responses,
@@ -151,17 +153,19 @@ def _group(
         return at_once
     outcomes: list[tuple[str, Forces]] = [("together", at_once)]
     if len(group) <= _MOST_ORDERED:
+        middle = _without_width(rates, found)
         for order in permutations(group):
-            in_turn = _in_turn(unilateral, order, rates, found)
+            in_turn = _in_turn(unilateral, order, *middle)
             if in_turn is not None:
                 outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn))
     first = rates_after(at_once, rates, found)
-    if len(group) <= _MOST_ORDERED and all(alike(first, rates_after(one, rates, found)) for _, one in outcomes[1:]):
+    in_order = [rates_after(one, rates, found) for _, one in outcomes[1:]]
+    if len(group) <= _MOST_ORDERED and all(alike(first, then, rates) for then in in_order):
         return at_once
     different: list[tuple[str, Rates]] = []
     for told, one in outcomes:
         then = rates_after(one, rates, found)
-        if not any(alike(then, other) for _, other in different):
+        if not any(alike(then, other, rates) for _, other in different):
             different.append((told, then))
     return Problem(
         "simultaneous-impacts",
@@ -173,6 +177,16 @@ def _group(
         ),
         'the order in which they happen, as "order" of the contacts',
     )
+
+
+def _without_width(rates: Rates, found: Responses) -> tuple[Rates, Responses]:
+    """Return the middle of what is known of rates and responses.
+
+    Impacts in turn may come to their outcome as a limit only, while the width of balls grows with every one of them: it
+    would hide what is left before the limit is reached.
+    """
+    matrix = [[ZERO if is_zero(x) else arb(x.mid()) for x in line] for line in found.matrix]
+    return {a: arb(x.mid()) for a, x in rates.items()}, replace(found, matrix=matrix)
 
 
 def _rates(

@@ -34,9 +34,9 @@ def rates_after(impulses: Forces, rates: Rates, found: Responses) -> Rates:
     return {a: x + sum((found.matrix[a][b] * p for b, p in impulses.items()), ZERO) for a, x in rates.items()}
 
 
-def alike(first: Rates, second: Rates) -> bool:
-    """Return whether two outcomes are one: impacts in turn may come to it as a limit only."""
-    scale = max((float(abs(x)) for x in first.values()), default=0.0)
+def alike(first: Rates, second: Rates, before: Rates) -> bool:
+    """Return whether two outcomes are one, beside the rates before: impacts in turn may come to it as a limit."""
+    scale = max((float(abs(x)) for x in (*first.values(), *before.values())), default=0.0)
     return all(is_zero(x - second[a]) or bool(abs(x - second[a]) < LIMIT * scale) for a, x in first.items())
 
 
@@ -80,7 +80,7 @@ def impulses_at_once(
     least = [one for one in consistent if not any(sticks_more(other[0], one[0]) for other in consistent)]
     first = rates_after(least[0][1], rates, found)
     for _, other in least[1:]:
-        if not alike(first, rates_after(other, rates, found)):
+        if not alike(first, rates_after(other, rates, found), rates):
             return Problem(
                 "several-impacts",
                 "several outcomes of the impact are possible",

@@ -210,6 +210,23 @@ class String(Connection):
 
 
 @dataclass(frozen=True)
+class Chain(Connection):
+    """A heavy inextensible chain of the plane from a body over a small smooth peg of the ground to another body.
+
+    `through` names these three places. Both sides are straight: they hang, or lie on smooth faces, and an end stays on
+    the line from the peg through its place. A bare end is a body of mass 0. `density` is the mass per length (kg/m);
+    the length is that of the way at the start unless it is given. A chain is followed until it lifts off the peg, or
+    until one of its ends comes there.
+    """
+
+    through: Sequence[Place]
+    density: Number
+    length: Number | None = None
+    name: str | None = None
+    kind: ClassVar[str] = "chain"
+
+
+@dataclass(frozen=True)
 class Spring(Connection):
     """A linear spring between two places (N/m); unstretched at the start unless a rest length is given."""
 
@@ -325,6 +342,7 @@ KINDS: Mapping[str, type[Any]] = MappingProxyType(
             Track,
             Contact,
             String,
+            Chain,
             Spring,
             TorsionSpring,
             Gravitation,

@@ -13,6 +13,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Coordinates, Point, Rate
+from core.multibody.momenta import StateFunction
 from core.multibody.polynomials import (
     ONE,
     ZERO,
@@ -48,6 +49,8 @@ class Force:
     of_state : polynomial
     of_rates : dict
         Constant coefficients of rates.
+    of_squares : dict
+        Constant coefficients of squares of rates.
     """
 
     name: str
@@ -55,6 +58,7 @@ class Force:
     terms: list[tuple[int, Poly]] = field(default_factory=list)
     of_state: Poly = field(default_factory=dict)
     of_rates: dict[int, Ball] = field(default_factory=dict)
+    of_squares: dict[int, Ball] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -88,19 +92,23 @@ class Limit:
     Attributes
     ----------
     event : str
-        "slack" for the tension of a string, "singular" for a length.
+        "slack" for the tension of a string, "lift-off" for the force on the peg of a chain, "end-of-chain" for the
+        length of one side of it, "singular" for another length.
     name : str
         The connection.
     force : int or None
         Number of the force that has to stay positive.
     length : polynomial or None
         The length that has to.
+    scale : float
+        Size of the forces beside which it may be nothing but noise.
     """
 
     event: str
     name: str
     force: int | None = None
     length: Poly | None = None
+    scale: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -171,6 +179,9 @@ class Measures:
         self.limits: list[Limit] = []
         self.works: list[Work] = []
         self.potential = ONE - ONE
+        # What has mass beside the bodies: its potential in gravity, and its momentum and angular momentum by name.
+        self.fall: Poly = {}
+        self.momenta: dict[str, tuple[StateFunction, StateFunction]] = {}
         self.conservative = True
         self._lengths: dict[Any, int] = {}
         self._inverses: dict[int, int] = {}

@@ -156,7 +156,8 @@ class Modes:
         with precision(min(BITS, _BITS * (1 + (159 + int(growth)) // _BITS))):
             terms = self._terms(start)
             for s, t in enumerate(times):
-                values = self._at(arb(float(t)), start, terms)
+                # A sum over modes would make a width of the zeros of the start.
+                values = start if t == 0.0 else self._at(arb(float(t)), start, terms)
                 for i in range(n):
                     q[s, i], v[s, i] = pair(values[i], 0), pair(values[n + i], 0)
                 errors[s] = [float(x.rad()) + 2.0**-104 * abs(float(x)) for x in values[: 2 * n]]

@@ -42,16 +42,27 @@ class StateFunction:
         return found, size
 
 
-def momenta(table: Table, frames: Mapping[str, Frame]) -> dict[str, StateFunction]:
-    """Return momentum and angular momentum about the origin, of every body and of all."""
+def momenta(
+    table: Table, frames: Mapping[str, Frame], beside: Mapping[str, tuple[StateFunction, StateFunction]]
+) -> dict[str, StateFunction]:
+    """Return momentum and angular momentum about the origin, of every body, of what has mass beside them, and of all.
+
+    Parameters
+    ----------
+    beside : mapping of str to two StateFunctions
+        What has mass and is no body.
+    """
     dimension = len(next(iter(frames.values())).position)
     total = StateFunction("kg m/s", [[] for _ in range(dimension)])
     turning = StateFunction("kg m^2/s", [[] for _ in range(1 if dimension == 2 else 3)])
     found: dict[str, StateFunction] = {}
+    each = dict(beside)
     for name, frame in frames.items():
         mass = float(entry(table.mass, (frame.position[0], frame.position[0])))
         own = StateFunction("kg m/s", [[(mass, None, i)] for i in frame.position])
         spin = StateFunction("kg m^2/s", _angular(table, frame, mass))
+        each[name] = own, spin
+    for name, (own, spin) in each.items():
         found[f"{name}.momentum"], found[f"{name}.angular_momentum"] = own, spin
         for whole, part in ((total, own), (turning, spin)):
             for terms, more in zip(whole.components, part.components, strict=True):

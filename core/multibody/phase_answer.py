@@ -17,11 +17,10 @@ from core.multibody.answer import (
     SceneModel,
     SceneProblem,
 )
-from core.multibody.columns import Columns, relative, require_reached, scales_of, worst
+from core.multibody.columns import Columns, Unknown, relative, require_reached, scales_of, worst
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.inherited_in_phases import inherited_in_phases
 from core.multibody.language import Scene
-from core.multibody.modelling import Modelled
 from core.multibody.packed import Floats, nearest, pair
 from core.multibody.phase import Phase, PhaseMotion
 from core.multibody.phases import motion_in_phases
@@ -232,7 +231,7 @@ class PhasedSystem:
         for k in sorted(set(which.tolist())) or ([0] if phases else []):
             mine = np.flatnonzero(which == k)
             states = _states(phases[k], times[mine], motion)
-            pieces.append((mine, _columns(phases[k].models[0], times[mine], states, how, self.outputs)))
+            pieces.append((mine, _columns(phases[k], times[mine], states, how, self.outputs)))
         return pieces, how
 
     def _with_inherited(
@@ -280,11 +279,9 @@ def _states(phase: Phase, times: Floats, motion: PhaseMotion) -> WholeStates:
         FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
     )
     q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
-    if phase.unknown is not None:
-        moves = np.array([not still for still in phase.still])
-        places, rates = np.array(phase.unknown[0]), np.array(phase.unknown[1]) * moves
-        late = np.array([max(float(arb(float(t)) - phase.start), 0.0) for t in times])
-        q_error, v_error = q_error + places + np.outer(late, rates), v_error + rates
+    unknown = _unknown(phase, times)
+    if unknown is not None:
+        q_error, v_error = q_error + unknown[0], v_error + unknown[1]
     reference = first.reference
     if len(found) > 1:
         other = found[1]
@@ -292,6 +289,16 @@ def _states(phase: Phase, times: Floats, motion: PhaseMotion) -> WholeStates:
         q_error = q_error + TOLD * np.abs((first.q - reference[0]).sum(axis=2))
         v_error = v_error + TOLD * np.abs((first.v - reference[1]).sum(axis=2))
     return WholeStates(first.q, first.v, q_error, v_error, reference)
+
+
+def _unknown(phase: Phase, times: Floats) -> Unknown | None:
+    """Return by how much coordinates and rates are wrong on all tracks alike, None where they are not."""
+    if phase.unknown is None or phase.bounces is not None:
+        return None
+    moves = np.array([not still for still in phase.still])
+    places, rates = np.array(phase.unknown[0]), np.array(phase.unknown[1]) * moves
+    late = np.array([max(float(arb(float(t)) - phase.start), 0.0) for t in times])
+    return places + np.outer(late, rates), np.broadcast_to(rates, (len(times), len(rates)))
 
 
 def _of_track(phase: Phase, k: int, times: Floats) -> WholeStates:
@@ -339,14 +346,15 @@ def _bouncing(phase: Phase, times: Floats) -> WholeStates:
 
 
 def _columns(
-    model: Modelled, times: Floats, states: WholeStates, how: How, outputs: Sequence[object]
+    phase: Phase, times: Floats, states: WholeStates, how: How, outputs: Sequence[object]
 ) -> dict[str, Column]:
+    model = phase.models[0]
     determined: Sequence[bool] = ()
     if "forces-in-time" in outputs:
         measures = model.described.measures
         multipliers = multipliers_at_start(measures, model.whole.acceleration)
         determined = [force.value is not None for force in forces_at_start(measures, multipliers)]
-    return Columns(model.whole, times, states, how).chosen(outputs, determined)
+    return Columns(model.whole, times, states, how, unknown=_unknown(phase, times)).chosen(outputs, determined)
 
 
 def _merged(pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], count: int) -> dict[str, Column]:

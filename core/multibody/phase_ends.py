@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from core.errors import AccuracyUnreachable
 from core.multibody.contact_states import State, phase_table
 from core.multibody.crossings import Crossing, first_in_closed_form, uniform_motion
 from core.multibody.description import Described
+from core.multibody.expansion import expansion
 from core.multibody.grazing import Graze, grazed
 from core.multibody.phase import Phase
 from core.multibody.polynomials import Ball
 from core.multibody.projection import project
-from core.multibody.sampled_crossings import Sampled
-from core.multibody.table import Row
+from core.multibody.sampled_crossings import KNOWN, Sampled
+from core.multibody.table import Row, Table
 from core.multibody.taylor_crossings import located
 from core.multibody.turning_slip import TurningSlip
 from core.multibody.watches import Watch, watches
+from core.multibody.whole import Whole
 
 _BEYOND = 1.001
 """How far beyond the end of a phase, as a share of it, a gap is looked at that may only just have closed."""
@@ -117,7 +122,8 @@ def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossi
     if hit is None:
         return []
     time, watch = hit
-    first = located(tables[0], wholes[0], watch, time, "fine")
+    first = _before(tables[0], wholes[0], watched, located(tables[0], wholes[0], watch, time, "fine"))
+    watch = first.watch
     if not first.time > 0 or not first.time.is_finite():
         since = float(phase.start)
         raise AccuracyUnreachable(
@@ -130,6 +136,29 @@ def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossi
     if first.time > left:
         return []
     return [first, located(tables[-1], wholes[-1], watch, float(first.time), "check")]
+
+
+def _before(table: Table, whole: Whole, watched: Sequence[Watch], found: Crossing) -> Crossing:
+    """Return a crossing, or that of something else that is negative there already.
+
+    About when something changes its sign is known less well than events may follow one another.
+    """
+    while found.time > 0 and found.time.is_finite():
+        others = [watch for watch in watched if watch is not found.watch]
+        if not others:
+            break
+        curves, noise = (x[:, 0] for x in Sampled(table, whole, others).curves(np.array([float(found.time)])))
+        near = [k for k in range(len(others)) if curves[k] < noise[k]]
+        if not near:
+            break
+        motion = expansion(replace(table, q=found.q, v=found.v), 2)
+        lost = [others[k] for k in near if others[k].series(motion)[0] < -float(noise[k]) * KNOWN]
+        crossings = [located(table, whole, watch, float(found.time), "fine") for watch in lost]
+        crossings = [one for one in crossings if one.time > 0 and one.time < found.time]
+        if not crossings:
+            break
+        found = min(crossings, key=lambda one: float(one.time))
+    return found
 
 
 def _located(phase: Phase, watch: Watch, time: float) -> list[Crossing]:

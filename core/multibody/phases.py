@@ -313,7 +313,7 @@ class _Run:
                 Track(track.time + tail.length, *tail.limit())
                 for track, tail in zip(phase.tracks, found.tails, strict=True)
             ]
-            if not self.tracks.exact:
+            if not (self.tracks.exact and found.exact):
                 # Over the bounces the acceleration changes in proportion to their length.
                 part = 0.0 if found.exact else float(length) / own_time
                 self.tracks.part(phase.still, max(FLOOR, part**2), max(FLOOR, part**3))

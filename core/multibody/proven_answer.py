@@ -158,7 +158,8 @@ class _Proof:
                     # Within the error of its time nothing is said to be before it.
                     bound = Fraction(event.time) - Fraction(event.error) * (1 if end > 0.0 else -1)
                     rows = [k for k in rows if (times[k] <= bound if end > 0.0 else times[k] >= bound)]
-        detail = "that strings stay taut and lengths positive up to the last time is found in doubles, and not proven"
+        what = "that strings stay taut, chains on their pegs and lengths positive up to the last time"
+        detail = f"{what} is found in doubles, and not proven"
         return rows, ended, (Notice("end-not-proven", detail, ("times",)),) if watched else ()
 
     def _columns(self, times: Sequence[Ball]) -> dict[str, ProvenColumn]:

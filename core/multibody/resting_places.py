@@ -24,15 +24,15 @@ class Holds:
     ----------
     lines : list of (row, column, terms)
         Entries of W.
-    forces : list of list of (row, terms)
-        Of every string: what makes up its tension.
+    forces : list of (list of (row, terms), terms)
+        Of every string and chain: what makes up its tension, by multipliers and by the place alone.
     lengths : list of terms
         Those that are positive.
     """
 
     table: Table
     lines: list[tuple[int, int, Terms]]
-    forces: list[list[tuple[int, Terms]]]
+    forces: list[tuple[list[tuple[int, Terms]], Terms]]
     lengths: list[Terms]
 
 
@@ -61,7 +61,10 @@ class RestingPlaces:
             measures.table,
             [(r, j, _terms(p)) for r, row in enumerate(measures.table.rows) for j, p in row.rates.items()],
             [
-                [(row, _terms(p)) for row, p in measures.forces[limit.force].terms]
+                (
+                    [(row, _terms(p)) for row, p in measures.forces[limit.force].terms],
+                    _terms(measures.forces[limit.force].of_state),
+                )
                 for limit in measures.limits
                 if limit.force is not None
             ],
@@ -107,7 +110,8 @@ class RestingPlaces:
         multipliers = np.linalg.lstsq((lines / scale[:, None]).T, -load, rcond=1e-12)[0] / scale
         edge = -1e-9 * float(np.max(np.abs(load), initial=0.0))
         return not any(
-            sum(_value(terms, place) * multipliers[row] for row, terms in force) < edge for force in holds.forces
+            sum(_value(terms, place) * multipliers[row] for row, terms in parts) + _value(own, place) < edge
+            for parts, own in holds.forces
         )
 
 

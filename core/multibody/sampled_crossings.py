@@ -27,8 +27,8 @@ _CLOSER = 33
 """Samples of an interval that is looked at again."""
 _MOST_NARROWINGS = 8
 """Of the bracket of an event, by a factor of 32 each: bounces rise and fall in a small part of an interval."""
-_UNKNOWN = 2.0**-90
-"""Share of its terms below which the value of something at the start of a phase is zero."""
+KNOWN = 2.0**-46
+"""Share of the noise of doubles below which a value that is known in pairs is zero."""
 _SOONEST = 1e-6
 """Share of the first interval in which a return to zero is looked for; sooner ones are told by the Taylor series."""
 _MOST_NODES = 200_000
@@ -123,7 +123,8 @@ class Sampled:
         before, reach = 0.0, min(end, 2.0 * scale)
         while True:
             times, singular = self.grid(reach)
-            chosen = times[times >= before] if before else times
+            # A motion followed further has other steps: without the time before, there would be a gap at the seam.
+            chosen = times[max(int(np.searchsorted(times, before, side="right")) - 1, 0) :]
             hit = self._look(chosen) if len(chosen) > 1 else None
             if near is not None and (hit is None or near[0] < hit[0]) and near[0] <= times[-1]:
                 return near
@@ -139,7 +140,7 @@ class Sampled:
     def _near_start(self) -> tuple[float, Watch] | None:
         """Return the first root that comes so soon that the start of its Taylor series tells it."""
         motion = expansion(self.table, ORDER)
-        noise = self.curves(np.zeros(1))[1][:, 0] * (_UNKNOWN / _NOISE)
+        noise = self.curves(np.zeros(1))[1][:, 0] * KNOWN
         best: tuple[float, Watch] | None = None
         for watch, unknown in zip(self.watched, noise, strict=True):
             series = [0.0 if is_zero(x) else float(x.mid()) for x in watch.series(motion)]

@@ -11,6 +11,7 @@ import numpy as np
 from core.balls import precision
 from core.errors import InvalidParameter, SlackAtStart
 from core.multibody.answer import SceneAnswer, SceneEvent
+from core.multibody.chains import has_chain
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equilibria import equilibria_of
 from core.multibody.language import Scene
@@ -119,7 +120,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
     try:
         found = modelled(scene)
     except SlackAtStart:
-        if request.method is not None:
+        if request.method is not None or has_chain(scene):
             raise
         return answer_in_phases(scene, request)
     multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
@@ -132,7 +133,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
     system = DescribedSystem(scene, found, [value.value is not None for value in forces], request.outputs)
     trajectory = request.solved(system)
     events: Sequence[SceneEvent] = () if trajectory is None else trajectory.events
-    if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(request):
+    if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(scene, request):
         # Slack strings become taut again: the scene has further phases.
         return answer_in_phases(scene, request)
     searched = None if trajectory is None else system.searched(trajectory, request.times)
@@ -153,7 +154,9 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
     )
 
 
-def _has_phases(request: SceneRequest) -> bool:
-    """Return whether what is requested can be answered through events."""
+def _has_phases(scene: Scene, request: SceneRequest) -> bool:
+    """Return whether what is requested of a scene can be answered through events."""
+    if has_chain(scene):
+        return False
     forward = bool(np.min(request.times) >= 0.0)
     return forward and request.method is None and all(output in (*ANSWERED, THRESHOLDS) for output in request.outputs)

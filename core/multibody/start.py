@@ -141,6 +141,10 @@ def noticed_of(found: Modelled, forces: list[ForceAtStart], multipliers: Multipl
     for limit in measures.limits:
         if limit.force is not None:
             tension = forces[limit.force].value
-            if tension is not None and tension < 0:
+            if tension is None or not tension < 0:
+                continue
+            if limit.event == "lift-off":
+                said.append(f"{limit.name} would have to hang on its peg from the start: it lifts off at once")
+            else:
                 said.append(f"{limit.name} would have to push from the start: it is slack, and the scene another one")
     return said

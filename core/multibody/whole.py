@@ -216,6 +216,9 @@ class Whole:
         for j, value in force.of_rates.items():
             term = float(value) * v[:, j, 0]
             total, size = total + term, size + np.abs(term)
+        for j, value in force.of_squares.items():
+            term = float(value) * v[:, j, 0] ** 2
+            total, size = total + term, size + np.abs(term)
         for row, poly in force.terms:
             factor, factor_size = values(poly, q)
             total = total + factor * multipliers[:, row]

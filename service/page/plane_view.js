@@ -131,7 +131,7 @@ export class PlaneView {
   connection(c) {
     const { model } = this, at = (reference) => model.place(reference).point;
     if (c.kind === "rod") this.line([at(c.a), at(c.b)], "ink", 4);
-    if (c.kind === "string") this.string(c);
+    if (c.kind === "string" || c.kind === "chain") this.string(c);
     if (c.kind === "spring") this.spring(at(c.a), at(c.b));
     if (c.kind === "damper" && c.measure !== "turn") this.damper(at(c.a), at(c.b));
     if (c.kind === "torsion-spring") this.coil(at(c.a));

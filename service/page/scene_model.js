@@ -14,7 +14,7 @@ export class SceneModel {
     this.space = this.bodies[0]?.start.length === 3;
     this.connections = (description.connections || []).map((connection, i) => ({ ...connection, label: connection.name || `${connection.kind}-${i + 1}` }));
     this.seek(0);
-    this.strings = this.connections.filter((c) => c.kind === "string").map((c) => [c, stringPath(this, c)]);
+    this.strings = this.connections.filter((c) => ["string", "chain"].includes(c.kind)).map((c) => [c, stringPath(this, c)]);
     this.forceScale = this.largestForce();
   }
 
@@ -108,7 +108,7 @@ export class SceneModel {
     const vector = ["x", "y", "z"].slice(0, this.space ? 3 : 2).map(value);
     const at = (reference) => this.place(reference).point;
     if (vector.every((x) => x !== null)) return [{ at: at(c.a ?? c.place), vector, label: c.label }];
-    if (c.kind === "string") return this.tensions(c);
+    if (c.kind === "string" || c.kind === "chain") return this.tensions(c);
     if (c.measure === "turn") return [];
     if (["rod", "spring", "damper", "gravitation", "inverse-square"].includes(c.kind)) return this.pulls(at(c.a), at(c.b), value("force"), c);
     const normal = value("normal"), friction = value("friction");
@@ -139,8 +139,9 @@ export class SceneModel {
   }
 
   tensions(c) {
-    return this.stringOf(c).ends.map(({ at, toward, body, run }) => {
-      const tension = this.value(`${c.label}.tension`) ?? this.value(`${c.label}.${run + 1}.tension`);
+    return this.stringOf(c).ends.map(({ at, toward, body, run }, k) => {
+      // A heavy chain pulls at its two ends, which are the first and the last.
+      const tension = c.kind === "chain" ? this.value(`${c.label}.${k < 2 ? 1 : 2}.tension`) : this.value(`${c.label}.tension`) ?? this.value(`${c.label}.${run + 1}.tension`);
       return body && tension !== null ? { at, vector: scaled(unit(sub(toward, at)), tension), label: c.label } : null;
     });
   }

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 
 from tests.examples.scene_columns import agree, columns, in_time, times
 from tests.oracles.minimal_coordinates import cos, exact, sin, sqrt
@@ -205,3 +206,68 @@ def test_the_shafts_on_a_wedge_agree_with_the_named_scene(answer_of):
         down = np.array([-turn * np.cos(slope), -np.sin(slope)])
         path = found[f"{name}.position"][0] + 0.5 * gain * time[:, None] ** 2 * down
         agree(answer, {f"{name}.position": path, f"{name}.angle": turn * spin * time**2 / 2}, own=4e-16)
+
+
+def hyperbola(t, x, v, a, k):
+    """Return x and x' of x'' = a + k^2 (x - x(0)) at a time, of 40 digits."""
+    with mp.workdps(40):
+        z = k * t
+        return x + v * mp.sinh(z) / k + a * (mp.cosh(z) - 1) / k**2, v * mp.cosh(z) + a * mp.sinh(z) / k
+
+
+def test_a_chain_slides_off_a_table_and_leaves_its_edge(answer_of):
+    """Only what hangs pulls: L x'' = g x.
+
+    The edge takes T - rho v^2 on either side, T = (L - x) x'' rho the pull on what is left. By energy L v^2 = g (x^2 -
+    x0^2), so that it vanishes where 2 x^2 - L x - x0^2 = 0.
+    """
+    answer = answer_of("scenes/chain-off-table")
+    with mp.workdps(40):
+        start, length = mpf(1) / 2, mpf(2)
+        rate = mp.sqrt(mpf("9.81") / length)
+        leaves = mp.acosh((length + mp.sqrt(length**2 + 8 * start**2)) / 4 / start) / rate
+        hung = [hyperbola(mpf(t), start, 0, rate**2 * start, rate) for t in times(answer)]
+    (event,) = answer["events"]
+    assert answer["ended"] == event["kind"] == "lift-off"
+    assert event["name"] == "chain"
+    assert abs(mpf(event["time"]) - leaves) <= event["error"] < 4e-15
+    assert len(hung) == 13
+    agree(
+        answer,
+        {
+            "front.position": [(0, -x) for x, _ in hung],
+            "front.velocity": [(0, -v) for _, v in hung],
+            "back.position": [(x - 2, 0) for x, _ in hung],
+            "chain.tension": [mpf("1.2") * (2 - x) * rate**2 * x for x, _ in hung],
+            "chain.normal": [mpf("1.2") * mp.sqrt(2) * ((2 - x) * rate**2 * x - v * v) for x, v in hung],
+            "chain.1.tension": [0 for _ in hung],
+        },
+    )
+
+
+def test_a_chain_over_a_peg_carries_its_own_weight(answer_of):
+    """Newton's law for the whole: what supports it, the peg, is its weight and what its momentum gains.
+
+    The momentum upwards is (m2 - m1) v + rho (L - 2 x) v with v the rate of the light side's length x, downwards.
+    """
+    answer = answer_of("scenes/chain-over-peg")
+    with mp.workdps(40):
+        g, light, heavy, rho, length = (mpf(x) for x in ("9.81", "1", "1.5", "0.8", "3"))
+        mass = light + heavy + rho * length
+        pull = (light + rho * 1 - heavy - rho * 2) * g / mass
+        rate = mp.sqrt(2 * rho * g / mass)
+        slides = [hyperbola(mpf(t), mpf(1), mpf("1.2"), pull, rate) for t in times(answer)]
+        expected: dict[str, list] = {"chain.normal": [], "chain.1.tension": [], "chain.2.tension": []}
+        for x, v in slides:
+            gain = ((light + rho * x) - (heavy + rho * (length - x))) * g / mass
+            upward = (heavy - light + rho * (length - 2 * x)) * gain - 2 * rho * v * v
+            expected["chain.normal"].append(mass * g + upward)
+            expected["chain.1.tension"].append(light * (g - gain))
+            expected["chain.2.tension"].append(heavy * (g + gain))
+    assert answer["ended"] == "horizon"
+    expected["light.position"] = [(0, -x) for x, _ in slides]
+    expected["heavy.velocity"] = [(0, v) for _, v in slides]
+    agree(answer, expected)
+    (part,) = answer["model"]["apart"]
+    rates = [(mode["frequency"], mode["growth_rate"]) for mode in part["modes"]]
+    assert rates == [(0, pytest.approx(sign * float(rate), rel=EXACT)) for sign in (-1, 1)]

@@ -341,6 +341,12 @@ def described() -> Named:
     yield "a hundred bodies", {"bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(100)}, "times": [1.0]}
     yield "more", {"bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(101)}}
     yield "massless", pendulum | {"bodies": {"p": point | {"mass": 0}}}
+    link = {"kind": "chain", "through": ["p", [0, 0], "q"], "density": 1}
+    hung: Asked = pendulum | {"bodies": {"p": point, "q": {"mass": 0, "at": [0, -2]}}, "connections": [link]}
+    yield "a chain whose end is bare", hung
+    for factor in (SUBNORMAL, 1e-300, 1e-12, 1e12, 1e300, LARGEST):
+        yield f"a chain of the density {factor:g}", hung | {"connections": [link | {"density": factor}]}
+        yield f"a chain at {factor:g}", hung | {"times": [factor, -factor]}
     yield "to itself", pendulum | {"connections": [rod | {"b": "p"}]}
     yield "twice", pendulum | {"connections": [rod, rod]}
 

@@ -272,10 +272,24 @@ def chain(random: Random) -> Question:
     }
 
 
+def over_a_peg(random: Random) -> Question:
+    """Return a heavy chain over a peg, along a slope and hanging, with a mass at one end."""
+    slope, lengths = random.choice([0.0, number(random, 0.0, 1.5)]), [number(random), number(random)]
+    bodies = {
+        "p": {"mass": number(random), "at": [f"-{lengths[0]}*cos({slope})", f"-{lengths[0]}*sin({slope})"]},
+        "q": {"mass": 0, "at": [0, -lengths[1]]},
+    }
+    link = {"kind": "chain", "through": ["p", [0, 0], "q"], "density": number(random)}
+    found: Question = {"gravity": [0, -9.81], "bodies": bodies, "connections": [link]}
+    return found | ({"times": times(random, 300, 1.0)} if random.random() < 0.6 else {})
+
+
 def described(random: Random) -> Question:
-    """Return a scene of points: falling, on chains of rods or on springs, in the plane or in space."""
+    """Return a scene of points: falling, on rods, on springs or on a chain over a peg, in the plane or in space."""
     gravity = random.choice([[0, -9.81], [0, -9.81], [0, 0, -9.81]])
-    held = random.choice(["rods", "springs", "nothing"])
+    held = random.choice(["rods", "springs", "nothing", "a chain"])
+    if held == "a chain":
+        return over_a_peg(random)
     bodies: Question = {}
     connections: list[Question] = []
     at, before = [0.0] * len(gravity), "ground"

@@ -971,6 +971,7 @@ class SceneConnection(TypedDict):
     through: NotRequired[Sequence[str | Sequence[float | str | AngleInDegrees] | PolarVector]]
     sides: NotRequired[Mapping[str, Any]]
     slips: NotRequired[Sequence[str]]
+    density: NotRequired[float | str | AngleInDegrees]
     stiffness: NotRequired[float | str | AngleInDegrees]
     rest_length: NotRequired[float | str | AngleInDegrees]
     rest_angle: NotRequired[float | str | AngleInDegrees]
@@ -993,6 +994,7 @@ class SceneConnection(TypedDict):
         "track",
         "contact",
         "string",
+        "chain",
         "spring",
         "torsion-spring",
         "gravitation",
