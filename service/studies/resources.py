@@ -48,7 +48,7 @@ EVENTS_EVERY = 0.25
 """Seconds between two looks at a study that is watched."""
 
 MOST_WATCHED = 200
-"""Connections on which events are sent, in all."""
+"""Connections on which events are sent, in all; those of one study share the looks at it."""
 
 JSON_TYPE = "application/json"
 
@@ -60,6 +60,7 @@ class Studies:
         self._settings, self._supervisor, self._compute = settings, supervisor, compute
         self._store = supervisor.store
         self._watching = 0
+        self._looks: dict[tuple[str, str], asyncio.Future[Study]] = {}
 
     def routes(self) -> tuple[ResourceRoute, ...]:
         """Return the routes of studies that exist."""
@@ -246,7 +247,26 @@ class Studies:
             if not study.unfinished:
                 return
             await asyncio.sleep(EVENTS_EVERY)
-            study = await self._own(context, study.id)
+            study = await self._looked_at(context, study.id)
+
+    async def _looked_at(self, context: RequestContext, identity: str) -> Study:
+        """Return a client's own study as it was at most half of `EVENTS_EVERY` ago.
+
+        Each look is a thread and a query: for every connection on its own, they would hold up other requests.
+        """
+        key = (_owner(context), identity)
+        look = self._looks.get(key)
+        if look is None:
+            look = self._looks[key] = asyncio.ensure_future(self._own(context, identity))
+            look.add_done_callback(lambda done: self._forget_later(key, done))
+        # A client that leaves takes the look away from nobody.
+        return await asyncio.shield(look)
+
+    def _forget_later(self, key: tuple[str, str], look: asyncio.Future[Study]) -> None:
+        if not look.cancelled():
+            # Where all who waited have left, nobody else takes note of a failure.
+            look.exception()
+        look.get_loop().call_later(EVENTS_EVERY / 2, self._looks.pop, key, None)
 
     async def _own(self, context: RequestContext, identity: str | None = None) -> Study:
         """Return the study that a request is about, if it is its client's."""

@@ -163,6 +163,30 @@ async def test_events_tell_every_state_until_the_end(desk_on: Desks, in_process:
         assert json.loads(events[-1][1].removeprefix("data: "))["done"] == 6
 
 
+async def test_those_who_watch_one_study_share_the_looks_at_it(
+    desk_on: Desks, in_process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks = 0
+    get = Store.get
+
+    def counted(self: Store, *arguments: Any) -> Any:
+        nonlocal looks
+        looks += 1
+        return get(self, *arguments)
+
+    watchers = 40
+    async with client_at(tmp_path) as client:
+        place = await submitted(client)
+        monkeypatch.setattr(Store, "get", counted)
+        watching = [asyncio.create_task(client.get(f"{place}/events")) for _ in range(watchers)]
+        await asyncio.sleep(1.2)
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        responses = await asyncio.gather(*watching)
+    assert all("event: successful" in response.text for response in responses)
+    # One for each that begins, and then some for all; on its own, each would have looked four times a second.
+    assert looks < 3 * watchers
+
+
 async def test_a_dismissed_study_has_no_results_and_a_finished_one_is_removed(
     desk_on: Desks, in_process: str, tmp_path: Path
 ) -> None:
