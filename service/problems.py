@@ -55,6 +55,12 @@ REGISTRY: Mapping[str, ProblemType] = {
     entry.code: entry
     for entry in (
         ProblemType(
+            "malformed-request",
+            400,
+            "The request is not HTTP",
+            "Send HTTP/1.1 as RFC 9112 has it, with a Host, a path in ASCII, and a head of moderate length.",
+        ),
+        ProblemType(
             "invalid-json", 400, "The body cannot be read as JSON", "Send one JSON document in UTF-8 (RFC 8259)."
         ),
         ProblemType(

@@ -31,7 +31,8 @@ class Settings(BaseSettings):
         default=75,
         ge=1,
         le=LONGEST,
-        description="Time after which a connection is closed on which no whole head of a request has arrived.",
+        description="Time after which a connection is closed on which no whole head of a request has arrived, or whose "
+        "client takes nothing of what is left to be written to it.",
     )
 
     max_body_bytes: int = Field(

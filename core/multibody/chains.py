@@ -14,6 +14,7 @@ To turn from one side to the other, what passes the peg takes rho z'^2 of it: th
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from core.errors import InvalidParameter, NotApplicable, Path
@@ -50,7 +51,7 @@ def chain(measures: Measures, name: str, connection: Any, path: Path) -> None:
     ------
     InvalidParameter
         For a chain in space, ends that are no places of two bodies, a peg that moves or that an end touches, sides
-        that continue one another, and a density that is not positive.
+        that continue one another, a density that is not positive, and a weight beyond the range of doubles.
     NotApplicable
         Beside contacts and strings that jerk, and in a spinning frame.
     """
@@ -85,8 +86,17 @@ def chain(measures: Measures, name: str, connection: Any, path: Path) -> None:
         measures.hold(name, combined((ONE, coordinate(z)), (ONE, sides[1]), (-length, constant(ONE)))),
     )
     pulls = [sum((x * y for x, y in zip(measures.coordinates.gravity, way, strict=True)), ONE - ONE) for way in ways]
+    hanging = density * length * (abs(pulls[0]) + abs(pulls[1]))
+    weight = float(hanging)
+    if not weight < inf or (weight == 0.0 and not is_zero(hanging)):
+        # Its forces decide where it lifts off, and they are looked at in doubles.
+        raise InvalidParameter(
+            (*path, "density"),
+            "give the chain a weight within the range of doubles",
+            remedy="choose units in which the numbers are moderate",
+        )
     _weigh(measures, z, density, length, pulls, at)
-    _name_forces(measures, name, z, rows, density, length, pulls, bend.sqrt())
+    _name_forces(measures, name, z, rows, density, length, pulls, bend.sqrt(), weight)
     measures.momenta[name] = _momenta(z, density, length, at, ways)
 
 
@@ -160,20 +170,20 @@ def _name_forces(
     length: Ball,
     pulls: list[Ball],
     bend: Ball,
+    weight: float,
 ) -> None:
     """Name the tensions at the ends and at the peg, and the force on the peg; say which of them stay positive."""
     share: Poly = {(z,): 1 / length}
     pull = density * (pulls[0] + pulls[1])
     hung: Poly = {} if is_zero(pull) else {(z,): pull, (z, z): -pull / length}
     terms = [(rows[0], combined((ONE, constant(ONE)), (-ONE, share))), (rows[1], combined((-ONE, share)))]
-    weight = float(density * length * (abs(pulls[0]) + abs(pulls[1])))
     for i, sign in ((0, ONE), (1, -ONE)):
         force = measures.force(f"{name}.{i + 1}.tension", [(rows[i], constant(sign))])
         measures.limits.append(Limit("slack", f"{name}.{i + 1}", force=force, scale=weight))
     measures.forces.append(Force(f"{name}.tension", "N", terms, hung))
     pressed = [(row, combined((bend, poly))) for row, poly in terms]
     measures.forces.append(Force(f"{name}.normal", "N", pressed, combined((bend, hung)), {}, {z: -density * bend}))
-    measures.limits.append(Limit("lift-off", name, force=len(measures.forces) - 1, scale=weight))
+    measures.limits.append(Limit("lift-off", name, force=len(measures.forces) - 1, scale=weight * float(bend)))
     measures.limits.append(Limit("end-of-chain", f"{name}.1", length=coordinate(z)))
     rest = combined((length, constant(ONE)), (-ONE, coordinate(z)))
     measures.limits.append(Limit("end-of-chain", f"{name}.2", length=rest))

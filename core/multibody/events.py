@@ -7,6 +7,7 @@ from math import copysign
 
 import numpy as np
 
+from core.errors import NotApplicable
 from core.multibody.answer import SceneEvent
 from core.multibody.kepler import Kepler
 from core.multibody.measures import Limit
@@ -28,7 +29,13 @@ _NEIGHBOURS = 8
 
 
 def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEvent | None:
-    """Return the first event between the start and `end`, which may be negative; None if there is none."""
+    """Return the first event between the start and `end`, which may be negative; None if there is none.
+
+    Raises
+    ------
+    NotApplicable
+        Where a force that is watched leaves the range of doubles before any event.
+    """
     found: list[SceneEvent] = []
     for indices, motion in whole.parts:
         if isinstance(motion, Numerical):
@@ -59,12 +66,26 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEven
     for reach in _reaches(whole, end) if watched else ():
         grid = _grid(whole, reach)
         curves = _curves(whole, watched, grid)[0]
+        _require_known(watched, curves[:, :1])
         events = (_first_loss(whole, limit, grid, curve) for limit, curve in zip(watched, curves, strict=True))
         lost = [event for event in events if event is not None]
         if lost:
             break
+        _require_known(watched, curves)
     found.extend(lost)
     return min(found, key=lambda event: abs(event.time)) if found else None
+
+
+def _require_known(watched: Sequence[Limit], curves: Floats) -> None:
+    """Raise for what is watched and not a number of doubles: whether it stays positive is not known."""
+    for limit, curve in zip(watched, curves, strict=True):
+        if not np.isfinite(curve).all():
+            what = "a force" if limit.force is not None else "a length"
+            raise NotApplicable(
+                f"{what} of {limit.name} leaves the range of doubles, and whether it stays positive is not known",
+                path=("times",),
+                remedy="ask for a shorter time, or choose units in which the numbers are moderate",
+            )
 
 
 def _safe(whole: Whole, limit: Limit) -> bool:

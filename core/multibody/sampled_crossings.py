@@ -221,7 +221,7 @@ class Sampled:
             return []
         left, middle, right = f[:-2], f[1:-1], f[2:]
         bend = left - 2 * middle + right
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             lowest = middle - (right - left) ** 2 / (8 * bend)
             low = (middle <= left) & (middle <= right) & (bend > 0) & (lowest < 0.5 * np.abs(middle))
         return [int(i) + 1 for i in np.flatnonzero(low) if i + 1 < until]

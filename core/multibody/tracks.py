@@ -118,7 +118,9 @@ class Tracks:
         for i, unit in enumerate(self.units):
             pull = abs(float(acceleration[i].mid()))
             moved = abs(float((after[i] - before[i]).mid()))
-            for largest, x in zip(self._largest, (pull * time * time, max(pull * time, moved / time)), strict=True):
+            # A phase may be shorter than the least double.
+            rate = moved / time if time > 0.0 else 0.0
+            for largest, x in zip(self._largest, (pull * time * time, max(pull * time, rate)), strict=True):
                 largest[unit] = max(largest.get(unit, 0.0), x)
 
     def late(self) -> float:

@@ -26,11 +26,13 @@ from core.multibody.events import first_event
 from core.multibody.generic_equation import SceneSystem
 from core.multibody.inherited import changes, horizon, looks
 from core.multibody.language import Scene
+from core.multibody.measures import Limit
 from core.multibody.modelling import Modelled
 from core.multibody.numerical import Numerical
 from core.multibody.occurrences import ExtremesOf, Sampler, When, component, extremes, occurrences, unknown
 from core.multibody.packed import Floats, Integers
 from core.multibody.whole import Whole, WholeStates
+from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
@@ -150,6 +152,7 @@ class DescribedSystem:
             ended=next((event.kind for event in events if event.time >= 0.0), HORIZON),
             rows=rows,
             events=events,
+            warnings=self._not_watched(),
         )
 
     @property
@@ -161,8 +164,7 @@ class DescribedSystem:
         """Return the rows of the times that the motion reaches, and the events that end it."""
         events: list[SceneEvent] = []
         rows = np.arange(len(times))
-        limits = self.whole.measures.limits
-        watched = [limit for limit in limits if limit.force is None or self.determined[limit.force]]
+        watched = [limit for limit in self.whole.measures.limits if self._watches(limit)]
         for end in {max(float(np.max(times)), 0.0), min(float(np.min(times)), 0.0)} - {0.0}:
             event = first_event(self.whole, watched, end)
             if event is not None:
@@ -170,6 +172,17 @@ class DescribedSystem:
                 beyond = times[rows] > event.time if end > 0.0 else times[rows] < event.time
                 rows = rows[~beyond]
         return rows, tuple(sorted(events, key=lambda event: event.time))
+
+    def _watches(self, limit: Limit) -> bool:
+        return limit.force is None or self.determined[limit.force]
+
+    def _not_watched(self) -> tuple[Notice, ...]:
+        """Return that some forces might end the motion, and are not determined."""
+        names = dict.fromkeys(limit.name for limit in self.whole.measures.limits if not self._watches(limit))
+        if not names:
+            return ()
+        detail = f"whether {', '.join(names)} would have to push is not known: these forces are not determined"
+        return (Notice("end-not-known", detail, ("connections",)),)
 
     def _own(self, times: Floats, accuracy: float) -> dict[str, Column]:
         """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""

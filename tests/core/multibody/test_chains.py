@@ -238,6 +238,7 @@ FLOOR = {"kind": "contact", "place": "a", "on": {"at": [0, -5]}}
 REFUSED: list[tuple[dict[str, Any], type[MechanicsError], tuple[str | int, ...]]] = [
     (joined(density=0), InvalidParameter, ("connections", 0, "density")),
     (joined(density=-1), InvalidParameter, ("connections", 0, "density")),
+    *((joined(density=x), InvalidParameter, ("connections", 0, "density")) for x in ("1e307", "1e-330")),
     (joined(length=0), InvalidParameter, ("connections", 0, "length")),
     (joined(length=3), InvalidParameter, ("connections", 0)),
     (joined(through=["a", "b"]), InvalidParameter, ("connections", 0, "through")),
@@ -265,6 +266,23 @@ def test_chains_are_of_the_plane():
     link = {"kind": "chain", "through": ["a", [0, 0, 0], "b"], "density": 1}
     with pytest.raises(InvalidParameter, match="plane"):
         solve_scene(read({"gravity": [0, 0, -9.81], "bodies": bodies, "connections": [link]}))
+
+
+@pytest.mark.parametrize("aside", ["1e-6", "1e-12", "1e-15", "1e-17"])
+def test_a_chain_that_hardly_bends_lifts_off_as_soon(aside):
+    """One side hangs, the other stands above the peg and leans by a small angle.
+
+    To first order in time the tension rho (A + B) z (1 - z/L), with A + B = g angle^2/2, meets rho (z'' t)^2, where
+    z'' = A z/L + B (z - L)/L = g for B = -g.
+    """
+    bodies = {"a": {"mass": 0, "at": [0, -0.5]}, "b": {"mass": 0, "at": [aside, 1.5]}}
+    link = {"kind": "chain", "name": "c", "through": ["a", [0, 0], "b"], "density": 1.2}
+    answer = solve_scene(read({"gravity": [0, -9.81], "bodies": bodies, "connections": [link]}), [0, 1])
+    angle = float(aside) / 1.5
+    expected = angle * np.sqrt(0.5 * 0.75 / 2 / 9.81)
+    (event,) = (event for event in answer.events if event.time >= 0.0)
+    assert event.kind == "lift-off"
+    assert event.time == pytest.approx(expected, rel=1e-5)
 
 
 def test_a_track_beside_the_chain_shares_what_is_not_determined():

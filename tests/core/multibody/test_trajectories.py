@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.errors import AccuracyUnreachable
+from core.errors import AccuracyUnreachable, MechanicsError, NotApplicable
 from core.multibody.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
 from core.systems.methods import RungeKutta4
@@ -67,3 +67,32 @@ def test_meaningful_places_are_those_that_the_error_supports() -> None:
 def test_rounding_beyond_the_accuracy_is_reported() -> None:
     (warning,) = moved(digits=3).warnings
     assert warning.code == "rounded-beyond-accuracy"
+
+
+def thrown(mass: float | str, strings: int) -> dict[str, Any]:
+    """Return a bob that is too slow for the top of its circle, on strings between the same ends."""
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": mass, "at": [0, -1], "velocity": [6, 0]}},
+        "connections": [{"kind": "string", "name": f"s{i}", "through": ["bob", [0, 0]]} for i in range(strings)],
+    }
+
+
+def test_a_string_whose_force_leaves_the_doubles_is_not_said_to_stay_taut() -> None:
+    """At any mass it becomes slack after 0.48 s; in doubles the tension of this one is infinite."""
+    assert solve_scene(read(thrown("1e300", 1)), [0, 2]).events[0].kind == "slack"
+    with pytest.raises(NotApplicable, match="whether it stays positive"):
+        solve_scene(read(thrown("1e308", 1)), [0, 2])
+
+
+def test_forces_that_are_not_determined_are_said_not_to_be_watched() -> None:
+    found = [solve_scene(read(thrown(1, strings)), [0, 0.1]).trajectory for strings in (1, 2)]
+    assert [[notice.code for notice in one.warnings] for one in found if one is not None] == [[], ["end-not-known"]]
+
+
+def test_a_phase_shorter_than_the_least_double_is_no_failure() -> None:
+    """With this friction, of which the exact value is used, it stops after 1e-410 s."""
+    contact = {"kind": "contact", "name": "c", "place": "b", "on": {"at": [0, 0]}, "friction": "1e400"}
+    bodies = {"b": {"mass": 1, "at": [0, 0], "velocity": ["1e-9", 0]}}
+    with pytest.raises(MechanicsError, match="range of doubles"):
+        solve_scene(read({"gravity": [0, -9.81], "bodies": bodies, "connections": [contact]}), [0, 1])

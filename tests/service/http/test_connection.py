@@ -17,7 +17,14 @@ class Written:
 
     def __init__(self) -> None:
         self.parts: list[bytes] = []
-        self.closed = False
+        self.closed = self.aborted = False
+        self.left = 0
+
+    def get_write_buffer_size(self) -> int:
+        return self.left
+
+    def abort(self) -> None:
+        self.aborted = True
 
     def write(self, data: bytes) -> None:
         assert not self.closed
@@ -30,7 +37,7 @@ class Written:
 @pytest.fixture
 async def pair() -> tuple[Any, Written]:
     written = Written()
-    return OneWrite(written, asyncio.get_running_loop()), written  # type: ignore[arg-type]
+    return OneWrite(written, asyncio.get_running_loop(), 0.02), written  # type: ignore[arg-type]
 
 
 async def test_head_and_body_are_one_write(pair: tuple[Any, Written]) -> None:
@@ -67,3 +74,26 @@ async def test_what_is_held_is_written_before_the_connection_closes(pair: tuple[
     assert (written.parts, written.closed) == ([b"refused"], True)
     await asyncio.sleep(0)
     assert written.parts == [b"refused"]
+
+
+async def test_a_closed_connection_of_which_nothing_more_is_taken_is_aborted(pair: tuple[Any, Written]) -> None:
+    transport, written = pair
+    written.left = 100
+    transport.close()
+    for left in (90, 80, 70):
+        written.left = left
+        await asyncio.sleep(0.025)
+        assert not written.aborted
+    await asyncio.sleep(0.1)
+    assert written.aborted
+
+
+async def test_a_connection_that_is_read_to_its_end_is_not_aborted(pair: tuple[Any, Written]) -> None:
+    transport, written = pair
+    written.left = 100
+    transport.expect_progress()
+    written.left = 0
+    await asyncio.sleep(0.05)
+    transport.close()
+    await asyncio.sleep(0.05)
+    assert not written.aborted

@@ -202,6 +202,59 @@ async def test_pipelined_requests_are_answered_in_turn_and_garbage_last() -> Non
     assert statuses(received) == [200, 200, 200, 400]
 
 
+@pytest.mark.parametrize(
+    "request_",
+    [
+        b"GARBAGE\r\n\r\n",
+        b"GET /healthz HTTP/1.1\r\n\r\n",
+        HEAD + b"x: " + b"y" * 100_000 + b"\r\n\r\n",
+        HEAD + b"content-length: +2\r\n\r\n{}",
+        OPEN + b"\r\nZ\r\n",
+        b"GET /\xc3\xa9 HTTP/1.1\r\nhost: x\r\n\r\n",
+    ],
+    ids=["garbage", "no host", "a long field", "a length", "a chunk", "a path"],
+)
+async def test_what_is_no_request_is_refused_as_everything_is(request_: bytes) -> None:
+    async with serving() as port:
+        for before in (b"", ask()):
+            *answers, refusal = (await heard(port, before + request_)).split(b"HTTP/1.1 ")[1:]
+            head, _, body = refusal.partition(b"\r\n\r\n")
+            assert head.startswith(b"400 ")
+            assert b"content-type: application/problem+json" in head
+            assert b"connection: close" in head
+            assert json.loads(body)["code"] == "malformed-request"
+            assert len(answers) == before.count(BODY)
+
+
+async def test_what_follows_an_early_answer_and_cannot_be_read_ends_the_connection() -> None:
+    loop, failures = asyncio.get_running_loop(), []
+    loop.set_exception_handler(lambda loop, context: failures.append(context))
+    early = OPEN.replace(b"application/json", b"text/csv") + b"\r\n"
+    async with serving() as port:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(early)
+        assert statuses(await reader.readuntil(b"}")) == [415]
+        writer.write(b"ZZ\r\n")
+        assert await asyncio.wait_for(reader.read(), 20) == b""
+        writer.close()
+    assert failures == []
+
+
+async def test_a_client_that_takes_nothing_is_not_waited_for_for_ever() -> None:
+    loop = asyncio.get_running_loop()
+    # So many that the answers fill what the kernel takes off the server's hands.
+    flood = b"GET /openapi.json HTTP/1.1\r\nhost: x\r\n\r\n" * 400
+    async with serving(keep_alive=1) as port:
+        with socket.create_connection(("127.0.0.1", port)) as client:
+            client.setblocking(False)
+            await loop.sock_sendall(client, flood)
+            await asyncio.sleep(3.0)
+            received, whole = 0, b""
+            while more := await asyncio.wait_for(loop.sock_recv(client, 1 << 20), 20):
+                received, whole = received + len(more), whole + more
+        assert 0 < len(statuses(whole)) < 400
+
+
 async def test_half_a_body_is_refused_in_time_and_the_connection_closed() -> None:
     async with serving(body_seconds=0.05) as port:
         for half in (ask()[:-20], ask()[: -len(BODY)], chunked(BODY)[:-20]):
