@@ -25,10 +25,14 @@ from service.observability.shared_counts import sharing
 from service.settings import Settings
 
 
+def _written(default: object) -> object:
+    return "none" if default in ("", None) else default
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line, which also documents every setting."""
     lines = [
-        f"  POLHODE_{name.upper():<22} {field.description} Default: {field.default}."
+        f"  POLHODE_{name.upper():<22} {field.description} Default: {_written(field.default)}."
         for name, field in Settings.model_fields.items()
     ]
     parser = argparse.ArgumentParser(

@@ -240,6 +240,9 @@ def advance_pairs(
         for i in range(n):
             for k in range(order + 1):
                 c[i, k, 0], c[i, k, 1] = path[0, k * size + i], path[1, k * size + i]
+        if not np.all(np.isfinite(c[:, order, 0])):
+            # Beside a collision the last coefficients overflow before the step is too short.
+            return (SINGULAR if np.all(np.isfinite(c[:, 2, 0])) else LOST), step
         h = way * step_size(c[:, :, 0], table.group, tolerance)
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return (SINGULAR if abs(h) >= 0.0 else LOST), step

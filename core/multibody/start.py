@@ -38,7 +38,9 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
         )
     kinds = {part.name for part in apart}
     if not apart:
-        name, why = "rest", "the connections hold everything where it is"
+        held = len(table.names) == rank
+        name = "rest"
+        why = "the connections hold everything where it is" if held else "it starts at rest, and all forces balance"
     elif len(kinds) == 1:
         name, why = apart[0].name, apart[0].why
     else:

@@ -9,15 +9,23 @@ export class Refusal extends Error {
   }
 }
 
+/** Fetch; while the service is starting, wait until it is ready. */
+async function fetched(path, options) {
+  for (;;) {
+    const response = await fetch(path, options);
+    if (response.status !== 503 || (await fetch("/readyz")).ok) return response;
+    await new Promise((later) => setTimeout(later, 1000));
+  }
+}
+
 export async function get(path, signal) {
-  const response = await fetch(path, { signal });
-  return content(response);
+  return content(await fetched(path, { signal }));
 }
 
 /** Send a question; returns the answer, the bytes it had and the time that the service took (ms). */
 export async function ask(path, question, signal) {
   const body = typeof question === "string" ? question : JSON.stringify(question);
-  const response = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body, signal });
+  const response = await fetched(path, { method: "POST", headers: { "content-type": "application/json" }, body, signal });
   const answer = await content(response);
   const timing = /dur=([\d.]+)/.exec(response.headers.get("server-timing") || "");
   return { answer, milliseconds: timing ? Number(timing[1]) : null };

@@ -80,7 +80,9 @@ def work(engine: Engine, stopped: threading.Event, idle: float) -> None:
 
 
 def _end_with_server(stopped: threading.Event) -> None:
-    sys.stdin.buffer.read()
+    # Without the lock of a buffer, which the interpreter could not take while it ends.
+    while os.read(sys.stdin.fileno(), 4096):
+        pass
     stopped.set()
     _end_in_any_case()
 

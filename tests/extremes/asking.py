@@ -89,6 +89,10 @@ def _fields_within(schema: Any) -> Iterator[str]:
 
 def pointed_at(path: str, question: Any, pointer: str) -> bool:
     """Return whether a JSON pointer leads into a question, or to the place of a field that was left out."""
+    repeated = "/question/request"
+    if pointer.startswith(repeated + "/") and isinstance(question, dict) and isinstance(question.get("question"), dict):
+        asked = question["question"]
+        return pointed_at(asked["path"], asked["request"], pointer.removeprefix(repeated))
     steps = [step.replace("~1", "/").replace("~0", "~") for step in pointer.split("/")[1:]]
     for i, step in enumerate(steps):
         if isinstance(question, dict):
