@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import copysign
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.errors import NotApplicable
 from core.multibody.answer import SceneEvent
@@ -26,6 +27,10 @@ _GROWN = 16.0
 _MOST_REACHES = 5
 _NEIGHBOURS = 8
 """Samples after one by which the size is judged there: those of a motion that grows without bound say nothing of it."""
+_HALVINGS = 48
+"""How often the first interval is halved towards the start: what is thrown may turn in much less time than a mode."""
+_CLOSER = 4
+"""How often the neighbourhood of a lowest value is looked at, each time 66 times as closely."""
 
 
 def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEvent | None:
@@ -121,6 +126,9 @@ def _reaches(whole: Whole, end: float) -> list[float]:
 
 def _grid(whole: Whole, end: float) -> Floats:
     times = np.unique(np.abs(np.concatenate([motion.nodes(end) for _, motion in whole.parts] or [np.zeros(1)])))
+    first = times[times > 0.0][:1]
+    early = np.outer(first, 2.0 ** -np.arange(_HALVINGS, 0.0, -1.0)).ravel()
+    times = np.union1d(times, early)
     return copysign(1.0, end) * times[times <= abs(end)]
 
 
@@ -143,29 +151,26 @@ def _curves(whole: Whole, watched: Sequence[Limit], times: Floats, *, judged: bo
 
 def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> SceneEvent | None:
     largest = np.maximum.accumulate(np.maximum(np.abs(curve), limit.scale))
-    threshold = -_NOISE * largest[np.minimum(np.arange(len(curve)) + _NEIGHBOURS, len(curve) - 1)]
+    ahead = np.arange(len(curve)) + _NEIGHBOURS
+    # Where intervals double, two of them are far enough.
+    ahead[:_HALVINGS] -= _NEIGHBOURS - 2
+    if limit.force is not None and limit.scale == 0.0:
+        # A tension of zero at the start has no size before the first whole interval.
+        ahead = np.maximum(ahead, _HALVINGS + 1 + _NEIGHBOURS)
+    threshold = -_NOISE * largest[np.minimum(ahead, len(curve) - 1)]
     lost = curve < threshold
     if lost[0]:
         return SceneEvent(limit.event, limit.name, 0.0, 0.0)
     low, high = None, None
-    dips = np.zeros(len(curve), dtype=bool)
-    if len(curve) > 2:
-        # Where a parabola through three samples comes near zero, the curve itself is looked at more closely.
-        left, middle, right = curve[:-2], curve[1:-1], curve[2:]
-        bend = left - 2 * middle + right
-        with np.errstate(divide="ignore", invalid="ignore"):
-            lowest = middle - (right - left) ** 2 / (8 * bend)
-        dips[1:-1] = (middle <= left) & (middle <= right) & (bend > 0) & (lowest < 0.25 * np.abs(left))
+    dips = _dips(grid, curve)
     for i in range(1, len(curve)):
         if lost[i]:
             low, high = grid[i - 1], grid[i]
             break
         if dips[i]:
-            fine = np.linspace(grid[i - 1], grid[i + 1], 4 * _SECTIONS)
-            closer = _curves(whole, [limit], fine)[0][0] < threshold[i]
-            if np.any(closer):
-                k = int(np.argmax(closer))
-                low, high = fine[k - 1], fine[k]
+            bracket = _dip_below(whole, limit, float(grid[i - 1]), float(grid[i + 1]), float(threshold[i]))
+            if bracket is not None:
+                low, high = bracket
                 break
     if low is None or high is None:
         return None
@@ -183,3 +188,35 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Scen
     off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(size))
     error = off / abs(slope) if slope != 0.0 else abs(high)
     return SceneEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))
+
+
+def _dips(grid: Floats, curve: Floats) -> NDArray[np.bool_]:
+    """Return where a parabola through three samples comes near zero, so that the curve is to be looked at closely."""
+    dips = np.zeros(len(curve), dtype=bool)
+    if len(curve) > 2:
+        left, middle, right = curve[:-2], curve[1:-1], curve[2:]
+        before, after = np.diff(grid)[:-1], np.diff(grid)[1:]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            bend = ((right - middle) / after - (middle - left) / before) / (before + after)
+            slope = (middle - left) / before + bend * before
+            lowest = middle - slope**2 / (4 * bend)
+        dips[1:-1] = (middle <= left) & (middle <= right) & (bend > 0) & (lowest < 0.25 * np.abs(left))
+    return dips
+
+
+def _dip_below(whole: Whole, limit: Limit, start: float, end: float, threshold: float) -> tuple[float, float] | None:
+    """Return times between which a curve falls below a threshold near its lowest value, if it does."""
+    for _ in range(_CLOSER):
+        fine = np.linspace(start, end, 4 * _SECTIONS)
+        curve = _curves(whole, [limit], fine)[0][0]
+        below = curve < threshold
+        if np.any(below):
+            # It is zero before it is below the threshold: there slopes are small, and these are two times.
+            above = np.flatnonzero(curve[: np.argmax(below)] >= 0.0)
+            k = int(above[-1]) + 1 if len(above) else int(np.argmax(below))
+            return float(fine[k - 1]), float(fine[k])
+        k = int(np.argmin(curve))
+        if k in (0, len(fine) - 1):
+            return None
+        start, end = float(fine[k - 1]), float(fine[k + 1])
+    return None

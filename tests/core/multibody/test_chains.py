@@ -129,6 +129,32 @@ def test_growth_without_bound_hides_no_event():
         assert abs(one.time - first.time) <= one.error + first.error
 
 
+@pytest.mark.parametrize("past", ["0.56", "1e-4", "1e-8"])
+def test_an_end_that_comes_to_the_peg_and_would_soon_be_back_ends_the_motion(past):
+    """A light chain grows in minutes, and its heavy end turns within a second: a longer question finds it as well.
+
+    By energy, with u = z' and M k^2 = 2 rho g: z = z_eq + (z_0 - z_eq) cosh kt + (u/k) sinh kt, solved for e^(kt).
+    """
+    with mp.workdps(40):
+        rho, first, rest = mpf("1e-5"), mpf(1), mpf(10)
+        total = 6 + rho * 11
+        k2 = 2 * rho * mpf("9.81") / total
+        pull = (mpf("9.81") * (5 + rho * first) - mpf("9.81") * (1 + rho * rest)) / total
+        speed = mp.sqrt((2 * pull * first - k2 * first**2) * (1 + mpf(past)))
+        k, level = mp.sqrt(k2), first - pull / k2
+        ahead, back = (pull / k2 - speed / k) / 2, (pull / k2 + speed / k) / 2
+        # ahead e^(kt) + back e^(-kt) + level = 0, the first of two roots.
+        root = (-level - mp.sqrt(level**2 - 4 * ahead * back)) / (2 * ahead)
+        expected = mp.log(root) / k
+        velocity = mp.nstr(speed, 35)
+    scene = hanging(masses=(5, 1), lengths=(1, 10), density="1e-5")
+    scene["bodies"]["a"]["velocity"], scene["bodies"]["b"]["velocity"] = [0, velocity], [0, f"-{velocity}"]
+    for end in (1.0, 30.0, 1000.0):
+        ended = solve_scene(read(scene), [end]).ended
+        assert (ended.kind, ended.name) == ("end-of-chain", "c.1"), end
+        assert abs(mpf(ended.time) - expected) <= ended.error + mpf("1e-15"), (end, ended, expected)
+
+
 @pytest.mark.parametrize("end", ["a", "b"])
 def test_heavy_ends_come_to_the_peg_while_the_chain_is_pressed_on(end):
     heavy = (50, 20) if end == "b" else (20, 50)
