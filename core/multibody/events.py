@@ -165,7 +165,7 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Scen
     dips = _dips(grid, curve)
     for i in range(1, len(curve)):
         if lost[i]:
-            low, high = grid[i - 1], grid[i]
+            low, high = _sign_change(grid, curve, i)
             break
         if dips[i]:
             bracket = _dip_below(whole, limit, float(grid[i - 1]), float(grid[i + 1]), float(threshold[i]))
@@ -204,6 +204,16 @@ def _dips(grid: Floats, curve: Floats) -> NDArray[np.bool_]:
     return dips
 
 
+def _sign_change(grid: Floats, curve: Floats, below: int) -> tuple[float, float]:
+    """Return the times between which a curve became negative that is below its threshold at a sample.
+
+    Where slopes are small it is negative for long before it is below.
+    """
+    above = np.flatnonzero(curve[:below] >= 0.0)
+    k = int(above[-1]) + 1 if len(above) else below
+    return float(grid[k - 1]), float(grid[k])
+
+
 def _dip_below(whole: Whole, limit: Limit, start: float, end: float, threshold: float) -> tuple[float, float] | None:
     """Return times between which a curve falls below a threshold near its lowest value, if it does."""
     for _ in range(_CLOSER):
@@ -211,10 +221,7 @@ def _dip_below(whole: Whole, limit: Limit, start: float, end: float, threshold: 
         curve = _curves(whole, [limit], fine)[0][0]
         below = curve < threshold
         if np.any(below):
-            # It is zero before it is below the threshold: there slopes are small, and these are two times.
-            above = np.flatnonzero(curve[: np.argmax(below)] >= 0.0)
-            k = int(above[-1]) + 1 if len(above) else int(np.argmax(below))
-            return float(fine[k - 1]), float(fine[k])
+            return _sign_change(fine, curve, int(np.argmax(below)))
         k = int(np.argmin(curve))
         if k in (0, len(fine) - 1):
             return None
