@@ -186,13 +186,15 @@ TESTED_IN |= {
         "along": "integrals",
         "complementarity": "contact_forces contact_responses contact_states",
         "contacts": (
-            "contact_start crossings expansion phase phase_ends phases polynomial_roots projection"
+            "contact_places contact_start crossings expansion phase phase_ends phases polynomial_roots projection"
             " sampled_crossings start taylor_crossings tracks turning watches"
         ),
         "contacts_in_space": "shares_in_space slip_directions turning_slip",
         "equilibria": "resting_places",
         "free_body": "turning_body",
+        "sums_in_phases": "stretches",
         "numerical": "packed periods products returns series series_pairs vertical_symmetry",
+        "phase_answer": "phase_states",
         "solve": "answer dynamics events modelling motion uniform whole",
     }.items()
     for name in names.split()
