@@ -26,7 +26,11 @@ DATABASE = "studies.sqlite"
 ACCEPTED, RUNNING, SUCCESSFUL, FAILED, DISMISSED = "accepted", "running", "successful", "failed", "dismissed"
 """States, as OGC API Processes names them."""
 
+STATES = (ACCEPTED, RUNNING, SUCCESSFUL, FAILED, DISMISSED)
 UNFINISHED = (ACCEPTED, RUNNING)
+
+PLANNED = {"path", "count", "shape", "inputs", "figures", "together", "seconds", "bytes"}
+"""What a plan says."""
 
 PATIENCE = 5.0
 """Seconds for which a process waits for another's writing."""
@@ -177,7 +181,9 @@ class Store:
                 detail = f"{open_} studies are unfinished already, the limit max_studies"
                 raise Refusal("too-busy", detail, retry_after=10.0)
             (taken,) = connection.execute(
-                "SELECT COALESCE(SUM(json_extract(plan, '$.bytes')), 0) FROM studies WHERE status != ?", (DISMISSED,)
+                "SELECT COALESCE(SUM(json_extract(plan, '$.bytes')), 0) FROM studies"
+                " WHERE status != ? AND json_valid(plan)",
+                (DISMISSED,),
             ).fetchone()
             if taken + plan["bytes"] > most_bytes:
                 raise Refusal(
@@ -225,7 +231,8 @@ class Store:
         if not self.exists:
             return []
         with self._connected() as connection:
-            return [_study(row) for row in connection.execute(_STUDY + condition, values)]
+            rows = map(_study, connection.execute(_STUDY + condition, values))
+            return [study for study in rows if study is not None]
 
     def chunks(self, identity: str) -> list[tuple[int, int]]:
         """Return the stretches of members whose results are stored, in member order."""
@@ -305,9 +312,18 @@ class Store:
             return connection.execute(statement, values).rowcount > 0
 
 
-def _study(row: tuple[Any, ...]) -> Study:
-    identity, owner, plan, *rest = row
-    return Study(identity, owner, json.loads(plan), *rest)
+def _study(row: tuple[Any, ...]) -> Study | None:
+    """Return a study as it is recorded, None where its row is damaged: the others are not to suffer from it."""
+    identity, owner, plan, status, *rest = row
+    try:
+        # An earlier version did not record what results take.
+        known = {"bytes": 0, **json.loads(plan)}
+    except ValueError:
+        known = {}
+    if not known.keys() >= PLANNED or status not in STATES:
+        LOG.error("the record of a study is damaged", extra={"study": identity})
+        return None
+    return Study(identity, owner, known, status, *rest)
 
 
 def storage_unavailable(fault: Exception, reason: str | None = None) -> Refusal:

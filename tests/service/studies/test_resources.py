@@ -215,6 +215,29 @@ async def test_results_that_are_damaged_are_computed_again(desk_on: Desks, in_pr
         assert (await client.get(f"{place}/results")).json() == before
 
 
+async def test_a_damaged_row_harms_no_other_study(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    import sqlite3
+
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        before = (await client.get(f"{place}/results")).json()
+        others = [(await submitted(client)).rpartition("/")[2] for _ in range(3)]
+        changes = ("plan = '{'", "plan = '{}'", "status = 'odd'")
+        with sqlite3.connect(tmp_path / "studies.sqlite") as database:
+            for change, identity in zip(changes, others, strict=True):
+                database.execute(f"UPDATE studies SET {change} WHERE id = ?", (identity,))
+            database.execute("DELETE FROM chunks")
+        listed = (await client.get("/v1/studies")).json()["studies"]
+        assert [entry["jobID"] for entry in listed] == [before["jobID"]]
+        for identity in others:
+            assert (await client.get(f"/v1/studies/{identity}")).status_code == 404
+        # The record of its results is gone: they are computed again, and so is another study.
+        assert (await client.get(f"{place}/results")).json()["code"] == "results-not-ready"
+        new = await submitted(client)
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        assert (await client.get(f"{place}/results")).json() == before
+        assert (await client.get(new)).json()["status"] == "successful"
+
+
 async def test_a_key_sees_its_own_studies_and_is_charged(tmp_path: Path) -> None:
     lines, secrets = [], {}
     for name, work in (("ada", "60"), ("bob", "-")):
