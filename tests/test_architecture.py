@@ -191,6 +191,7 @@ TESTED_IN |= {
         "contacts_in_space": "shares_in_space slip_directions turning_slip",
         "equilibria": "resting_places",
         "free_body": "turning_body",
+        "nearest": "attitudes",
         "numerical": "packed periods products returns series series_pairs vertical_symmetry",
         "solve": "answer dynamics events modelling motion uniform whole",
     }.items()

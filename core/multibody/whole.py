@@ -74,10 +74,15 @@ class Whole:
 
     @cached_property
     def _arrays(self) -> tuple[Packed, Units, list[int]]:
-        table = self.measures.table
-        chosen = independent(row.line(table.q) for row in table.rows)
+        table, chosen = self.measures.table, self.independent_rows
         units = units_of(table, self.acceleration)
         return packed(table, chosen, units), units, chosen
+
+    @cached_property
+    def independent_rows(self) -> list[int]:
+        """The rows of the table that do not follow from those before them."""
+        table = self.measures.table
+        return independent(row.line(table.q) for row in table.rows)
 
     @cached_property
     def _glanced(self) -> list[tuple[int, Glanced]]:
