@@ -16,6 +16,7 @@ from core.multibody.momenta import StateFunction, momenta
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, WholeStates
+from core.multibody.whole import values as values_of
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
@@ -99,7 +100,7 @@ class Columns:
         q, v = self.states.q, self.states.v
         multipliers = self.whole.multipliers(q, v)
         # What should be zero is known no better than the largest of what is solved for with it.
-        floor = _SOLVED * float(np.max(np.abs(multipliers), initial=0.0))
+        floors = _SOLVED * self.whole.largest_multipliers(multipliers)
         judged = None
         if self.states.reference is not None:
             judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
@@ -107,6 +108,7 @@ class Columns:
         found: dict[str, Column] = {}
         for k, force in enumerate(chosen):
             values, size = self.whole.force(force, q, v, multipliers)
+            floor = sum(float(floors[row] * np.max(values_of(poly, q)[1], initial=0.0)) for row, poly in force.terms)
             error = _SMALL * float(np.max(size, initial=0.0)) + floor + float(moved[k])
             if judged is not None:
                 other = self.whole.force(force, *judged)[0]

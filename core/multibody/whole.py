@@ -199,6 +199,14 @@ class Whole:
             total[:, r] = found[:, k, 0] * two_to(units.multiplier(r))
         return total
 
+    def largest_multipliers(self, multipliers: Floats) -> Floats:
+        """Return the largest of multipliers of shape (t, rows), in the units of the kernels, as one of each row."""
+        units = self._arrays[1]
+        powers = np.array([units.multiplier(row) for row in range(multipliers.shape[1])], dtype=np.int64)
+        largest = np.max(np.ldexp(np.max(np.abs(multipliers), axis=0, initial=0.0), -powers), initial=0.0)
+        found: Floats = np.ldexp(largest, powers)
+        return found
+
     def accelerations(self, q: Floats, v: Floats) -> Floats:
         """Return the acceleration of every coordinate at states, shape (t, n); it raises as `multipliers` does."""
         units = self._arrays[1]
