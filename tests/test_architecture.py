@@ -192,6 +192,7 @@ TESTED_IN |= {
         "contacts_in_space": "shares_in_space slip_directions turning_slip",
         "equilibria": "resting_places",
         "free_body": "turning_body",
+        "nearest": "attitudes",
         "sums_in_phases": "stretches",
         "numerical": "packed periods products returns series series_pairs vertical_symmetry",
         "phase_answer": "phase_states",
