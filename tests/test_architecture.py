@@ -20,6 +20,7 @@ ALLOWED: dict[str, set[str]] = {
     "balls": set(),
     "notices": {"errors"},
     "quantities": {"errors"},
+    "formulas": {"errors"},
     "work": set(),
     "rows": {"quantities", "errors", "work"},
     "double_double": {"compiled", "lanes"},
@@ -30,7 +31,7 @@ ALLOWED: dict[str, set[str]] = {
 ALLOWED["rotation"] = {"systems", "bodies", "elliptic"} | ALLOWED["bodies"] | ALLOWED["elliptic"]
 ALLOWED["scenes"] = {"systems", "elliptic"} | ALLOWED["systems"] | ALLOWED["elliptic"]
 ALLOWED["certified"] = {"rotation", "scenes"} | ALLOWED["rotation"] | ALLOWED["scenes"]
-ALLOWED["multibody"] = {"certified"} | ALLOWED["certified"]
+ALLOWED["multibody"] = {"certified", "formulas"} | ALLOWED["certified"]
 """What each package or module of core may import besides itself. Those in OUTER may import all of core."""
 
 WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",
@@ -196,13 +197,15 @@ TESTED_IN |= {
         "along": "integrals",
         "complementarity": "contact_forces contact_responses contact_states",
         "contacts": (
-            "contact_start crossings expansion phase phase_ends phases polynomial_roots projection"
+            "contact_places contact_start crossings expansion phase phase_ends phases polynomial_roots projection"
             " sampled_crossings start taylor_crossings tracks turning watches"
         ),
         "contacts_in_space": "shares_in_space slip_directions turning_slip",
         "equilibria": "resting_places",
         "free_body": "turning_body",
+        "sums_in_phases": "stretches",
         "numerical": "packed periods products returns series series_pairs vertical_symmetry",
+        "phase_answer": "phase_states",
         "solve": "answer dynamics events modelling motion uniform whole",
     }.items()
     for name in names.split()

@@ -53,18 +53,25 @@ class Impact:
         The measures, those that slip in space turned into the direction in which they did.
     change : list of ball
         Of all rates.
-    loss : ball
-        Kinetic energy that is lost.
     together : bool
         Whether several take impulses at once.
     """
 
     v: list[Ball]
     impulses: dict[int, tuple[Ball, Ball, Ball]]
-    loss: Ball
     unilateral: Sequence[Unilateral]
     change: list[Ball]
     together: bool = False
+
+    def work(self, i: int, q: Sequence[Ball], before: Sequence[Ball]) -> Ball:
+        """Return the work (J) of the impulse of a measure: the impulse times the mean of its rates before and after.
+
+        These works add up to the change of kinetic energy (Kelvin and Tait, 1867, section 309).
+        """
+        one, total = self.unilateral[i], ZERO
+        for impulse, rate in zip(self.impulses[i], (gap_rate, slip_rate, across_rate), strict=True):
+            total = total + impulse * (rate(one, q, before) + rate(one, q, self.v)) / 2
+        return ZERO if is_zero(total) else total
 
 
 def approaching(unilateral: Sequence[Unilateral], touching: Sequence[int], q: list[Ball], v: list[Ball]) -> list[int]:
@@ -120,7 +127,7 @@ def impact(
             decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
         )
     change = [x - y for x, y in zip(after, v, strict=True)]
-    return Impact(after, impulses, ZERO if is_zero(loss) else loss, unilateral, change, together)
+    return Impact(after, impulses, unilateral, change, together)
 
 
 def _group(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError, NotApplicable, inside_field
-from core.multibody.along import Along
+from core.multibody.along import Along, watched_times
 from core.multibody.answer import Occurrence, SceneEvent, SceneExtremes
 from core.multibody.columns import (
     COLUMNS_OF_STATES,
@@ -52,6 +52,9 @@ LOST = 1e-3
 
 MOST_NUMBERS = 5_000_000
 """Numbers that one trajectory may have."""
+
+ONLY_SUMS = "it is not propagated to what is summed up along the motion, and there is nothing else"
+"""Why nothing is inherited where only works and paths are answered."""
 
 Output = str | When | ExtremesOf
 
@@ -246,9 +249,7 @@ class DescribedSystem:
             return columns, replace(stated, why=fault.detail)
         own = {name: column for name, column in columns.items() if name in moved}
         if not own:
-            return columns, replace(
-                stated, why="it is not propagated to what is summed up along the motion, and there is nothing else"
-            )
+            return columns, replace(stated, why=ONLY_SUMS)
         moved = {name: moved[name] for name in own}
         share = uncertainty * relative(moved, own)
         until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
@@ -281,7 +282,8 @@ class DescribedSystem:
         with np.errstate(over="ignore", invalid="ignore"):
             for index, output in enumerate(self.outputs):
                 if isinstance(output, When):
-                    times_found.extend(occurrences(self.whole, self._sampler(output, index), output, end))
+                    grid = watched_times(self.whole, end)
+                    times_found.extend(occurrences(grid, self._sampler(output, index), output))
                 elif isinstance(output, ExtremesOf):
                     ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, end))
         return tuple(times_found), tuple(ranges)

@@ -1,4 +1,4 @@
-"""Random scenes with contacts, slack strings and stops, judged by what no motion may do.
+"""Random scenes of up to four contacts, slack strings and stops, judged by what no motion may do.
 
     python -m tests.core.multibody.contact_judge 1000
 
@@ -216,6 +216,48 @@ def block_on_plank(random: np.random.Generator) -> Scene:
     }
 
 
+def rod_in_corner(random: np.random.Generator) -> Scene:
+    """Return a rod whose two ends may touch a floor and a wall, in a corner."""
+    scene = rod_on_floor(random)
+    friction = "friction" in scene["connections"][0]
+    for end in ("left", "right"):
+        wall = {"at": [decimal(random, 0.9, 1.3), 0], "slope": {"degrees": 90}}
+        scene["connections"].append(_contact(random, f"wall-{end}", f"rod.{end}", wall, friction))
+    return scene
+
+
+def discs_in_corner(random: np.random.Generator) -> Scene:
+    """Return two discs that may touch a floor, a wall and one another."""
+    while True:
+        scene = discs(random)
+        if len(scene["bodies"]) == 2:
+            break
+    friction = "friction" in scene["connections"][0]
+    scene["connections"].append(_contact(random, "wall", "d1", {"at": [1.3, 0], "slope": {"degrees": 90}}, friction))
+    return scene
+
+
+def box_on_floor(random: np.random.Generator) -> Scene:
+    """Return a box that falls onto its corners."""
+    width, height, mass = decimal(random, 0.2, 0.6), decimal(random, 0.2, 0.6), decimal(random, 0.5, 3)
+    corners = {"a": [-width, -height], "b": [width, -height], "c": [width, height], "d": [-width, height]}
+    box = {
+        "mass": mass,
+        "inertia": float(f"{mass * (width * width + height * height) / 3:.4g}"),
+        "at": [0, decimal(random, 0.9, 1.4)],
+        "angle": decimal(random, -1.4, 1.4),
+        "velocity": [decimal(random, -2, 2), decimal(random, -2, 2)],
+        "angular_velocity": decimal(random, -5, 5),
+        "places": corners,
+    }
+    friction, floor = _friction(random), {"at": [0, 0], "slope": _slope(random)}
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"rod-box": box},
+        "connections": [_contact(random, corner, f"rod-box.{corner}", floor, friction) for corner in corners],
+    }
+
+
 KINDS: tuple[Callable[[np.random.Generator], Scene], ...] = (
     discs,
     rod_on_floor,
@@ -225,6 +267,9 @@ KINDS: tuple[Callable[[np.random.Generator], Scene], ...] = (
     rod_pendulum_with_stop,
     disc_in_bowl,
     block_on_plank,
+    rod_in_corner,
+    discs_in_corner,
+    box_on_floor,
 )
 
 
