@@ -28,6 +28,7 @@ from core.multibody.inherited import changes, horizon, looks
 from core.multibody.language import Scene
 from core.multibody.measures import Limit
 from core.multibody.modelling import Modelled
+from core.multibody.nearest import Nearest
 from core.multibody.numerical import Numerical
 from core.multibody.occurrences import ExtremesOf, Sampler, When, component, extremes, occurrences, unknown
 from core.multibody.packed import Floats, Integers
@@ -208,7 +209,9 @@ class DescribedSystem:
                 path=("connections",),
                 remedy="start elsewhere",
             )
-        return Columns(self.whole, times, states, self.how, rounding).chosen(self.outputs, self.determined)
+        columns = Columns(self.whole, times, states, self.how, rounding)
+        chosen = Nearest(columns).chosen if rounding == NEAREST else columns.chosen
+        return chosen(self.outputs, self.determined)
 
     def _measured(self, times: Floats, states: WholeStates, how: How) -> dict[str, Column]:
         """Return the columns of states that a method computed, their errors measured against the motion itself."""

@@ -2,7 +2,7 @@
 import { color } from "./dom.js";
 import { Arrow, View, material } from "./view3d.js";
 import {
-  BoxGeometry, Color, CylinderGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, TorusGeometry, Vector3,
+  BoxGeometry, Color, CylinderGeometry, Group, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, TorusGeometry, Vector3,
 } from "./vendor/three.js";
 
 const UP = new Vector3(0, 1, 0);
@@ -17,9 +17,9 @@ export class BodyView extends View {
     this.momentum = new Arrow(this, "deep");
     this.omega = new Arrow(this, "warm", 0.018);
     this.scene.add(this.space, this.momentum.group, this.omega.group);
-    this.faces = [material(this, "face", { side: DoubleSide }), material(this, "faceTwo"), material(this, "faceThree")];
+    this.faces = [material(this, "face"), material(this, "faceTwo"), material(this, "faceThree")];
     this.axes = [0, 1, 2].map(() => {
-      const bar = new Mesh(new CylinderGeometry(0.014, 0.014, 2.1, 8), new MeshBasicMaterial());
+      const bar = new Mesh(new CylinderGeometry(0.014, 0.014, 2.1, 8), new MeshLambertMaterial());
       this.body.add(bar);
       return { bar, name: "neutral" };
     });

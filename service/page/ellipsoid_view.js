@@ -1,7 +1,7 @@
 // The energy ellipsoid with the polhode, the separatrix and what an integrator makes of them; the start can be dragged.
 import { color, make } from "./dom.js";
 import { Curve, View, material } from "./view3d.js";
-import { Color, CylinderGeometry, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, SphereGeometry, Vector3 } from "./vendor/three.js";
+import { CylinderGeometry, Matrix4, Mesh, MeshLambertMaterial, SphereGeometry, Vector3 } from "./vendor/three.js";
 
 const STABILITY = { stable: "stable", unstable: "unstable", neutral: "neutral" };
 
@@ -11,9 +11,7 @@ export class EllipsoidView extends View {
     super(frame, "the ellipsoid");
     this.extent = 1.25;
     this.onSpin = onSpin;
-    const paint = new MeshLambertMaterial({ transparent: true, opacity: 0.92 });
-    this.painted(() => { paint.color = new Color(color("surface")); });
-    this.surface = new Mesh(new SphereGeometry(1, 64, 48), paint);
+    this.surface = new Mesh(new SphereGeometry(1, 64, 48), material(this, "surface"));
     this.surface.matrixAutoUpdate = false;
     this.scene.add(this.surface);
     this.polhode = new Curve(this, "deep", 3.5, true);
@@ -22,7 +20,7 @@ export class EllipsoidView extends View {
     this.now = new Mesh(new SphereGeometry(0.035, 20, 14), material(this, "ink"));
     this.scene.add(this.now);
     this.axes = [0, 1, 2].map(() => {
-      const bar = new Mesh(new CylinderGeometry(0.016, 0.016, 1, 10), new MeshBasicMaterial());
+      const bar = new Mesh(new CylinderGeometry(0.016, 0.016, 1, 10), new MeshLambertMaterial());
       this.scene.add(bar);
       return { bar, name: "neutral" };
     });

@@ -7,6 +7,19 @@ import {
 
 const UP = new Vector3(0, 1, 0);
 
+/** Draws every picture of a page; null where the browser has no WebGL. Made once: contexts and their shaders are what takes time. */
+let renderer;
+
+function makeRenderer() {
+  try {
+    renderer = new WebGLRenderer({ canvas: new OffscreenCanvas(1, 1), antialias: true, alpha: true });
+    // Asking whether a shader compiled waits until it has.
+    renderer.debug.checkShaderErrors = false;
+  } catch {
+    renderer = null;
+  }
+}
+
 export class View {
   /** `frame` is the element that holds the picture; `name` names it for the buttons that turn it. */
   constructor(frame, name) {
@@ -105,22 +118,28 @@ export class View {
     return { origin, direction: this.camera.getWorldDirection(new Vector3()) };
   }
 
-  /** Made with the first picture, so that questions to the service are on their way before. */
-  makeRenderer() {
-    try {
-      const renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
-      // Asking whether a shader compiled waits until it has.
-      renderer.debug.checkShaderErrors = false;
-      return renderer;
-    } catch {
+  /** Draw the picture; the first one waits until the numbers that came with it are on the screen. */
+  paint() {
+    if (renderer === undefined) {
+      if (this.waiting) return;
+      this.waiting = true;
+      setTimeout(() => {
+        if (renderer === undefined) makeRenderer();
+        this.render();
+      });
+    } else if (renderer) {
+      renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+      renderer.setSize(this.width, this.height, false);
+      renderer.render(this.scene, this.camera);
+      this.bitmap ??= this.canvas.getContext("bitmaprenderer");
+      this.bitmap.transferFromImageBitmap(renderer.domElement.transferToImageBitmap());
+    } else if (!this.frame.querySelector(".fallback")) {
       this.frame.append(make("p", { className: "soft fallback", textContent: "This browser draws no pictures in space (WebGL is off). Numbers and curves are below." }));
-      return null;
     }
   }
 
   draw() {
     if (!this.filled) return;
-    if (this.renderer === undefined) this.renderer = this.makeRenderer();
     this.width = this.canvas.clientWidth || 1;
     this.height = this.canvas.clientHeight || 1;
     const wide = Math.max(1, this.width / this.height), high = Math.max(1, this.height / this.width);
@@ -132,11 +151,7 @@ export class View {
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
     this.light.position.copy(this.camera.position).addScaledVector(this.camera.up, 14);
-    if (this.renderer) {
-      this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
-      this.renderer.setSize(this.width, this.height, false);
-      this.renderer.render(this.scene, this.camera);
-    }
+    this.paint();
     for (const { element, point } of this.labels.values()) {
       const { x, y } = this.project(point);
       element.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;

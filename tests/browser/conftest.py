@@ -15,6 +15,9 @@ from tests.browser.serving import ARGUMENTS, CHROMIUM, serving
 # Without playwright, as in `make test`, there is nothing to collect here.
 collect_ignore_glob = [] if find_spec("playwright") else ["test_*.py"]
 
+COMPOSITOR = "GPU stall due to ReadPixels"
+"""Written by Chromium whenever it composes a page without a GPU in which WebGL draws: its own way, not the page's."""
+
 FIGURES: list[str] = []
 """What was measured, written at the end."""
 
@@ -69,7 +72,10 @@ def opened(browser: Any, base: str) -> Iterator[Callable[..., Any]]:
         context = browser.new_context(**options)
         contexts.append(context)
         page = context.new_page()
-        page.on("console", lambda m: messages.append(m.text) if not any(e in m.text for e in expected) else None)
+        page.on(
+            "console",
+            lambda m: messages.append(m.text) if not any(e in m.text for e in (COMPOSITOR, *expected)) else None,
+        )
         page.on("pageerror", lambda error: messages.append(str(error)))
         if watch is not None:
             page.on("response", watch)
