@@ -52,15 +52,26 @@ SERVICE_LAYERS = (
 """The packages and modules of the service in layers, lowest first; each imports from its own layer or a lower one."""
 
 
-def imports(path: Path) -> set[str]:
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text())
+
+
+@cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    return tuple(ast.walk(tree(path)))
+
+
+@cache
+def imports(path: Path) -> frozenset[str]:
+    found: set[str] = set()
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
             assert node.level == 0, f"{path}: imports are absolute"
             found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
-    return found
+    return frozenset(found)
 
 
 def name(path: Path) -> str:
@@ -88,7 +99,7 @@ def test_core_imports_downwards(path: Path) -> None:
 
 @pytest.mark.parametrize("path", CORE, ids=name)
 def test_core_neither_prints_nor_reads_the_environment_nor_logs(path: Path) -> None:
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes(path):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             assert node.func.id not in ("print", "input", "breakpoint")
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
@@ -119,7 +130,7 @@ def test_the_service_has_no_mechanics(path: Path) -> None:
 
 @pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
 def test_no_function_assigns_a_global(path: Path) -> None:
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in nodes(path):
         assert not isinstance(node, ast.Global), "no global mutable state"
 
 
@@ -131,7 +142,7 @@ def test_modules_are_named_by_content_and_are_of_limited_length(path: Path) -> N
 
 @pytest.mark.parametrize("path", CORE + SERVICE, ids=name)
 def test_every_module_has_a_docstring(path: Path) -> None:
-    text = ast.get_docstring(ast.parse(path.read_text()))
+    text = ast.get_docstring(tree(path))
     assert text or path.name == "__init__.py"
 
 

@@ -107,10 +107,10 @@ class Along:
         return Column(done, "J", error, self.how)
 
     def _integral(self, function: Callable[[State], Floats], unit: str) -> Column:
-        def integrand(times: Floats) -> tuple[Floats, Floats]:
+        def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
             states = self.whole.states(times, finer=self.finer)
             own = function((states.q, states.v))
-            return own, own if states.reference is None else function(states.reference)
+            return own, own if states.reference is None else function(states.reference), np.abs(own)
 
         total, error = _from_the_start(self.whole, integrand, self.times)
         return Column(total, unit, float(np.max(error, initial=0.0)), self.how)

@@ -99,8 +99,9 @@ class PhaseMotion:
         What ended the motion, where mechanics does not decide.
     ended : SceneEvent or None
         The event that ended it.
-    impacts : list of (int, str, ball)
-        Work of every impulse: the number of the phase that begins with it, the measure, and the work (J).
+    impacts : list of (int, str, ball or None)
+        Work of every impulse: the number of the phase that begins with it, the measure, and the work (J), None where
+        contacts could share it otherwise.
     """
 
     base: Described
@@ -110,7 +111,7 @@ class PhaseMotion:
     noticed: list[str] = field(default_factory=list)
     problem: Problem | None = None
     ended: SceneEvent | None = None
-    impacts: list[tuple[int, str, Ball]] = field(default_factory=list)
+    impacts: list[tuple[int, str, Ball | None]] = field(default_factory=list)
 
 
 def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:

@@ -210,7 +210,8 @@ class _Run:
                 impulses["friction"] = nearest(rub)
             time, late = nearest(self.tracks.time), self.tracks.late()
             work = outcome.work(i, q, v)
-            self.motion.impacts.append((len(self.motion.phases), one.name, work))
+            known = None if i in outcome.shared else work
+            self.motion.impacts.append((len(self.motion.phases), one.name, known))
             self.motion.events.append(SceneEvent(one.closes, one.name, time, late, impulses, nearest(ZERO - work)))
 
     def _decide(self) -> Problem | None:

