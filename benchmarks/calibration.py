@@ -104,6 +104,18 @@ def chain(count: int, angle: float = 0.3) -> dict[str, Any]:
     return {"gravity": [0, -9.81], "bodies": bodies, "connections": rods}
 
 
+def on_springs(count: int, *, damped: bool = False) -> dict[str, Any]:
+    """Return points in a row, each on a spring between it and the one before; a damper may hold the first."""
+    bodies = {f"p{i}": {"mass": 1, "at": [i + 1 + 0.1 * (i == 0), 0]} for i in range(count)}
+    before: list[Any] = [[0, 0], *bodies]
+    found: list[dict[str, Any]] = [
+        {"kind": "spring", "a": name, "b": end, "stiffness": 1, "rest_length": 1}
+        for name, end in zip(bodies, before, strict=False)
+    ]
+    damper = {"kind": "damper", "a": "p0", "b": [0, 0], "coefficient": 0.1}
+    return {"bodies": bodies, "connections": [*found, damper] if damped else found}
+
+
 def apart(count: int) -> dict[str, Any]:
     """Return points that fall freely."""
     return {"gravity": [0, -9.81], "bodies": {f"p{i}": {"mass": 1, "at": [i, 0]} for i in range(count)}}
@@ -124,6 +136,8 @@ def described_scenes() -> list[dict[str, Any]]:
     for count in (64, 100):
         found += [chain(count), chain(count) | {"times": span(30, 1.0), "accuracy": 0.9}]
     found += [chain(count) | {"times": span(30, 10.0), "accuracy": 0.9} for count in (8, 16)]
+    found += [on_springs(count) | {"times": span(30, 1.0)} for count in (4, 32, 100)]
+    found += [on_springs(count, damped=True) | {"times": span(30, 1.0)} for count in (4, 32, 64)]
     found += [chain(count) | {"outputs": ["equilibria"]} for count in (1, 2, 3)]
     # Let go from higher they amplify rounding.
     found += [

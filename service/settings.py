@@ -124,6 +124,11 @@ class Settings(BaseSettings):
         default=100, ge=1, description="Unfinished studies of one key, or of all without keys (429)."
     )
     max_study_members: int = Field(default=10_000_000, ge=1, description="Largest number of members of a study (422).")
+    max_studies_bytes: int = Field(
+        default=50_000_000_000,
+        ge=0,
+        description="Bytes that the results of all studies may take together, those to be computed included (503).",
+    )
     max_study_seconds: float = Field(
         default=1e6, gt=0, description="Largest predicted processor time of a study, in seconds (422)."
     )

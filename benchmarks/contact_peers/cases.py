@@ -6,8 +6,9 @@ the body, and planes shifted by their radius, so that the centres of the balls a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import mpmath
@@ -37,8 +38,8 @@ class ContactCase:
         What the balls touch.
     scene : mapping
         The same, as `POST /v1/scenes` takes it, without times.
-    references : mapping of str to (str, str)
-        By name of what is measured: its value at 40 digits, and its unit; empty where mechanics decides nothing.
+    find_references : callable
+        Computes `references`.
     """
 
     name: str
@@ -53,7 +54,12 @@ class ContactCase:
     scene: Mapping[str, Any]
     friction: float = 0.0
     restitution: float = 0.0
-    references: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    find_references: Callable[[], Mapping[str, tuple[str, str]]] = dict
+
+    @cached_property
+    def references(self) -> Mapping[str, tuple[str, str]]:
+        """By name of what is measured: its value at 40 digits, and its unit; empty where mechanics decides nothing."""
+        return self.find_references()
 
 
 def _text(value: Any) -> str:
@@ -154,7 +160,7 @@ LADDER = ContactCase(
         [_floor("ladder.foot"), _WALL],
         let={"s": "1.5*sin(0.5)", "c": "1.5*cos(0.5)"},
     ),
-    references=_ladder_references(),
+    find_references=_ladder_references,
 )
 
 SLIP = ContactCase(
@@ -173,7 +179,7 @@ SLIP = ContactCase(
         {"mass": 1, "inertia": 0.005, "radius": 0.1, "at": [0, 0.1], "velocity": [3, 0]},
         [_floor("disc", friction=0.2)],
     ),
-    references=_slip_references(),
+    find_references=_slip_references,
 )
 
 BOUNCE = ContactCase(
@@ -188,7 +194,7 @@ BOUNCE = ContactCase(
     planes=((0.0, -0.1, 0.0, 1.0),),
     restitution=0.8,
     scene=_scene("ball", {"mass": 1, "at": [0, 1.25]}, [_floor("ball", restitution=0.8)]),
-    references=_bounce_references(),
+    find_references=_bounce_references,
 )
 
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from core.assessment.compare import Floats
-from core.assessment.formulas import LONGEST_FORMULA
 from core.errors import InvalidParameter
+from core.formulas import LONGEST_FORMULA
 
 MOST_CLAIMS = 100
 """Figures in one submission."""

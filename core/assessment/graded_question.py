@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
 from random import Random
 from typing import Any, NamedTuple, Protocol
 
@@ -97,6 +97,13 @@ class Variation(NamedTuple):
     figure: float
 
 
+Parameters = Mapping[str, tuple[Path, float, str]]
+"""Path, value and unit of numbers of a request, by name."""
+
+Varied = tuple[dict[str, float], Callable[[Path], Any]]
+"""Parameters by name, and what finds figures of the answer to the question with these."""
+
+
 class GradedQuestion:
     """A question, answered as often as references, uncertainties and mistakes need.
 
@@ -115,6 +122,7 @@ class GradedQuestion:
         self._source, self.request, self._uncertainty = source, request, uncertainty
         self._answers: dict[str, Mapping[str, Any] | None] = {}
         self._references: dict[Path, Reference | None] = {}
+        self._variations: dict[Any, tuple[list[Varied], Iterator[Varied]]] = {}
 
     @property
     def subject(self) -> str:
@@ -129,8 +137,13 @@ class GradedQuestion:
     def evaluate(self, request: Any) -> Callable[[Path], Any]:
         """Ask a changed question; the result finds the value at a path of its answer, None where there is none."""
 
+        # A request may have thousands of numbers, and an answer hundreds of figures.
+        @cache
+        def answered(output: str | int) -> Mapping[str, Any] | None:
+            return self._ask(request, output)
+
         def find(path: Path) -> Any:
-            answer = self._ask(request, path[0])
+            answer = answered(path[0])
             return None if answer is None else value_at(answer, path)
 
         return find
@@ -170,9 +183,28 @@ class GradedQuestion:
         chosen = names if names is not None else {name_of(path): path for path in numbers}
         return {name: (path, numbers[path], self._source.unit_of_request(path) or "1") for name, path in chosen.items()}
 
-    def variations(self, path: Path, parameters: Mapping[str, tuple[Path, float, str]]) -> list[Variation]:
+    def variations(self, path: Path, parameters: Parameters) -> list[Variation]:
         """Return the question's parameters and the figure at a path, and those of seeded variations of it."""
-        chance, found = Random(0), list[Variation]()
+        found = list[Variation]()
+        for values, find in self._varied(parameters):
+            figure = find(path)
+            if type(figure) is float:
+                found.append(Variation(values, figure))
+            if len(found) > VARIATIONS:
+                break
+        return found
+
+    def _varied(self, parameters: Parameters) -> Iterator[Varied]:
+        """Yield what `_drawn` yields, each drawn once for all figures."""
+        known, further = self._variations.setdefault(tuple(parameters.items()), ([], self._drawn(parameters)))
+        yield from known
+        for one in further:
+            known.append(one)
+            yield one
+
+    def _drawn(self, parameters: Parameters) -> Iterator[Varied]:
+        """Yield the parameters of the question and of its variations, each with what finds figures of its answer."""
+        chance = Random(0)
         for k in range(1 + 3 * VARIATIONS):
             # Numbers that have to be equal are, in the last third.
             shares: dict[tuple[Path, float], float] = {}
@@ -182,12 +214,7 @@ class GradedQuestion:
                 share = shares.setdefault(group, chance.uniform(0.75, 1.25))
                 values[name] = value if k == 0 else value * share
             request = changed(self.request, {parameters[name][0]: value for name, value in values.items()})
-            figure = self.evaluate(request)(path)
-            if type(figure) is float:
-                found.append(Variation(values, figure))
-            if len(found) > VARIATIONS:
-                break
-        return found
+            yield values, self.evaluate(request)
 
     def rotation(self) -> TorqueFree | None:
         """Return the free rotation that the question is about, None for questions about anything else."""

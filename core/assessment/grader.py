@@ -13,12 +13,12 @@ from core.assessment.claims import MOST_CLAIMS, Claim
 from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
-from core.assessment.formulas import Formula
 from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path
+from core.formulas import Formula
 from core.work import spend
 
 if TYPE_CHECKING:

@@ -9,9 +9,10 @@ from typing import Protocol
 
 from core.assessment.compare import Judgement, Reference, compare
 from core.assessment.comparisons import RelAbs
-from core.assessment.formulas import Formula, Powers, Undefined
+from core.assessment.formulas import Powers, Undefined, dimensions, value_in_doubles
 from core.assessment.units import base_powers
 from core.errors import InvalidParameter
+from core.formulas import Formula
 
 FORMULA = RelAbs(rtol=1e-8)
 """How far a formula may be from the figure: rounding, also of an ill-conditioned one, and no rounded constant."""
@@ -69,7 +70,7 @@ def judge_formula(
     if len(variations) <= ENOUGH:
         return JudgedFormula(Judgement("not-gradable"), "There are too few questions like this one to judge a formula.")
     try:
-        values = [formula.value(one.parameters) for one in variations]
+        values = [value_in_doubles(formula, one.parameters) for one in variations]
     except Undefined:
         return JudgedFormula(Judgement("incorrect"), "The formula has no value at such parameters.")
     own = compare(reference, values[0], FORMULA)
@@ -102,7 +103,7 @@ def _dimensional_fault(formula: Formula, units: Mapping[str, str], unit: str) ->
         known[name] = {base: Fraction(power) for base, power in powers.items()}
     wanted = base_powers(unit)
     try:
-        found = formula.dimensions(known)
+        found = dimensions(formula, known)
     except InvalidParameter as fault:
         return f"Check the dimensions: the formula must {fault.rule}."
     if wanted is not None and found != {base: Fraction(power) for base, power in wanted.items()}:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,9 @@ SEEN = 1e-7
 SETTINGS = {"times", "accuracy", "method", "measure", "input_uncertainty", "outputs", "round", "resolution", "points"}
 SETTINGS |= {"seed", "count"}
 """Fields of questions that are no data."""
+
+Shares = tuple[tuple[Path, float], ...]
+"""By how much of itself each of some numbers is changed."""
 
 Evaluate = Callable[[Any], Callable[[Path], Any]]
 """From a request to what finds the value at a path of its answer, None where there is none."""
@@ -112,48 +116,52 @@ class Propagation:
     request: Any
     uncertainties: Mapping[Path, float]
     evaluate: Evaluate
+    _moved: dict[Shares, tuple[float, list[Callable[[Path], Any]]]] = field(default_factory=dict, init=False)
 
     def of(self, path: Path, reference: Reference) -> float | None:
         """Return by how much the figure at a path of the answer may change (in its unit), None if that is not found."""
-        numbers = dict(numbers_of(self.request))
-        uncertain = {p: u for p, u in self.uncertainties.items() if u > 0.0 and p in numbers}
-        if len(uncertain) > MOST_INPUTS:
-            return self._of_many(path, reference, numbers, uncertain)
+        if len(self._uncertain) > MOST_INPUTS:
+            effects = [self._effect(pattern, path, reference) for pattern in self._patterns]
+            found = [effect for effect in effects if effect is not None]
+            return max(found) if len(found) == len(effects) else None
         total = 0.0
         done: set[Path] = set()
-        for place, share in uncertain.items():
+        for place, share in self._uncertain.items():
             if place in done:
                 continue
-            alone = self._effect({place: share}, numbers, path, reference)
+            alone = self._effect(((place, share),), path, reference)
             if alone is None:
-                together = {p: uncertain[p] for p in _equal_beside(place, numbers) if p in uncertain}
-                done |= set(together)
-                alone = self._effect(together, numbers, path, reference)
+                together = [p for p in _equal_beside(place, self._numbers) if p in self._uncertain]
+                done.update(together)
+                alone = self._effect(tuple((p, self._uncertain[p]) for p in together), path, reference)
             if alone is None:
                 return None
             total += alone
         return total
 
-    def _of_many(
-        self, path: Path, reference: Reference, numbers: Mapping[Path, float], uncertain: Mapping[Path, float]
-    ) -> float | None:
-        signs = np.random.default_rng(0).choice((-1.0, 1.0), (PATTERNS, len(uncertain))).tolist()
-        effects = []
-        for row in signs:
-            pattern = {place: share * sign for (place, share), sign in zip(uncertain.items(), row, strict=True)}
-            effects.append(self._effect(pattern, numbers, path, reference))
-        found = [effect for effect in effects if effect is not None]
-        return max(found) if len(found) == len(effects) else None
+    @cached_property
+    def _numbers(self) -> Mapping[Path, float]:
+        return dict(numbers_of(self.request))
 
-    def _effect(
-        self, shares: Mapping[Path, float], numbers: Mapping[Path, float], path: Path, reference: Reference
-    ) -> float | None:
-        largest = max(map(abs, shares.values()))
-        scaled = max(1.0, SEEN / largest)
+    @cached_property
+    def _uncertain(self) -> Mapping[Path, float]:
+        return {p: u for p, u in self.uncertainties.items() if u > 0.0 and p in self._numbers}
+
+    @cached_property
+    def _patterns(self) -> Sequence[Shares]:
+        signs = np.random.default_rng(0).choice((-1.0, 1.0), (PATTERNS, len(self._uncertain))).tolist()
+        return [
+            tuple((place, share * sign) for (place, share), sign in zip(self._uncertain.items(), row, strict=True))
+            for row in signs
+        ]
+
+    def _effect(self, shares: Shares, path: Path, reference: Reference) -> float | None:
+        if shares not in self._moved:
+            self._moved[shares] = self._asked(shares)
+        scaled, answers = self._moved[shares]
         worst = None
-        for sign in (1.0, -1.0) if scaled == 1.0 else (1.0,):
-            moved = {place: numbers[place] * (1.0 + sign * scaled * share) for place, share in shares.items()}
-            value = self._ask(tuple(sorted(moved.items(), key=str)), path)
+        for answer in answers:
+            value = answer(path)
             if value is None:
                 continue
             try:
@@ -162,8 +170,12 @@ class Propagation:
                 continue
         return worst
 
-    def _ask(self, changes: tuple[tuple[Path, float], ...], path: Path) -> Any:
-        return self.evaluate(changed(self.request, dict(changes)))(path)
+    def _asked(self, shares: Shares) -> tuple[float, list[Callable[[Path], Any]]]:
+        """Return by how much changes are scaled, and the answers with these added and, unless scaled, taken away."""
+        scaled = max(1.0, SEEN / max(abs(share) for _, share in shares))
+        signs = (1.0, -1.0) if scaled == 1.0 else (1.0,)
+        moved = [{p: self._numbers[p] * (1.0 + sign * scaled * share) for p, share in shares} for sign in signs]
+        return scaled, [self.evaluate(changed(self.request, changes)) for changes in moved]
 
 
 def _equal_beside(place: Path, numbers: Mapping[Path, float]) -> list[Path]:

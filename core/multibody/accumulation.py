@@ -71,13 +71,14 @@ class Accumulation:
 
     def at(self, time: Ball) -> tuple[list[Ball], list[Ball]]:
         """Return the state at a time before the end."""
-        return self._state(time, self.restitution ** self.arc(time))
+        return self.state(time, self.restitution ** self.arc(time))
 
     def limit(self) -> tuple[list[Ball], list[Ball]]:
         """Return the state at the end."""
-        return self._state(self.length, ONE - ONE)
+        return self.state(self.length, ONE - ONE)
 
-    def _state(self, time: Ball, power: Ball) -> tuple[list[Ball], list[Ball]]:
+    def state(self, time: Ball, power: Ball) -> tuple[list[Ball], list[Ball]]:
+        """Return the state at a time, after as many impulses as the power of the restitution."""
         e, d = self.restitution, self.first
         total = self.total * (1 - power)
         # Sum of the impulses, each times when it came.

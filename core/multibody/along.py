@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from math import copysign
 
 import numpy as np
 
 from core.errors import BudgetExceeded
+from core.multibody.coordinates import Frame
 from core.multibody.integrals import Integrand, integrated
 from core.multibody.measures import Work
 from core.multibody.momenta import work_of_potential
@@ -84,19 +86,13 @@ class Along:
             if work.potential is not None:
                 found[f"{work.name}.work"] = self._by_potential(work)
             else:
-                found[f"{work.name}.work"] = self._integral(self._power(work), "J")
+                found[f"{work.name}.work"] = self._integral(power_of(self.whole, work), "J")
         return found
 
     def paths(self) -> dict[str, Column]:
         """Return the lengths of the paths of centres of mass (m)."""
         found = {}
-        for name, frame in self.whole.measures.coordinates.frames.items():
-            where = list(frame.position)
-
-            def speed(state: State, where: Sequence[int] = where) -> Floats:
-                rates: Floats = np.linalg.norm(state[1][:, where, 0], axis=1)
-                return rates
-
+        for name, speed in path_speeds(self.whole.measures.coordinates.frames).items():
             found[f"{name}.path"] = self._integral(speed, "m")
         return found
 
@@ -110,31 +106,44 @@ class Along:
             error += _TELL * float(np.max(np.abs(done - other), initial=0.0))
         return Column(done, "J", error, self.how)
 
-    def _power(self, work: Work) -> Callable[[State], Floats]:
-        def power(state: State) -> Floats:
-            q, v = state
-            total = np.zeros(len(q))
-            if work.square is not None:
-                rate = sum((float(x) * v[:, i, 0] for i, x in work.square[1].items()), np.zeros(len(q)))
-                total -= float(work.square[0]) * rate**2
-            for factor, i, j in work.terms:
-                total += float(factor) * q[:, i, 0] * v[:, j, 0]
-            if work.rows:
-                multipliers = self.whole.multipliers(q, v)
-                for row, poly in work.rows:
-                    total -= values(poly, q)[0] * multipliers[:, row]
-            return total
-
-        return power
-
     def _integral(self, function: Callable[[State], Floats], unit: str) -> Column:
-        def integrand(times: Floats) -> tuple[Floats, Floats]:
+        def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
             states = self.whole.states(times, finer=self.finer)
             own = function((states.q, states.v))
-            return own, own if states.reference is None else function(states.reference)
+            return own, own if states.reference is None else function(states.reference), np.abs(own)
 
         total, error = _from_the_start(self.whole, integrand, self.times)
         return Column(total, unit, float(np.max(error, initial=0.0)), self.how)
+
+
+def path_speeds(frames: Mapping[str, Frame]) -> dict[str, Callable[[State], Floats]]:
+    """Return the speeds of the centres of mass of bodies, as functions of the state."""
+
+    def speed(where: Sequence[int], state: State) -> Floats:
+        rates: Floats = np.linalg.norm(state[1][:, where, 0], axis=1)
+        return rates
+
+    return {name: partial(speed, list(frame.position)) for name, frame in frames.items()}
+
+
+def power_of(whole: Whole, work: Work) -> Callable[[State], Floats]:
+    """Return the power of what is no potential, as a function of the state."""
+
+    def power(state: State) -> Floats:
+        q, v = state
+        total = np.zeros(len(q))
+        if work.square is not None:
+            rate = sum((float(x) * v[:, i, 0] for i, x in work.square[1].items()), np.zeros(len(q)))
+            total -= float(work.square[0]) * rate**2
+        for factor, i, j in work.terms:
+            total += float(factor) * q[:, i, 0] * v[:, j, 0]
+        if work.rows:
+            multipliers = whole.multipliers(q, v)
+            for row, poly in work.rows:
+                total -= values(poly, q)[0] * multipliers[:, row]
+        return total
+
+    return power
 
 
 def _from_the_start(whole: Whole, integrand: Integrand, times: Floats) -> tuple[Floats, Floats]:

@@ -143,7 +143,7 @@ class SceneEvent:
     impulses : mapping of str to float
         Of an impact: "normal" and "friction" (N s).
     energy_loss : float
-        Of an impact (J).
+        Of an impact, by this connection (J); of several at one time they add up to what is lost.
     """
 
     kind: str

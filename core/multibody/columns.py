@@ -10,11 +10,13 @@ from functools import partial
 import numpy as np
 
 from core.errors import AccuracyUnreachable, NotApplicable
+from core.multibody.attitudes import quaternions
 from core.multibody.measures import Force
 from core.multibody.momenta import StateFunction, momenta
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, WholeStates
+from core.multibody.whole import values as values_of
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
@@ -98,7 +100,7 @@ class Columns:
         q, v = self.states.q, self.states.v
         multipliers = self.whole.multipliers(q, v)
         # What should be zero is known no better than the largest of what is solved for with it.
-        floor = _SOLVED * float(np.max(np.abs(multipliers), initial=0.0))
+        floors = _SOLVED * self.whole.largest_multipliers(multipliers)
         judged = None
         if self.states.reference is not None:
             judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
@@ -106,6 +108,7 @@ class Columns:
         found: dict[str, Column] = {}
         for k, force in enumerate(chosen):
             values, size = self.whole.force(force, q, v, multipliers)
+            floor = sum(float(floors[row] * np.max(values_of(poly, q)[1], initial=0.0)) for row, poly in force.terms)
             error = _SMALL * float(np.max(size, initial=0.0)) + floor + float(moved[k])
             if judged is not None:
                 other = self.whole.force(force, *judged)[0]
@@ -204,7 +207,7 @@ class Columns:
         """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
         c, s = (self.states.q[:, i, 0] for i in direction)
         start = [float(self.whole.measures.table.q[i]) for i in direction]
-        first = self.whole.measures.coordinates.start_angle(name)
+        first = float(self.whole.measures.coordinates.start_angle(name))
         principal = np.arctan2(start[0] * s - start[1] * c, start[0] * c + start[1] * s)
         turns = np.round((self._followed(direction) - principal) / (2 * math.pi))
         values = first + (principal + 2 * math.pi * turns)
@@ -273,32 +276,6 @@ class Columns:
 def _at(function: StateFunction, q: Floats, v: Floats) -> Floats:
     """Return a function of the state as `Columns._moved` takes it."""
     return function.at(q, v)[0][None]
-
-
-def quaternions(axes: Floats) -> Floats:
-    """Return unit quaternions [w, x, y, z], w >= 0, of body axes in space: axes[t, k] is the body axis k.
-
-    By the largest of the four components, which never cancels (S. W. Shepperd, 1978).
-    """
-    r = np.swapaxes(axes, 1, 2)
-    trace = np.trace(r, axis1=1, axis2=2)
-    squares = np.stack([trace, r[:, 0, 0], r[:, 1, 1], r[:, 2, 2]], axis=1)
-    out = np.empty((len(r), 4))
-    for s, k in enumerate(np.argmax(squares, axis=1)):
-        m = r[s]
-        if k == 0:
-            row = [1 + trace[s], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]
-        else:
-            i = int(k) - 1
-            j, l = (i + 1) % 3, (i + 2) % 3  # noqa: E741
-            row = [0.0] * 4
-            row[0] = m[l, j] - m[j, l]
-            row[1 + i] = 1 + m[i, i] - m[j, j] - m[l, l]
-            row[1 + j] = m[j, i] + m[i, j]
-            row[1 + l] = m[l, i] + m[i, l]
-        vector = np.array(row) / np.linalg.norm(row)
-        out[s] = -vector if vector[0] < 0.0 else vector
-    return out
 
 
 def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
@@ -379,8 +356,8 @@ def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: f
         raise AccuracyUnreachable(
             accuracy,
             reached,
-            "the samples are doubles, and angles, forces and energies are computed in them",
-            remedy="ask for places and velocities of particles alone, or for digits: POST /v1/certified/scenes",
+            "the samples are doubles, in which momenta, works, paths and the phases of contacts are computed",
+            remedy="ask for other outputs, or for digits: POST /v1/certified/scenes",
         )
     if reached > accuracy:
         raise AccuracyUnreachable(

@@ -7,12 +7,13 @@ normal force. The rate of slip is that of the points of the two bodies that touc
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from core.errors import InvalidParameter, Path
+from core.multibody.contact_places import gap_of_rims, is_on, place_on, refuse_limits, two_rims
 from core.multibody.contacts_in_space import contact_in_space
-from core.multibody.coordinates import Point, Rate
+from core.multibody.coordinates import Frame, Point, Rate
 from core.multibody.language import GROUND
 from core.multibody.measures import Measures, Unilateral
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
@@ -57,15 +58,9 @@ def contact(measures: Measures, name: str, connection: Any, path: Path) -> None:
         return
     if connection.measure != "gap":
         raise InvalidParameter((*path, "measure"), 'be "gap" or "turn"')
-    for entry in ("at_least", "at_most"):
-        if getattr(connection, entry) is not None:
-            raise InvalidParameter((*path, entry), 'be left out where the measure is no "turn"')
-    if connection.place is not None and connection.on is not None and connection.a is None and connection.b is None:
-        gap, slip, rolls = _on(measures, connection, path, rubs=rubs)
-    elif connection.a is not None and connection.b is not None and connection.place is None and connection.on is None:
-        gap, slip, rolls = _between(measures, connection, path, rubs=rubs)
-    else:
-        raise InvalidParameter(path, 'have place and on, or a and b, or measure "turn"')
+    refuse_limits(connection, path)
+    where = _on if is_on(connection, path, ', or measure "turn"') else _between
+    gap, slip, rolls = where(measures, connection, path, rubs=rubs)
     measures.unilateral.append(
         Unilateral(name, gap, slip if rubs else None, static, kinetic, restitution, rolls=rolls, order=order)
     )
@@ -121,15 +116,6 @@ def _turn(measures: Measures, connection: Any, path: Path) -> Poly:
     return combined((-ONE, angle), (measures.numerals.number(connection.at_most, (*path, "at_most")), {(): ONE}))
 
 
-def _rim(measures: Measures, place: Any, path: Path) -> tuple[Point, Ball, bool]:
-    """Return centre and radius of a body with a rim, or a place with the radius 0, and whether it is round."""
-    point = measures.coordinates.point(place, path)
-    frame = measures.coordinates.frames.get(place) if isinstance(place, str) else None
-    if frame is None or frame.radius is None:
-        return point, ZERO, False
-    return point, frame.radius, True
-
-
 def spin_of(measures: Measures, body: str | None, path: Path) -> Rate:
     """Return the angular velocity of a body of the plane as a linear form; nothing of the ground and of particles."""
     if body is None:
@@ -159,20 +145,9 @@ def _sum(*rates: Rate) -> Rate:
 
 
 def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
-    point, radius, rolls = _rim(measures, connection.place, (*path, "place"))
-    where, on = (*path, "on"), connection.on
-    if not isinstance(on, Mapping) or "at" not in on:
-        raise InvalidParameter((*where, "at"), "be given")
-    at = measures.coordinates.point(on["at"], (*where, "at"))
-    if point.body is None and at.body is None:
-        raise InvalidParameter(
-            (*path, "place"),
-            "belong to a body: a fixed point does not move on what is fixed",
-            remedy='name a body or a place of one, as "rod.end"; or let the face in "on" be that of a body',
-        )
-    if at.body == point.body:
-        raise InvalidParameter((*where, "at"), "belong to another body than the place")
-    keys = set(on) - {"at"}
+    (point, radius, frame), at, on = place_on(measures, connection, path)
+    where, keys = (*path, "on"), set(on)
+    rolls = _rolls(frame)
     if keys == {"radius"}:
         reach = measures.numerals.number(on["radius"], (*where, "radius"))
         return *_circle(measures, (point, radius), (at, reach), path, rubs=rubs), rolls
@@ -207,29 +182,22 @@ def unit_in_plane(measures: Measures, value: Any, path: Path) -> list[Ball]:
 
 
 def _between(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
-    a, first, rolls_a = _rim(measures, connection.a, (*path, "a"))
-    b, second, rolls_b = _rim(measures, connection.b, (*path, "b"))
-    if a.body is not None and a.body == b.body:
-        raise InvalidParameter((*path, "b"), "belong to another body than a")
-    if a.body is None and b.body is None:
-        raise InvalidParameter(path, "connect a body")
-    if not (rolls_a or rolls_b):
+    a, b = two_rims(measures, connection, path)
+    rolls = _rolls(a[2]) or _rolls(b[2])
+    if not rolls:
         raise InvalidParameter(path, "name a body with a rim: two points never meet", remedy="give one a radius")
-    return *_circle(measures, (a, first), (b, second), path, rubs=rubs), rolls_a or rolls_b
+    return *_circle(measures, a[:2], b[:2], path, rubs=rubs), rolls
+
+
+def _rolls(frame: Frame | None) -> bool:
+    return frame is not None and frame.radius is not None
 
 
 def _circle(
     measures: Measures, a: tuple[Point, Ball], b: tuple[Point, Ball], path: Path, *, rubs: bool
 ) -> tuple[Poly, Rate]:
     """Return gap and slip of two circles; the second is hollow where its radius is negative."""
-    reach = a[1] + b[1]
-    if is_zero(reach):
-        raise InvalidParameter(path, "have radii that differ: a point has no side of a point")
-    if b[1] < 0 and reach > 0:
-        raise InvalidParameter(path, "have a hollow that is larger than what is in it")
-    d = [difference(x, y) for x, y in zip(a[0].at, b[0].at, strict=True)]
-    half = 1 / (2 * reach)
-    gap = combined((half, dot(d, d)), (-half * reach * reach, constant(ONE)))
+    gap, d, reach = gap_of_rims(a, b, path)
     if not rubs:
         return gap, {}
     across = [combined((-1 / reach, d[1])), combined((1 / reach, d[0]))]

@@ -6,12 +6,13 @@ v_P - v_A - R w x n, of which the components along two unit vectors e of the pla
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.coordinates import Frame, Point, Rate
+from core.multibody.contact_places import Rim, gap_of_rims, is_on, place_on, refuse_limits, two_rims
+from core.multibody.coordinates import Rate
 from core.multibody.measures import Measures, perpendicular, unit
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
 from core.multibody.rolling import rate_of, sum_of_rates
@@ -47,45 +48,20 @@ def contact_in_space(measures: Measures, connection: Any, path: Path, *, rubs: b
     """
     if connection.measure != "gap":
         raise InvalidParameter((*path, "measure"), 'be "gap" in space', remedy="describe a stop in the plane")
-    for entry in ("at_least", "at_most"):
-        if getattr(connection, entry) is not None:
-            raise InvalidParameter((*path, entry), 'be left out where the measure is no "turn"')
-    if connection.place is not None and connection.on is not None and connection.a is None and connection.b is None:
+    refuse_limits(connection, path)
+    if is_on(connection, path):
         return _on(measures, connection, path, rubs=rubs)
-    if connection.a is not None and connection.b is not None and connection.place is None and connection.on is None:
-        first, second = (_ball(measures, getattr(connection, k), (*path, k)) for k in "ab")
-        if first[0].body == second[0].body:
-            raise InvalidParameter((*path, "b"), "belong to another body than a")
-        return _round(measures, first, second, path, rubs=rubs)
-    raise InvalidParameter(path, "have place and on, or a and b")
-
-
-def _ball(measures: Measures, place: Any, path: Path) -> tuple[Point, Ball, Frame | None]:
-    """Return centre and radius of a ball, or a place with the radius 0."""
-    point = measures.coordinates.point(place, path)
-    frame = measures.coordinates.frames.get(place) if isinstance(place, str) else None
-    return point, ZERO if frame is None or frame.radius is None else frame.radius, frame
+    first, second = two_rims(measures, connection, path)
+    return _round(first, second, path, rubs=rubs)
 
 
 def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> Touching:
-    point, radius, frame = _ball(measures, connection.place, (*path, "place"))
-    where, on = (*path, "on"), connection.on
-    if not isinstance(on, Mapping) or "at" not in on:
-        raise InvalidParameter((*where, "at"), "be given")
-    at = measures.coordinates.point(on["at"], (*where, "at"))
-    if point.body is None and at.body is None:
-        raise InvalidParameter(
-            (*path, "place"),
-            "belong to a body: a fixed point does not move on what is fixed",
-            remedy='name a body or a place of one, as "table.foot"; or let the plane in "on" be that of a body',
-        )
-    if at.body == point.body:
-        raise InvalidParameter((*where, "at"), "belong to another body than the place")
-    keys = set(on) - {"at"}
-    if keys == {"radius"}:
+    (point, radius, frame), at, on = place_on(measures, connection, path)
+    where = (*path, "on")
+    if set(on) == {"radius"}:
         reach = measures.numerals.number(on["radius"], (*where, "radius"))
-        return _round(measures, (point, radius, frame), (at, reach, None), path, rubs=rubs)
-    if keys != {"normal"}:
+        return _round((point, radius, frame), (at, reach, None), path, rubs=rubs)
+    if set(on) != {"normal"}:
         raise InvalidParameter(where, "have at, and normal or radius", remedy='a level floor is "normal": [0, 0, 1]')
     n = unit(measures.numerals.vector(on["normal"], (*where, "normal"), 3), (*where, "normal"))
     d = [difference(x, y) for x, y in zip(point.at, at.at, strict=True)]
@@ -118,14 +94,7 @@ def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> Touch
     return Touching(gap, (slips[0], slips[1]), (along[0], along[1]), rolls)
 
 
-def _round(
-    measures: Measures,
-    a: tuple[Point, Ball, Frame | None],
-    b: tuple[Point, Ball, Frame | None],
-    path: Path,
-    *,
-    rubs: bool,
-) -> Touching:
+def _round(a: Rim, b: Rim, path: Path, *, rubs: bool) -> Touching:
     """Return the gap of two balls; the second is hollow where its radius is negative."""
     if rubs:
         raise InvalidParameter(
@@ -133,14 +102,7 @@ def _round(
             "be left out of what is round on both sides in space",
             remedy="let one of them be a plane, or describe rolling",
         )
-    reach = a[1] + b[1]
-    if is_zero(reach):
-        raise InvalidParameter(path, "have radii that differ: a point has no side of a point")
-    if b[1] < 0 and reach > 0:
-        raise InvalidParameter(path, "have a hollow that is larger than what is in it")
-    d = [difference(x, y) for x, y in zip(a[0].at, b[0].at, strict=True)]
-    half = 1 / (2 * reach)
-    gap = combined((half, dot(d, d)), (-half * reach * reach, constant(ONE)))
+    gap, _, _ = gap_of_rims(a[:2], b[:2], path)
     return Touching(gap, None, None, not (is_zero(a[1]) and is_zero(b[1])))
 
 

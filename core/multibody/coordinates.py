@@ -143,10 +143,10 @@ class Coordinates:
             )
         return coordinate(turn)
 
-    def start_angle(self, body: str) -> float:
+    def start_angle(self, body: str) -> Ball:
         """Return the angle of a body of the plane at the start, as it was given (rad)."""
         given = self.scene.bodies[body].angle
-        return 0.0 if given is None else float(self.numerals.number(given, ("bodies", body, "angle")))
+        return ZERO if given is None else self.numerals.number(given, ("bodies", body, "angle"))
 
     def _offset(self, frame: Frame, centre: list[Poly], xi: Sequence[Ball], path: Path) -> list[Poly]:
         if all(is_zero(value) for value in xi):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from operator import mul
 
 from flint import arb_mat
 
@@ -144,15 +146,13 @@ def expansion(start: Table, order: int) -> Expansion:
         for (i, j), x in table.damping.items():
             right[i] = right[i] - x * rates[j][k]
         for (i, j, m), x in table.gyration.items():
-            right[i] = right[i] + x * sum((places[j][a] * rates[m][k - a] for a in range(k + 1)), ZERO)
+            right[i] = right[i] + x * _convolved(places[j][: k + 1], rates[m])
         for n in range(len(chosen)):
             for j, series in pushing[n].items():
-                for a in range(k):
-                    right[j] = right[j] + found[n][a] * series(k - a)
+                right[j] = right[j] + _convolved(found[n], series.varying(k))
             total = ZERO
             for j, series in varying[n].items():
-                for a in range(1, k + 2):
-                    total = total + series(a) * rates[j][k + 1 - a]
+                total = total + _convolved(series.varying(k + 1), rates[j])
             right[count + n] = right[count + n] - (k + 1) * total
         solved = (inverse * arb_mat([[x] for x in right])).entries() if right else []
         for i in range(count):
@@ -175,88 +175,80 @@ class _Turning:
         self._size: Series = []
         self.units: tuple[Series, Series] = ([], [])
 
-    def up_to(self, power: int) -> tuple[Series, Series]:
-        """Return the two components, at least to a power."""
+    def at(self, power: int) -> tuple[Ball, Ball]:
+        """Return the coefficients of the two components."""
         while len(self._size) <= power:
             k = len(self._size)
             for slip, line in zip(self._slip, self._lines, strict=True):
                 slip.append(sum((poly[()] * self._rates[j][k] for j, poly in line.items()), ZERO))
-            square = sum((s[a] * s[k - a] for s in self._slip for a in range(k + 1)), ZERO)
+            square = sum((_convolved(s, s) for s in self._slip), ZERO)
             # |s|^2 and s = |s| u, power by power.
-            inner = sum((self._size[a] * self._size[k - a] for a in range(1, k)), ZERO)
+            inner = _convolved(self._size[1:], self._size[1:])
             self._size.append(square.sqrt() if k == 0 else (square - inner) / (2 * self._size[0]))
             for unit, slip in zip(self.units, self._slip, strict=True):
-                known = sum((self._size[k - a] * unit[a] for a in range(k)), ZERO)
-                unit.append((slip[k] - known) / self._size[0])
-        return self.units
-
-
-class _Friction:
-    """The coefficients from the first on of an entry of friction that turns."""
-
-    def __init__(self, turning: _Turning, parts: tuple[Ball, Ball]) -> None:
-        self._turning, self._parts = turning, parts
-
-    def __call__(self, power: int) -> Ball:
-        units = self._turning.up_to(power)
-        return self._parts[0] * units[0][power] + self._parts[1] * units[1][power]
-
-
-class _Sum:
-    """Two entries of one place."""
-
-    def __init__(self, first: Callable[[int], Ball], second: Callable[[int], Ball]) -> None:
-        self._first, self._second = first, second
-
-    def __call__(self, power: int) -> Ball:
-        return self._first(power) + self._second(power)
+                unit.append((slip[k] - _convolved(unit, self._size[1:])) / self._size[0])
+        return self.units[0][power], self.units[1][power]
 
 
 class _Entry:
-    """The coefficients from the first on of an affine polynomial along a motion whose own are still being found."""
+    """An entry of a line that varies, along a motion whose own coefficients are still being found."""
 
-    def __init__(self, slopes: Mapping[int, Ball], places: Sequence[Series]) -> None:
-        self.slopes, self.places = slopes, places
-        self._known: dict[int, Ball] = {}
+    def __init__(self, coefficient: Callable[[int], Ball]) -> None:
+        self._coefficient = coefficient
+        self._known: Series = []
 
-    def __call__(self, power: int) -> Ball:
-        found = self._known.get(power)
-        if found is None:
-            found = sum((x * self.places[i][power] for i, x in self.slopes.items()), ZERO)
-            self._known[power] = found
-        return found
+    def varying(self, power: int) -> Series:
+        """Return the coefficients from that of time to that of a power of it."""
+        while len(self._known) < power:
+            self._known.append(self._coefficient(len(self._known) + 1))
+        return self._known[:power]
+
+
+def _convolved(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
+    """Return the sum of the products of which the last of a series of equal length meets the first of the other."""
+    return sum(map(mul, first, reversed(second)), ZERO)
 
 
 def _varying(line: Rates, places: Sequence[Series]) -> dict[int, _Entry]:
     found = {}
     for j, poly in line.items():
-        slopes = {key[0]: x for key, x in poly.items() if key}
+        slopes = [(key[0], x) for key, x in poly.items() if key]
         if slopes:
-            found[j] = _Entry(slopes, places)
+            found[j] = _Entry(partial(_along, slopes, places))
     return found
 
 
-def _dragging(
-    table: Table, row: Row, places: Sequence[Series], rates: Sequence[Series]
-) -> Mapping[int, Callable[[int], Ball]]:
+def _along(slopes: Sequence[tuple[int, Ball]], places: Sequence[Series], power: int) -> Ball:
+    """Return a coefficient of an affine polynomial."""
+    return sum((x * places[i][power] for i, x in slopes), ZERO)
+
+
+def _dragging(table: Table, row: Row, places: Sequence[Series], rates: Sequence[Series]) -> dict[int, _Entry]:
     """Return the entries of the line of friction of a row that vary."""
     if row.slide is None or not any(not is_zero(x) for x in table.slip_of(row)):
         return _varying(row.drag, places)
     factor, along, across = row.slide
     turning = _Turning((along, across), rates)
+
+    def rubbed(first: Ball, second: Ball, power: int) -> Ball:
+        units = turning.at(power)
+        return first * units[0] + second * units[1]
+
     return {
-        j: _Friction(turning, (factor * along.get(j, {}).get((), ZERO), factor * across.get(j, {}).get((), ZERO)))
+        j: _Entry(partial(rubbed, *(factor * line.get(j, {}).get((), ZERO) for line in (along, across))))
         for j in {*along, *across}
     }
 
 
-def _joined(
-    first: Mapping[int, Callable[[int], Ball]], second: Mapping[int, Callable[[int], Ball]]
-) -> dict[int, Callable[[int], Ball]]:
+def _joined(first: Mapping[int, _Entry], second: Mapping[int, _Entry]) -> dict[int, _Entry]:
     found = dict(first)
     for j, entry in second.items():
-        found[j] = _Sum(found[j], entry) if j in found else entry
+        found[j] = _Entry(partial(_sum, found[j], entry)) if j in found else entry
     return found
+
+
+def _sum(first: _Entry, second: _Entry, power: int) -> Ball:
+    return first.varying(power)[-1] + second.varying(power)[-1]
 
 
 def leading_sign(series: Sequence[Ball]) -> int:

@@ -11,10 +11,10 @@ T. R. Kane, "A dynamics puzzle" (1984): with friction, Newton's law may add ener
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import permutations
 
-from flint import arb
+from flint import arb, arb_mat
 
 from core.multibody.contact_responses import (
     Forces,
@@ -53,18 +53,28 @@ class Impact:
         The measures, those that slip in space turned into the direction in which they did.
     change : list of ball
         Of all rates.
-    loss : ball
-        Kinetic energy that is lost.
     together : bool
         Whether several take impulses at once.
+    shared : set of int
+        Measures of which other impulses have the same outcome: friction of places that stick side by side.
     """
 
     v: list[Ball]
     impulses: dict[int, tuple[Ball, Ball, Ball]]
-    loss: Ball
     unilateral: Sequence[Unilateral]
     change: list[Ball]
     together: bool = False
+    shared: set[int] = field(default_factory=set)
+
+    def work(self, i: int, q: Sequence[Ball], before: Sequence[Ball]) -> Ball:
+        """Return the work (J) of the impulse of a measure: the impulse times the mean of its rates before and after.
+
+        These works add up to the change of kinetic energy (Kelvin and Tait, 1867, section 309).
+        """
+        one, total = self.unilateral[i], ZERO
+        for impulse, rate in zip(self.impulses[i], (gap_rate, slip_rate, across_rate), strict=True):
+            total = total + impulse * (rate(one, q, before) + rate(one, q, self.v)) / 2
+        return ZERO if is_zero(total) else total
 
 
 def approaching(unilateral: Sequence[Unilateral], touching: Sequence[int], q: list[Ball], v: list[Ball]) -> list[int]:
@@ -97,6 +107,7 @@ def impact(
     normal, slips, across = found.normal, found.slips, found.across
     before = kinetic(table)
     after, impulses, together = list(v), {}, False
+    shared: set[int] = set()
     for group in found.clusters():
         if not approaching(unilateral, group, q, v):
             continue
@@ -109,6 +120,8 @@ def impact(
                 after = [a + x * y for a, y in zip(after, found.columns[b], strict=True)]
         taking = [i for i in group if outcome.get(normal[i], ZERO) != 0]
         together = together or len(taking) > 1
+        if len(taking) > 1 and _shares(unilateral, taking, q, after, found):
+            shared.update(taking)
         rubs = [[outcome.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
         impulses.update({i: (outcome[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
     loss = before - kinetic(replace(table, v=after))
@@ -120,7 +133,17 @@ def impact(
             decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
         )
     change = [x - y for x, y in zip(after, v, strict=True)]
-    return Impact(after, impulses, ZERO if is_zero(loss) else loss, unilateral, change, together)
+    return Impact(after, impulses, unilateral, change, together, shared)
+
+
+def _shares(
+    unilateral: Sequence[Unilateral], taking: Sequence[int], q: list[Ball], after: list[Ball], found: Responses
+) -> bool:
+    """Return whether contacts that stick after an impact could share its impulses otherwise."""
+    if not any(unilateral[i].slips and is_zero(slip_rate(unilateral[i], q, after)) for i in taking):
+        return False
+    lines = [line for i in taking for line in (found.normal[i], *found.grip(i))]
+    return bool(arb_mat([[found.matrix[a][b] for b in lines] for a in lines]).det().contains(0))
 
 
 def _group(

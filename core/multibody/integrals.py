@@ -20,8 +20,8 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _DEPTH = 60
 _FINE = 2.0**-52
 
-Integrand = Callable[[Floats], tuple[Floats, Floats]]
-"""From times of shape (t,) to the integrand by the answer and by its judge, each (t,)."""
+Integrand = Callable[[Floats], tuple[Floats, Floats, Floats]]
+"""From times of shape (t,) to the integrand by the answer, by its judge, and how large its terms are, each (t,)."""
 
 
 def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floats, Floats]:
@@ -65,8 +65,8 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
 
 
 def _gauss(integrand: Integrand, low: Floats, high: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the integral over each interval, that of the judge, and that of the magnitude."""
+    """Return the integral over each interval, that of the judge, and that of the terms."""
     half = 0.5 * (high - low)
     times = (0.5 * (low + high))[:, None] + half[:, None] * _POINTS
-    own, judged = (values.reshape(times.shape) for values in integrand(times.ravel()))
-    return half * (own @ _WEIGHTS), half * (judged @ _WEIGHTS), np.abs(half) * (np.abs(own) @ _WEIGHTS)
+    own, judged, size = (values.reshape(times.shape) for values in integrand(times.ravel()))
+    return half * (own @ _WEIGHTS), half * (judged @ _WEIGHTS), np.abs(half) * (size @ _WEIGHTS)

@@ -1,7 +1,9 @@
 """Linear equations with constant coefficients: q'' = a - A q - C q', in closed form by their characteristic roots.
 
-With x = (q, q') and an inhomogeneous part, x(t) = exp(At) x_0. The roots are enclosed as balls; where they are distinct
-the exponential is a sum over them, else it is the exponential of the matrix, both with proven error.
+Without damping the squares of the roots are those of -A alone, which is half as large. The roots are enclosed as balls;
+where they are distinct the motion is a sum over them, about the equilibrium. Where some are not, or there is no
+equilibrium, the motion is a sum over those of the first-order system of x = (q, q', 1) without what stays zero, and at
+last x(t) = exp(Bt) x_0 by the exponential of its matrix B. All errors are proven.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from core.errors import BudgetExceeded
 from core.multibody.motion import States
 from core.multibody.packed import Floats, pair
 from core.multibody.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
+from core.multibody.spectrum import spectrum
 from core.multibody.table import Table
 from core.multibody.turning import FEW_RADIANS
 from core.work import spend
@@ -109,19 +112,44 @@ class Modes:
         matrix.append([ZERO] * size)
         return cls(table, matrix)
 
+    @property
+    def _undamped(self) -> bool:
+        return not self.table.damping
+
+    def _spectrum(self) -> tuple[list[Any], Any] | None:
+        """Return roots and vectors of A, negative, or with damping of the homogeneous first-order system."""
+        # One suffices for all that is rounded to pairs.
+        with precision(max(BITS, ctx.prec)):
+            key = f"spectrum {ctx.prec}"
+            if key not in self._known:
+                n = len(self.table.names)
+                rows = self.matrix[n : 2 * n] if self._undamped else self.matrix[: 2 * n]
+                columns = n if self._undamped else 2 * n
+                self._known[key] = spectrum(arb_mat([row[:columns] for row in rows]))
+            return self._known[key]  # type: ignore[no-any-return]
+
+    def _roots(self) -> list[Any] | None:
+        found = self._spectrum()
+        if found is None:
+            return None
+        squares = [acb(x) for x in found[0]]
+        return [sign * x.sqrt() for x in squares for sign in (1, -1)] if self._undamped else squares
+
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
         """The characteristic roots of the motion about its equilibrium, slowest first; () where they are not found."""
-        n = len(self.table.names)
-        inner = acb_mat([row[: 2 * n] for row in self.matrix[: 2 * n]])
-        spend(_UNITS_OF_ROOTS * (2 * n) ** 3)
-        try:
-            roots = inner.eig(multiple=True)
-        except ValueError:
+        roots = self._roots()
+        if roots is None:
+            n = len(self.table.names)
+            inner = acb_mat([row[: 2 * n] for row in self.matrix[: 2 * n]])
+            spend(_UNITS_OF_ROOTS * (2 * n) ** 3)
             try:
-                roots = _roots_but_zero(inner)
+                roots = inner.eig(multiple=True)
             except ValueError:
-                return ()
+                try:
+                    roots = _roots_but_zero(inner)
+                except ValueError:
+                    return ()
         found = []
         for root in roots:
             real = ZERO if is_zero(root.real) else root.real
@@ -179,6 +207,48 @@ class Modes:
         return self._known[ctx.prec]
 
     def _new_terms(self, start: list[Ball]) -> Any:
+        return self._about_equilibrium(start) or self._of_first_order(start)
+
+    def _about_equilibrium(self, start: list[Ball]) -> Any:
+        """Return the terms by the spectrum, None without one or where nothing pulls a mode back that a load pushes."""
+        found = self._spectrum()
+        if found is None:
+            return None
+        squares, vectors = found
+        n, matrices = len(self.table.names), type(vectors)
+        loads = [row[-1] for row in self.matrix]
+        if self._undamped:
+            given = [[start[i], start[n + i], loads[n + i]] for i in range(n)]
+        else:
+            given = [[start[i], ZERO, loads[i]] for i in range(2 * n)]
+        weights = vectors.solve(matrices(given)).tolist()
+        columns = vectors.transpose().tolist()
+        middle, terms = [acb(0)] * n, []
+        for root, column, (place, rate, load) in zip(squares, columns, weights, strict=True):
+            if 0 in acb(root).real and 0 in acb(root).imag:
+                return None
+            away = -load / root
+            middle = [x + y * away for x, y in zip(middle, column[:n], strict=True)]
+            for value, weight in self._swings(root, place - away, rate):
+                places = [x * weight for x in column[:n]]
+                terms.append((value, [*places, *(value * x for x in places), acb(0)]))
+        return [(acb(0), [*middle, *[acb(0)] * n, acb(1)]), *terms]
+
+    def _swings(self, root: Any, place: Any, rate: Any) -> list[tuple[Any, Any]]:
+        """Return the roots that belong to one of the spectrum and their weights, one of two that are conjugate."""
+        if not self._undamped:
+            root = acb(root)
+            if root.imag < 0:
+                return []
+            return [(root, place if root.imag == 0 else 2 * place)]
+        if root < 0:
+            frequency = (-root).sqrt()
+            return [(acb(0, frequency), acb(place, -rate / frequency))]
+        growth = root.sqrt()
+        return [(acb(sign * growth), acb(place + sign * rate / growth) / 2) for sign in (1, -1)]
+
+    def _of_first_order(self, start: list[Ball]) -> Any:
+        """Return the terms by the first-order system, None where its roots coincide or are too little known."""
         seen = self._seen(start)
         inner = acb_mat([[self.matrix[i][j] for j in seen] for i in seen])
         spend(_UNITS_OF_ROOTS * len(seen) ** 3)
@@ -214,11 +284,8 @@ class Modes:
     def _at(self, t: Ball, start: list[Ball], terms: Any) -> list[Ball]:
         if terms is None:
             return (arb_mat(self.matrix) * t).exp().__mul__(arb_mat([[x] for x in start])).entries()  # type: ignore[no-any-return]
-        total = [acb(0)] * len(start)
-        for root, column in terms:
-            factor = (root * t).exp()
-            total = [x + factor * y for x, y in zip(total, column, strict=True)]
-        return [x.real for x in total]
+        total = acb_mat([[(root * t).exp() for root, _ in terms]]) * acb_mat([column for _, column in terms])
+        return [x.real for x in total.entries()]
 
     def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
         """Return coordinates and rates in doubles, None where roots coincide or have turned far."""

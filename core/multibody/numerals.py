@@ -1,14 +1,13 @@
 """Numbers as a client writes them, read exactly: decimal text, formulas over names, degrees.
 
 A decimal is the rational number that its digits say, never the double nearest to it: 0.9 + 0.1 = 1 holds, so that what
-is exactly dependent or parallel in a description is found to be. Formulas are evaluated in balls by a small recursive
-grammar with limits on length, depth and digits; nothing is ever evaluated as code.
+is exactly dependent or parallel in a description is found to be. Formulas are evaluated in balls.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from fractions import Fraction
@@ -18,13 +17,12 @@ from typing import Any, Literal
 from flint import arb, fmpq
 
 from core.errors import InvalidParameter, Path
+from core.formulas import FUNCTIONS, LARGEST_EXPONENT, Arithmetic, Formula, is_name
 from core.multibody.polynomials import Ball, is_zero
 
-LONGEST_FORMULA = 200
-"""Characters of a number that is given as text."""
-DEEPEST = 20
-"""Parentheses and functions inside one another."""
-LARGEST_EXPONENT = 400
+MOST_DIGITS = 200
+LARGEST_POWER = 100
+"""To which something is raised in a formula."""
 SHIFT = 2.0**-70
 """Share of itself by which a number is moved, to see what depends on it."""
 MOST_NAMES = 100
@@ -32,11 +30,6 @@ MOST_NAMES = 100
 LONGEST_NAME = 64
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 """What bodies, places, connections and numbers may be called."""
-
-_TOKEN = re.compile(
-    r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+*/()]))\s*", re.ASCII
-)
-_FUNCTIONS = ("sqrt", "sin", "cos")
 
 
 def member(path: Path, name: object) -> Path:
@@ -97,8 +90,7 @@ class Numerals:
         known: dict[str, Ball] = {}
         found = cls(known, numbers == "doubles", moved, share, instead or {})
         for name, number in let.items():
-            plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,63}", name)
-            if not plain or name in (*_FUNCTIONS, "pi"):
+            if not is_name(name):
                 raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
             known[name] = found.number(number, ("let", name))
         return found
@@ -117,7 +109,7 @@ class Numerals:
 
     def _written(self, value: Any, path: Path) -> Ball:
         if isinstance(value, str):
-            return _Formula(value, self.let, path).value()
+            return self._formula(value, path)
         if isinstance(value, Mapping):
             if set(value) != {"degrees"}:
                 raise InvalidParameter(path, 'be a number, a formula or {"degrees": number}')
@@ -130,6 +122,15 @@ class Numerals:
         if found != 0:
             self.read[path] = found
         return found + found * self.share if path in self.moved else found
+
+    def _formula(self, text: str, path: Path) -> Ball:
+        try:
+            found = Formula.read(text, self.let).value(self.let, BALLS)
+        except InvalidParameter as fault:
+            raise fault.inside(*path) from None
+        if not found.is_finite():
+            raise InvalidParameter(path, "be finite")
+        return found
 
     def angle(self, value: Any, path: Path) -> tuple[Ball, Ball]:
         """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""
@@ -169,8 +170,8 @@ def _exact(value: Any, path: Path) -> Fraction:
         raise InvalidParameter(path, "be finite")
     if isinstance(value, float):
         return Fraction(value)
-    if abs(value.adjusted()) > LARGEST_EXPONENT or len(value.as_tuple().digits) > LONGEST_FORMULA:
-        raise InvalidParameter(path, f"have at most {LONGEST_FORMULA} digits and a moderate exponent")
+    if abs(value.adjusted()) > LARGEST_EXPONENT or len(value.as_tuple().digits) > MOST_DIGITS:
+        raise InvalidParameter(path, f"have at most {MOST_DIGITS} digits and a moderate exponent")
     return Fraction(value)
 
 
@@ -189,99 +190,40 @@ def _decimal(text: str) -> Ball:
     return arb(number * 10**power) if power >= 0 else arb(fmpq(number, 10**-power))
 
 
-class _Formula:
-    """A recursive descent over ``sum = product {+- product}``, ``product = factor {*/ factor}``."""
+def _quotient(one: Ball, other: Ball) -> Ball:
+    if is_zero(other):
+        raise InvalidParameter((), "divide by something other than zero")
+    return one / other
 
-    def __init__(self, text: str, let: Mapping[str, Ball], path: Path) -> None:
-        if len(text) > LONGEST_FORMULA:
-            raise InvalidParameter(path, f"have at most {LONGEST_FORMULA} characters, not {len(text)}")
-        self.path, self.let, self.depth = path, let, 0
-        self.tokens: list[tuple[str, str, str]] = []
-        end = 0
-        while end < len(text):
-            match = _TOKEN.match(text, end)
-            if match is None:
-                raise InvalidParameter(path, "be a number or a formula of + - * / ( ) sqrt sin cos pi and names in let")
-            self.tokens.append((match[1] or "", match[2] or "", match[3] or ""))
-            end = match.end()
-        self.at = 0
 
-    def value(self) -> Ball:
-        total = self._sum()
-        if self.at < len(self.tokens):
-            raise InvalidParameter(self.path, "be one formula: something follows its end")
-        if not total.is_finite():
-            raise InvalidParameter(self.path, "be finite")
-        return total
+def _power(one: Ball, exponent: Ball) -> Ball:
+    if not abs(exponent) <= LARGEST_POWER:
+        raise InvalidParameter((), f"have powers between -{LARGEST_POWER} and {LARGEST_POWER}")
+    return _quotient(arb(1), one**-exponent) if exponent < 0 else one**exponent
 
-    def _next(self) -> tuple[str, str, str]:
-        return self.tokens[self.at] if self.at < len(self.tokens) else ("", "", "")
 
-    def _take(self, *signs: str) -> str:
-        sign = self._next()[2]
-        if sign and sign in signs:
-            self.at += 1
-            return sign
-        return ""
+def _root(argument: Ball) -> Ball:
+    if argument < 0:
+        raise InvalidParameter((), "take the root of something that is not negative")
+    return arb(0) if is_zero(argument) else argument.sqrt()
 
-    def _sum(self) -> Ball:
-        self.depth += 1
-        if self.depth > DEEPEST:
-            raise InvalidParameter(self.path, f"be nested at most {DEEPEST} deep")
-        total = self._product()
-        while sign := self._take("+", "-"):
-            term = self._product()
-            total = total + term if sign == "+" else total - term
-        self.depth -= 1
-        return total
 
-    def _product(self) -> Ball:
-        total = self._factor()
-        while sign := self._take("*", "/"):
-            factor = self._factor()
-            if sign == "/" and is_zero(factor):
-                raise InvalidParameter(self.path, "divide by something other than zero")
-            total = total * factor if sign == "*" else total / factor
-        return total
+def _of_a_sine(inverse: Callable[[Ball], Ball]) -> Callable[[Ball], Ball]:
+    """Return an inverse function that takes what cannot be told from -1 and 1 as these."""
 
-    def _factor(self) -> Ball:
-        if sign := self._take("+", "-"):
-            self.depth += 1
-            if self.depth > DEEPEST:
-                raise InvalidParameter(self.path, f"be nested at most {DEEPEST} deep")
-            factor = self._factor()
-            self.depth -= 1
-            return -factor if sign == "-" else factor
-        digits, name, _ = self._next()
-        if digits:
-            self.at += 1
-            exponent = re.search(r"[eE]([+-]?\d+)$", digits)
-            if exponent and abs(int(exponent[1])) > LARGEST_EXPONENT:
-                raise InvalidParameter(
-                    self.path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}"
-                )
-            return _decimal(digits)
-        if name in _FUNCTIONS and self.at + 1 < len(self.tokens) and self.tokens[self.at + 1][2] == "(":
-            self.at += 1
-            argument = self._parenthesis()
-            if name == "sqrt":
-                if argument < 0:
-                    raise InvalidParameter(self.path, "take the root of something that is not negative")
-                return arb(0) if is_zero(argument) else argument.sqrt()
-            return argument.sin() if name == "sin" else argument.cos()
-        if name:
-            self.at += 1
-            if name == "pi":
-                return arb.pi()
-            if name not in self.let:
-                raise InvalidParameter(self.path, f'use names that stand in let before it; "{name[:64]}" does not')
-            return self.let[name]
-        return self._parenthesis()
+    def found(argument: Ball) -> Ball:
+        near = argument.sgn()
+        return inverse(near if is_zero(argument - near) else argument)
 
-    def _parenthesis(self) -> Ball:
-        if not self._take("("):
-            raise InvalidParameter(self.path, "be a complete formula")
-        total = self._sum()
-        if not self._take(")"):
-            raise InvalidParameter(self.path, "close every parenthesis")
-        return total
+    return found
+
+
+BALLS = Arithmetic[Ball](
+    _decimal,
+    arb.pi,
+    _quotient,
+    _power,
+    {name: abs if name == "abs" else getattr(arb, name) for name in FUNCTIONS}
+    | {"sqrt": _root, "asin": _of_a_sine(arb.asin), "acos": _of_a_sine(arb.acos)},
+)
+"""Formulas in balls of the precision of the context."""

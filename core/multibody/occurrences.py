@@ -62,19 +62,26 @@ def component(columns: dict[str, Column], quantity: str) -> Column | None:
     return Column(column.values[:, order.index(part)], column.unit, column.error, column.how)
 
 
-def occurrences(whole: Whole, sampler: Sampler, search: When, end: float, most: int = MOST_FOUND) -> list[Occurrence]:
-    """Return the times after the start, up to `end`, at which a quantity takes a value.
+def occurrences(grid: Floats, sampler: Sampler, search: When, most: int = MOST_FOUND) -> list[Occurrence]:
+    """Return the times after the start at which a quantity takes a value.
 
     Parameters
     ----------
+    grid : ndarray, shape (k,)
+        Times from zero to where the motion ends, between which nothing turns twice.
     sampler : callable
-    end : float
-        Positive; where the motion ends before, its end.
     """
-    grid = watched_times(whole, end)
-    curve = sampler(grid).values - search.equals
-    crossings: list[tuple[float, float]] = []
     wanted = most if search.nth is None else search.nth
+    crossings = brackets(grid, sampler(grid).values - search.equals, sampler, search.equals, wanted)
+    numbered = list(enumerate(crossings, 1))
+    if search.nth is not None:
+        numbered = numbered[search.nth - 1 : search.nth]
+    return [located(sampler, search, low, high, number) for number, (low, high) in numbered]
+
+
+def brackets(grid: Floats, curve: Floats, sampler: Sampler, equals: float, wanted: int) -> list[tuple[float, float]]:
+    """Return where a curve on a grid, a quantity less a value, is zero after the start: between which times."""
+    crossings: list[tuple[float, float]] = []
     touching = _touching(curve)
     for k in range(len(grid) - 1):
         if len(crossings) >= wanted:
@@ -84,25 +91,31 @@ def occurrences(whole: Whole, sampler: Sampler, search: When, end: float, most: 
         elif curve[k] * curve[k + 1] < 0.0:
             crossings.append((grid[k], grid[k + 1]))
         elif touching[k] and k + 2 < len(grid):
-            crossings.extend(_pair(sampler, search.equals, grid[k], grid[k + 2], curve[k]))
+            crossings.extend(_pair(sampler, equals, grid[k], grid[k + 2], curve[k]))
     if len(grid) > 1 and curve[-1] == 0.0 and len(crossings) < wanted:
         crossings.append((grid[-1], grid[-1]))
-    numbered = list(enumerate(crossings, 1))
-    if search.nth is not None:
-        numbered = numbered[search.nth - 1 : search.nth]
-    return [_located(sampler, search, low, high, number) for number, (low, high) in numbered]
+    return crossings
 
 
-def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> SceneExtremes:
-    """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
+def period_within(whole: Whole, end: float) -> float | None:
+    """Return the period after which a motion is the same again, if that is shorter than a time."""
     periods = {
         None if motion.period is None else float(motion.period) for _, motion in whole.parts if motion.name != "rest"
     }
     single = next(iter(periods)) if len(periods) == 1 else None
     windings = any(getattr(motion, "winding", 0.0) for _, motion in whole.parts)
-    repeats = single is not None and single < end and not windings
-    end = single if repeats and single is not None else end
-    grid = watched_times(whole, end)
+    return single if single is not None and single < end and not windings else None
+
+
+def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> SceneExtremes:
+    """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
+    period = period_within(whole, end)
+    end = end if period is None else period
+    return extremes_on(watched_times(whole, end), sampler, quantity, periodic=period is not None)
+
+
+def extremes_on(grid: Floats, sampler: Sampler, quantity: str, *, periodic: bool = False) -> SceneExtremes:
+    """Return the least and the largest value on a grid of times from zero, between which nothing turns twice."""
     column = sampler(grid)
     signs, which = (-1.0, 1.0), [int(np.argmax(sign * column.values)) for sign in (-1.0, 1.0)]
     found = [(float(column.values[k]), float(grid[k])) for k in which]
@@ -118,10 +131,9 @@ def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Scene
         # Where both are flat to rounding, looking closer tells nothing more.
         if np.all(np.ptp(values, axis=1) <= _FLAT * np.abs(values).max(axis=1)):
             break
-    error = sampler(np.array([found[0][1], found[1][1]])).error
-    return SceneExtremes(
-        quantity, column.unit, found[0][0], found[0][1], found[1][0], found[1][1], error, float(end), repeats
-    )
+    (least, low), (largest, high) = found
+    error = sampler(np.array([low, high])).error
+    return SceneExtremes(quantity, column.unit, least, low, largest, high, error, float(grid[-1]), periodic)
 
 
 def _touching(curve: Floats) -> np.ndarray:
@@ -152,7 +164,7 @@ def _pair(sampler: Sampler, equals: float, low: float, high: float, before: floa
     return []
 
 
-def _located(sampler: Sampler, search: When, low: float, high: float, number: int) -> Occurrence:
+def located(sampler: Sampler, search: When, low: float, high: float, number: int) -> Occurrence:
     """Return where the sign changes between two times, to the last bit, with the error of the time."""
     first = sampler(np.array([low])).values[0] - search.equals
     fine = np.linspace(low, high, _SECTIONS)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -104,9 +105,9 @@ def exponent(ball: Ball) -> int | None:
 
 def pair(ball: Ball, power: int) -> tuple[float, float]:
     """Return a number times a power of two as an unevaluated sum of two doubles."""
-    scaled = ball.mul_2exp(power) if hasattr(ball, "mul_2exp") else ball * _two(power)
-    high = float(scaled.mid())
-    return high, float((scaled - high).mid())
+    middle = (ball * _two(power) if power else ball).mid()
+    high = float(middle)
+    return high, float(middle - high)
 
 
 def nearest(ball: Ball) -> float:
@@ -115,6 +116,7 @@ def nearest(ball: Ball) -> float:
     return high + low
 
 
+@lru_cache(maxsize=4096)
 def _two(power: int) -> Ball:
     return (ZERO + 2) ** power
 

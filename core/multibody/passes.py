@@ -9,6 +9,7 @@ start only, never questions about its surroundings.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from core.multibody.centre_of_mass import centred, free_shift
@@ -299,14 +300,14 @@ def _pin(state: Reduced) -> bool:
     """Make constants of coordinates at rest whose equations vanish wherever the others are."""
     table = state.table
     pinned = {i for i in range(len(table.names)) if is_zero(table.v[i]) and table.units[i] != "s"}
-    coupled: dict[int, list[tuple[int, ...]]] = {i: [] for i in pinned}
+    coupled: dict[int, dict[tuple[int, ...], None]] = {i: {} for i in pinned}
     for part in (table.mass, table.stiffness, table.damping, table.gyration):
         keys: list[tuple[int, ...]] = list(part)
         for key in keys:
             if key[0] in coupled:
-                coupled[key[0]].append(key)
+                coupled[key[0]][key] = None
             if part is table.mass and key[1] in coupled and key[0] != key[1]:
-                coupled[key[1]].append(key)
+                coupled[key[1]][key] = None
     while pinned:
         live = [
             row
@@ -372,7 +373,7 @@ def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
     return is_zero(total)
 
 
-def _stays(table: Table, i: int, pinned: set[int], coupled: list[tuple[int, ...]], live: list[Row]) -> bool:
+def _stays(table: Table, i: int, pinned: set[int], coupled: Iterable[tuple[int, ...]], live: list[Row]) -> bool:
     """Return whether the equation of a pinned coordinate vanishes, the multipliers of idle rows being zero."""
     for row in live:
         for line in (row.rates, row.drag):
@@ -389,11 +390,8 @@ def _stays(table: Table, i: int, pinned: set[int], coupled: list[tuple[int, ...]
                 carried[k] = entry(carried, k) + table.gyration[(i, j, k)] * table.q[j]
             continue
         other = key[1] if key[0] == i else key[0]
-        if other in pinned:
-            continue
-        if key in table.mass or (key in table.stiffness) or (key in table.damping):
+        if other not in pinned:
             return False
-    for (row_, j), value in table.stiffness.items():
-        if row_ == i:
-            push = push - value * table.q[j]
+        if key[0] == i and key in table.stiffness:
+            push = push - table.stiffness[key] * table.q[other]
     return is_zero(push) and all(is_zero(value) for value in carried.values())

@@ -43,6 +43,8 @@ class Phase:
         None for the last.
     bounces : Accumulation or None
         In place of the models, where infinitely many impacts are in the phase.
+    settles : str
+        The measure that comes to rest at the end, after impacts that are not listed; empty where there are none.
     """
 
     tracks: list[Track]
@@ -53,6 +55,7 @@ class Phase:
     unknown: tuple[list[float], list[float]] | None = None
     end: Ball | None = None
     bounces: Accumulation | None = None
+    settles: str = ""
 
     @property
     def start(self) -> Ball:
@@ -96,6 +99,9 @@ class PhaseMotion:
         What ended the motion, where mechanics does not decide.
     ended : SceneEvent or None
         The event that ended it.
+    impacts : list of (int, str, ball or None)
+        Work of every impulse: the number of the phase that begins with it, the measure, and the work (J), None where
+        contacts could share it otherwise.
     """
 
     base: Described
@@ -105,6 +111,7 @@ class PhaseMotion:
     noticed: list[str] = field(default_factory=list)
     problem: Problem | None = None
     ended: SceneEvent | None = None
+    impacts: list[tuple[int, str, Ball | None]] = field(default_factory=list)
 
 
 def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:

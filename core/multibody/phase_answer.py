@@ -13,28 +13,30 @@ from core.multibody.answer import (
     BodyAcceleration,
     ForceAnswer,
     MotionPhase,
+    Occurrence,
     SceneAnswer,
+    SceneExtremes,
     SceneModel,
     SceneProblem,
 )
-from core.multibody.columns import Columns, Unknown, relative, require_reached, scales_of, worst
+from core.multibody.columns import relative, require_reached, scales_of, worst
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.inherited_in_phases import inherited_in_phases
 from core.multibody.language import Scene
-from core.multibody.packed import Floats, nearest, pair
+from core.multibody.occurrences import ExtremesOf, When
+from core.multibody.packed import Floats, nearest
 from core.multibody.phase import Phase, PhaseMotion
+from core.multibody.phase_states import columns_in, in_closed_form, phase_at, states_in
 from core.multibody.phases import motion_in_phases
-from core.multibody.polynomials import Ball
+from core.multibody.searches_in_phases import SearchInPhases
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
-from core.multibody.tracks import FLOOR, TOLD
-from core.multibody.trajectories import Output, SceneRequest, require_affordable
-from core.multibody.whole import WholeStates
+from core.multibody.stretches import stretches
+from core.multibody.sums_in_phases import SumsInPhases
+from core.multibody.trajectories import ONLY_SUMS, SceneRequest, require_affordable
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.question import MotionQuestion
 from core.systems.trajectory import HORIZON, Accuracy, Column, How, Trajectory, Work
 
-ANSWERED = ("accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
-"""Outputs that are answered about scenes with contacts."""
 THRESHOLDS = "thresholds"
 """Place of a question about rest among the outputs: it is answered apart from the motion."""
 _NO_HORIZON = "how long a motion through events stays within the accuracy is not looked for"
@@ -58,13 +60,6 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
             path=("method",),
             remedy="leave the method out",
         )
-    unknown = [i for i, output in enumerate(request.outputs) if output not in (*ANSWERED, "equilibria", THRESHOLDS)]
-    if unknown:
-        raise NotApplicable(
-            f"of a scene with contacts these are answered: {', '.join(ANSWERED)}",
-            path=("outputs", unknown[0]),
-            remedy=_instead_of(request.outputs[unknown[0]]),
-        )
     if "equilibria" in request.outputs:
         raise NotApplicable(
             "equilibria are not answered where something may touch, slide or be slack",
@@ -80,7 +75,9 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
     motion = motion_in_phases(scene, end)
     count = len(motion.base.measures.table.names)
     noticed = _noticed(motion)
-    trajectory = request.solved(PhasedSystem(scene, motion, request.outputs))
+    system = PhasedSystem(scene, motion, request.outputs)
+    trajectory = request.solved(system)
+    occurrences, extremes = (None, None) if trajectory is None else system.searched(end)
     started = motion.phases[0] if motion.phases else None
     accelerations: Mapping[str, BodyAcceleration] = {}
     forces: Mapping[str, ForceAnswer] = {}
@@ -111,18 +108,11 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         None,
         tuple(motion.events),
         motion.ended,
+        occurrences,
+        extremes,
         phases=tuple(_told(phase, motion) for phase in motion.phases),
         problem=_problem(motion),
     )
-
-
-def _instead_of(output: Output) -> str:
-    """Return what answers most of a question that is not answered about scenes with contacts."""
-    if output == "work-in-time":
-        return "ask for energy-in-time: what it and the energy_loss of the events leave over is the work on the scene"
-    if output == "paths-in-time":
-        return "ask for the trajectory at enough times: between the events, which are listed, paths are smooth"
-    return "ask for the trajectory at enough times; touches, slips and stops are events, found without being requested"
 
 
 def _conserved(motion: PhaseMotion) -> bool:
@@ -201,7 +191,7 @@ class PhasedSystem:
         times = question.times[rows]
         with np.errstate(over="ignore", invalid="ignore"):
             pieces, how = self._pieces(motion, times)
-            columns = _merged(pieces, len(times))
+            columns = _merged(pieces, len(times)) | self._sums(times, how)
             lost = next((float(times[mine[0]]) for mine, own in pieces if worst(own) > question.accuracy), None)
             require_reached(columns, question.accuracy, before=lost)
             stated = Accuracy(question.accuracy, worst(columns), how)
@@ -221,17 +211,50 @@ class PhasedSystem:
             events=motion.events,
         )
 
+    def _sums(self, times: Floats, how: How) -> dict[str, Column]:
+        """Return the columns of what is summed up along the motion."""
+        if not {"work-in-time", "paths-in-time"} & set(self.outputs):
+            return {}
+        pieces = list(stretches(self.motion, float(np.max(times, initial=0.0))))
+        sums = SumsInPhases(self.motion, pieces, times, how)
+        found = sums.works() if "work-in-time" in self.outputs else {}
+        return found | (sums.paths() if "paths-in-time" in self.outputs else {})
+
+    def searched(self, end: float) -> tuple[tuple[Occurrence, ...] | None, tuple[SceneExtremes, ...] | None]:
+        """Return when quantities take values and how large they become, up to a time or the end of the motion.
+
+        None where no search is among the outputs.
+        """
+        searches = [(i, output) for i, output in enumerate(self.outputs) if isinstance(output, (When, ExtremesOf))]
+        if not searches:
+            return None, None
+        end = end if self.motion.ended is None else min(end, self.motion.ended.time)
+        pieces = list(stretches(self.motion, end))
+        if not pieces:
+            return (), ()
+        exact = all(in_closed_form(piece.phase) for piece in pieces)
+        along = SearchInPhases(pieces, "closed form" if exact else "measured against pairs")
+        found: list[Occurrence] = []
+        ranges: list[SceneExtremes] = []
+        with np.errstate(over="ignore", invalid="ignore"):
+            for index, search in searches:
+                if isinstance(search, When):
+                    found.extend(along.occurrences(search, index))
+                else:
+                    ranges.append(along.extremes(search, index))
+        return tuple(found), tuple(ranges)
+
     def _pieces(self, motion: PhaseMotion, times: Floats) -> tuple[list[tuple[np.ndarray, dict[str, Column]]], How]:
         """Return the columns of every phase, with the numbers of the times in it, and how their errors are known."""
         phases = motion.phases
-        which = np.array([_phase_at(phases, float(t)) for t in times], dtype=np.int64)
-        exact = all(_closed(phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if phases else True
+        which = np.array([phase_at(phases, float(t)) for t in times], dtype=np.int64)
+        exact = all(in_closed_form(phases[k]) for k in range(int(np.max(which, initial=0)) + 1)) if phases else True
         how: How = "closed form" if exact else "measured against pairs"
         pieces: list[tuple[np.ndarray, dict[str, Column]]] = []
         for k in sorted(set(which.tolist())) or ([0] if phases else []):
             mine = np.flatnonzero(which == k)
-            states = _states(phases[k], times[mine], motion)
-            pieces.append((mine, _columns(phases[k], times[mine], states, how, self.outputs)))
+            states = states_in(phases[k], times[mine])
+            pieces.append((mine, columns_in(phases[k], times[mine], states, how, self.outputs)))
         return pieces, how
 
     def _with_inherited(
@@ -242,119 +265,18 @@ class PhasedSystem:
         def columns_of(other: PhaseMotion) -> dict[str, Column]:
             return _merged(self._pieces(other, times)[0], len(times))
 
+        own = {name: columns[name] for name in columns_of(self.motion)}
+        if not own:
+            return columns, replace(stated, why=ONLY_SUMS)
         try:
-            moved = inherited_in_phases(self.scene, self.motion, end, columns, columns_of)
+            moved = inherited_in_phases(self.scene, self.motion, end, own, columns_of)
         except MechanicsError as fault:
             return columns, replace(stated, why=fault.detail)
-        share = uncertainty * relative(moved, columns)
+        share = uncertainty * relative(moved, own)
         if not share < 1.0:
             return columns, replace(stated, why="nothing is known of the motion at the latest times")
-        with_own = {name: replace(one, inherited=uncertainty * moved[name]) for name, one in columns.items()}
-        return with_own, replace(stated, inherited=share, why=_NO_HORIZON)
-
-
-def _closed(phase: Phase) -> bool:
-    return len(phase.tracks) == 1 and all(part.how == "closed form" for _, part in phase.models[0].whole.parts)
-
-
-def _phase_at(phases: Sequence[Phase], time: float) -> int:
-    """Return in which phase a time is; at an event it is in the one that begins."""
-    low, high = 0, len(phases) - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if arb(time) < phases[middle].start:
-            high = middle - 1
-        else:
-            low = middle
-    return low
-
-
-def _states(phase: Phase, times: Floats, motion: PhaseMotion) -> WholeStates:
-    """Return the states of a phase, with what its tracks differ by."""
-    if phase.bounces is not None:
-        return _bouncing(phase, times)
-    found = [_of_track(phase, k, times) for k in range(len(phase.tracks))]
-    first = found[0]
-    floor_q, floor_v = (
-        FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
-    )
-    q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
-    unknown = _unknown(phase, times)
-    if unknown is not None:
-        q_error, v_error = q_error + unknown[0], v_error + unknown[1]
-    reference = first.reference
-    if len(found) > 1:
-        other = found[1]
-        reference = (other.q, other.v) if other.reference is None else other.reference
-        q_error = q_error + TOLD * np.abs((first.q - reference[0]).sum(axis=2))
-        v_error = v_error + TOLD * np.abs((first.v - reference[1]).sum(axis=2))
-    return WholeStates(first.q, first.v, q_error, v_error, reference)
-
-
-def _unknown(phase: Phase, times: Floats) -> Unknown | None:
-    """Return by how much coordinates and rates are wrong on all tracks alike, None where they are not."""
-    if phase.unknown is None or phase.bounces is not None:
-        return None
-    moves = np.array([not still for still in phase.still])
-    places, rates = np.array(phase.unknown[0]), np.array(phase.unknown[1]) * moves
-    late = np.array([max(float(arb(float(t)) - phase.start), 0.0) for t in times])
-    return places + np.outer(late, rates), np.broadcast_to(rates, (len(times), len(rates)))
-
-
-def _of_track(phase: Phase, k: int, times: Floats) -> WholeStates:
-    """Return the states of one track at times since the start of the scene."""
-    whole, start = phase.models[k].whole, phase.tracks[k].time
-    pairs = [pair(arb(float(t)) - start, 0) for t in times]
-    late = np.maximum(np.array([p[0] for p in pairs]), 0.0) if pairs else np.zeros(0)
-    rest = np.array([p[1] if p[0] > 0.0 else 0.0 for p in pairs])
-    states = whole.states(late)
-    if not np.any(rest):
-        return states
-    q, v = _later(phase, k, states.q, states.v, rest)
-    reference = None if states.reference is None else _later(phase, k, *states.reference, rest)
-    return WholeStates(q, v, states.q_error, states.v_error, reference)
-
-
-def _later(phase: Phase, k: int, q: Floats, v: Floats, rest: Floats) -> tuple[Floats, Floats]:
-    """Return states later by the tails of times: so small that one term of the Taylor series is right to pairs."""
-    gain = phase.models[k].whole.accelerations(q, v)
-    return _added(q, rest[:, None] * v[..., 0]), _added(v, rest[:, None] * gain)
-
-
-def _added(pairs: Floats, more: Floats) -> Floats:
-    """Return pairs of doubles with something small added."""
-    high = pairs[..., 0] + more
-    # What the first sum rounds off (Knuth), with the tail.
-    part = high - pairs[..., 0]
-    low = (pairs[..., 0] - (high - part)) + (more - part) + pairs[..., 1]
-    total = high + low
-    return np.stack([total, low - (total - high)], axis=-1)
-
-
-def _bouncing(phase: Phase, times: Floats) -> WholeStates:
-    assert phase.bounces is not None
-    count = len(phase.tracks[0].q)
-    q, v = np.zeros((len(times), count, 2)), np.zeros((len(times), count, 2))
-    errors = np.zeros((2, len(times), count))
-    for s, t in enumerate(times):
-        late: Ball = arb(float(t)) - phase.start
-        for k, (vector, out) in enumerate(zip(phase.bounces.at(late), (q, v), strict=True)):
-            for i, x in enumerate(vector):
-                out[s, i] = pair(x, 0)
-                errors[k, s, i] = float(x.rad()) + FLOOR * abs(float(x))
-    return WholeStates(q, v, errors[0], errors[1], None)
-
-
-def _columns(
-    phase: Phase, times: Floats, states: WholeStates, how: How, outputs: Sequence[object]
-) -> dict[str, Column]:
-    model = phase.models[0]
-    determined: Sequence[bool] = ()
-    if "forces-in-time" in outputs:
-        measures = model.described.measures
-        multipliers = multipliers_at_start(measures, model.whole.acceleration)
-        determined = [force.value is not None for force in forces_at_start(measures, multipliers)]
-    return Columns(model.whole, times, states, how, unknown=_unknown(phase, times)).chosen(outputs, determined)
+        with_own = {name: replace(one, inherited=uncertainty * moved[name]) for name, one in own.items()}
+        return columns | with_own, replace(stated, inherited=share, why=_NO_HORIZON)
 
 
 def _merged(pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], count: int) -> dict[str, Column]:

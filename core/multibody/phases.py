@@ -29,7 +29,7 @@ from core.multibody.numerals import Numerals
 from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phase_ends import Undecided, crossings_of
-from core.multibody.polynomials import ZERO, evaluated, is_zero
+from core.multibody.polynomials import ZERO, Ball, evaluated, is_zero
 from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
@@ -165,7 +165,7 @@ class _Run:
             if isinstance(outcome, Problem):
                 self._stop(outcome)
                 return False
-            self._record(hit, outcome)
+            self._record(hit, outcome, q, v)
             rates = [outcome.v]
             if not tracks.exact:
                 rates = []
@@ -197,10 +197,9 @@ class _Run:
         fastest = self.tracks.fastest("rad" if one.unit == "N m" else "m")
         return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf
 
-    def _record(self, hit: Sequence[int], outcome: Impact) -> None:
-        """Add the events of an impact, the loss of energy with the first."""
+    def _record(self, hit: Sequence[int], outcome: Impact, q: list[Ball], v: list[Ball]) -> None:
+        """Add the events of an impact from a state, each with the energy that its connection takes."""
         self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
-        loss = nearest(outcome.loss)
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, (push, rub, beside) = outcome.unilateral[i], outcome.impulses[i]
             impulses = {"normal": nearest(push)}
@@ -210,8 +209,10 @@ class _Run:
             elif one.slip is not None:
                 impulses["friction"] = nearest(rub)
             time, late = nearest(self.tracks.time), self.tracks.late()
-            self.motion.events.append(SceneEvent(one.closes, one.name, time, late, impulses, loss))
-            loss = 0.0
+            work = outcome.work(i, q, v)
+            known = None if i in outcome.shared else work
+            self.motion.impacts.append((len(self.motion.phases), one.name, known))
+            self.motion.events.append(SceneEvent(one.closes, one.name, time, late, impulses, nearest(ZERO - work)))
 
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""
@@ -306,7 +307,7 @@ class _Run:
             if found is None:
                 continue
             length = found.tails[0].length
-            phase.end = phase.start + length
+            phase.end, phase.settles = phase.start + length, self.unilateral[i].name
             if found.exact:
                 phase.bounces = found.tails[0]
             self.tracks.each = [

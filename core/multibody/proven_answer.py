@@ -21,6 +21,7 @@ from core.certified.decimals import decimal, floor_below, place_of
 from core.certified.exact_inputs import enclosed
 from core.errors import NotApplicable
 from core.multibody.answer import Energy, PartModel, SceneModel
+from core.multibody.attitudes import angular_velocity, dot, quaternion
 from core.multibody.coordinates import Frame
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.events import first_event
@@ -29,7 +30,7 @@ from core.multibody.modelling import Modelled, Piece, modelled
 from core.multibody.modes import Modes
 from core.multibody.motion import Motion, Rest
 from core.multibody.phases import one_sided
-from core.multibody.polynomials import BITS, ONE, ZERO, Ball, evaluated, is_zero
+from core.multibody.polynomials import BITS, ZERO, Ball, evaluated, is_zero
 from core.multibody.proven_series import ProvenSeries, ProvenStep, Vector
 from core.multibody.start import accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.uniform import Uniform
@@ -221,9 +222,8 @@ class _Proof:
             found.append(("axis", "1", self._vector([q[i] for i in frame.axis[1]])))
         elif frame.axes is not None:
             e, rate = ([[x[i] for i in axis] for axis in frame.axes] for x in (q, v))
-            omega = [_dot(rate[(k + 1) % 3], e[(k + 2) % 3]) for k in range(3)]
-            found.append(("attitude", "1", self._vector(_quaternion(e))))
-            found.append(("angular_velocity", "rad/s", self._vector(omega)))
+            found.append(("attitude", "1", self._vector(quaternion(e))))
+            found.append(("angular_velocity", "rad/s", self._vector(angular_velocity(e, rate))))
         elif frame.turns is not None:
             found.append(("angular_velocity_in_space", "rad/s", self._vector([v[i] for i in frame.turns])))
         return found
@@ -232,8 +232,7 @@ class _Proof:
         """Return an unwrapped angle: that at the start, and what was turned in every step since."""
         assert frame.direction is not None
         measures, expressions = self.found.described.measures, self.found.whole.reduced.expressions
-        given = measures.coordinates.scene.bodies[name].angle
-        total = ZERO if given is None else measures.coordinates.numerals.number(given, ("bodies", name, "angle"))
+        total = measures.coordinates.start_angle(name)
         piece = next((piece for piece in self.found.pieces if self._follows(piece, frame)), None)
         places = []
         for own in path if piece is not None else []:
@@ -245,7 +244,7 @@ class _Proof:
         return total
 
     def _vector(self, components: Sequence[Ball]) -> list[str]:
-        size = _dot(components, components).sqrt()
+        size = dot(components, components).sqrt()
         if not size > 0:
             if size.is_zero():
                 return ["0"] * len(components)
@@ -305,29 +304,3 @@ def _states(piece: Piece, motion: Motion, directions: Sequence[Any], times: Sequ
         n = len(q)
         return [ProvenStep(x[:n], x[n : 2 * n], []) for x in motion.proven(times)]
     return ProvenSeries(piece.table, piece.chosen, directions).states(times)
-
-
-def _dot(a: Sequence[Ball], b: Sequence[Ball]) -> Ball:
-    return sum((x * y for x, y in zip(a, b, strict=True)), ZERO)
-
-
-def _quaternion(axes: Sequence[Sequence[Ball]]) -> list[Ball]:
-    """Return the unit quaternion of body axes in space, by the largest of its components, the first not negative."""
-    r = [[axes[k][i] for k in range(3)] for i in range(3)]
-    squares = [
-        ONE + r[0][0] + r[1][1] + r[2][2],
-        ONE + r[0][0] - r[1][1] - r[2][2],
-        ONE - r[0][0] + r[1][1] - r[2][2],
-        ONE - r[0][0] - r[1][1] + r[2][2],
-    ]
-    k = max(range(4), key=lambda i: float(squares[i]))
-    if k == 0:
-        row = [squares[0], r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]]
-    else:
-        i, j, l = k - 1, k % 3, (k + 1) % 3  # noqa: E741
-        row = [ZERO] * 4
-        row[0], row[1 + i] = r[l][j] - r[j][l], squares[k]
-        row[1 + j], row[1 + l] = r[j][i] + r[i][j], r[l][i] + r[i][l]
-    size = _dot(row, row).sqrt()
-    way = -1 if row[0] < 0 else 1
-    return [way * x / size for x in row]

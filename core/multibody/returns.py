@@ -63,7 +63,7 @@ def followed(
     starts: list[Floats] = []
     series: list[Floats] = []
     passages: list[Passage] = []
-    sign, zeros = section.sign, np.empty((_PARTS, 2))
+    sign, zeros = section.sign, np.empty((2 * _PARTS, 2))
     while len(series) * _CHUNK < MOST_STEPS:
         chunk_starts, chunk = np.empty((_CHUNK + 1, 2)), np.empty((_CHUNK, len(q), order + 1, 2))
         ended, count = advance_pairs(arrays, q, v, clock, 1e300, tolerance, chunk_starts, chunk)
@@ -115,6 +115,14 @@ def _value(curve: Floats, hh: float, hl: float) -> Pair:
 
 
 @kernel()
+def _slope(curve: Floats, time: float) -> float:
+    slope = 0.0
+    for k in range(curve.shape[0] - 1, 0, -1):
+        slope = slope * time + k * curve[k, 0]
+    return slope
+
+
+@kernel()
 def _root(curve: Floats, low: float, high: float, before: float) -> Pair:
     """Return a zero between two times: bisection in doubles, then Newton's method in pairs."""
     for _ in range(40):
@@ -124,9 +132,7 @@ def _root(curve: Floats, low: float, high: float, before: float) -> Pair:
         else:
             high = middle
     th, tl = 0.5 * (low + high), 0.0
-    slope = 0.0
-    for k in range(curve.shape[0] - 1, 0, -1):
-        slope = slope * th + k * curve[k, 0]
+    slope = _slope(curve, th)
     if slope != 0.0:
         for _ in range(4):
             left, tail = _value(curve, th, tl)
@@ -135,21 +141,44 @@ def _root(curve: Floats, low: float, high: float, before: float) -> Pair:
 
 
 @kernel()
+def _turning(curve: Floats, low: float, high: float, before: float) -> float:
+    """Return where the slope, of the sign `before` at first, changes its sign between two times."""
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        if _slope(curve, middle) * before > 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@kernel()
 def _zeros(
     series: Floats, width: float, origin: Floats, normal: Floats, of_rates: bool, sign: float, times: Floats
 ) -> tuple[int, float]:
-    """Fill in the zeros in a step as pairs, shape (parts, 2); return how many they are, and the sign at its end."""
+    """Fill in the zeros in a step as pairs, shape (2 parts, 2); return how many they are, and the sign at its end.
+
+    What starts beside a turning point passes the section there twice in a short time: between two values of one sign
+    the one nearest to zero is looked at too.
+    """
     curve = np.empty((series.shape[1], 2))
     _along(series, origin, normal, of_rates, curve)
-    count, last, parts = 0, 0.0, times.shape[0]
+    count, last, parts = 0, 0.0, times.shape[0] // 2
+    rise = _slope(curve, 0.0)
     for part in range(1, parts + 1):
         time = width * part / parts
-        value = _value(curve, time, 0.0)[0]
+        value, following = _value(curve, time, 0.0)[0], _slope(curve, time)
         if sign * value < 0.0:
             times[count, 0], times[count, 1] = _root(curve, last, time, sign)
             count += 1
+        elif sign * rise < 0.0 and sign * following > 0.0:
+            turn = _turning(curve, last, time, rise)
+            if sign * _value(curve, turn, 0.0)[0] < 0.0:
+                times[count, 0], times[count, 1] = _root(curve, last, turn, sign)
+                times[count + 1, 0], times[count + 1, 1] = _root(curve, turn, time, -sign)
+                count += 2
         if value != 0.0:
-            sign, last = math.copysign(1.0, value), time
+            sign, last, rise = math.copysign(1.0, value), time, following
     return count, sign
 
 

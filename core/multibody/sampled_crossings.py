@@ -98,7 +98,7 @@ class Sampled:
             if watch.what == "gap":
                 found[k], size = values(watch.one.gap, q)
             elif watch.what == "slip":
-                found[k], size = _rates(watch.one.slip or {}, q, v)
+                found[k], size = rates_along(watch.one.slip or {}, q, v)
                 found[k] *= watch.sense
             else:
                 if multipliers is None:
@@ -227,7 +227,7 @@ class Sampled:
         return [int(i) + 1 for i in np.flatnonzero(low) if i + 1 < until]
 
 
-def _rates(line: Rates, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+def rates_along(line: Rates, q: Floats, v: Floats) -> tuple[Floats, Floats]:
     """Return a linear form in the rates at states, and how large its terms are."""
     total, size = np.zeros(len(q)), np.zeros(len(q))
     for j, poly in line.items():

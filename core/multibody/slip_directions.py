@@ -25,7 +25,9 @@ AHEAD: Direction = (ONE, ZERO)
 
 _LOOKS = 48
 """Directions that are tried, evenly around."""
-_HALVINGS = 40
+_MOST_CUTS = 100
+_GUARD = 40
+"""Bits to which the angle found is not trusted."""
 
 
 def turned(one: Unilateral, direction: Direction) -> Unilateral:
@@ -95,7 +97,7 @@ def directions(after: Callable[[Direction], Direction | None]) -> list[Direction
     ):
         if left is None or right is None or (left.mid() > 0) == (right.mid() > 0):
             continue
-        root = _between(off, arb(a), arb(b), rising=bool(right.mid() > 0))
+        root = _between(off, (a, b), (left, right))
         if root is None:
             continue
         there = after(root)
@@ -104,29 +106,29 @@ def directions(after: Callable[[Direction], Direction | None]) -> list[Direction
     return found
 
 
-def _between(off: Callable[[Direction], Ball | None], low: Ball, high: Ball, *, rising: bool) -> Direction | None:
-    """Return the direction between two angles that is off by nothing: bisected, then by the secant."""
-    for _ in range(_HALVINGS):
-        middle = arb(((low + high) / 2).mid())
-        value = off(_at(middle))
+def _between(
+    off: Callable[[Direction], Ball | None], ends: tuple[float, float], values: tuple[Ball, Ball]
+) -> Direction | None:
+    """Return the direction between two angles that is off by nothing, by the Illinois method.
+
+    Of a bracket, the end that stays has its value halved, so that both ends move.
+    """
+    first, second = (arb(end) for end in ends)
+    before, last = values
+    for _ in range(_MOST_CUTS):
+        following = arb((second - last * (second - first) / (last - before)).mid())
+        value = off(_at(following))
         if value is None:
             return None
-        if (value.mid() > 0) == rising:
-            high = middle
+        if (value.mid() > 0) == (last.mid() > 0):
+            before = before / 2
         else:
-            low = middle
-    first, second = low, high
-    values = off(_at(first)), off(_at(second))
-    for _ in range(ctx.prec.bit_length() + 4):
-        if values[0] is None or values[1] is None:
-            return None
-        fall = values[1] - values[0]
-        if is_zero(fall):
+            first, before = second, last
+        near = abs(following - second) < 2.0 ** (_GUARD - ctx.prec)
+        second, last = following, value
+        if near or is_zero(value):
             break
-        following = arb((second - values[1] * (second - first) / fall).mid())
-        first, second = second, following
-        values = values[1], off(_at(second))
-    return _at(arb(second.mid(), 2.0 ** (40 - ctx.prec)))
+    return _at(arb(second.mid(), 2.0 ** (_GUARD - ctx.prec)))
 
 
 def _at(angle: Ball) -> Direction:

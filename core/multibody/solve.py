@@ -18,7 +18,7 @@ from core.multibody.language import Scene
 from core.multibody.modelling import modelled
 from core.multibody.occurrences import ExtremesOf, When, check_search
 from core.multibody.packed import Floats
-from core.multibody.phase_answer import ANSWERED, THRESHOLDS, answer_in_phases
+from core.multibody.phase_answer import THRESHOLDS, answer_in_phases
 from core.multibody.phases import one_sided
 from core.multibody.polynomials import BITS
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
@@ -159,4 +159,4 @@ def _has_phases(scene: Scene, request: SceneRequest) -> bool:
     if has_chain(scene):
         return False
     forward = bool(np.min(request.times) >= 0.0)
-    return forward and request.method is None and all(output in (*ANSWERED, THRESHOLDS) for output in request.outputs)
+    return forward and request.method is None and "equilibria" not in request.outputs

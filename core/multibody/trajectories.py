@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError, NotApplicable, inside_field
-from core.multibody.along import Along
+from core.multibody.along import Along, watched_times
 from core.multibody.answer import Occurrence, SceneEvent, SceneExtremes
 from core.multibody.columns import (
     COLUMNS_OF_STATES,
@@ -28,6 +28,7 @@ from core.multibody.inherited import changes, horizon, looks
 from core.multibody.language import Scene
 from core.multibody.measures import Limit
 from core.multibody.modelling import Modelled
+from core.multibody.nearest import Nearest
 from core.multibody.numerical import Numerical
 from core.multibody.occurrences import ExtremesOf, Sampler, When, component, extremes, occurrences, unknown
 from core.multibody.packed import Floats, Integers
@@ -52,6 +53,9 @@ LOST = 1e-3
 
 MOST_NUMBERS = 5_000_000
 """Numbers that one trajectory may have."""
+
+ONLY_SUMS = "it is not propagated to what is summed up along the motion, and there is nothing else"
+"""Why nothing is inherited where only works and paths are answered."""
 
 Output = str | When | ExtremesOf
 
@@ -205,7 +209,9 @@ class DescribedSystem:
                 path=("connections",),
                 remedy="start elsewhere",
             )
-        return Columns(self.whole, times, states, self.how, rounding).chosen(self.outputs, self.determined)
+        columns = Columns(self.whole, times, states, self.how, rounding)
+        chosen = Nearest(columns).chosen if rounding == NEAREST else columns.chosen
+        return chosen(self.outputs, self.determined)
 
     def _measured(self, times: Floats, states: WholeStates, how: How) -> dict[str, Column]:
         """Return the columns of states that a method computed, their errors measured against the motion itself."""
@@ -246,9 +252,7 @@ class DescribedSystem:
             return columns, replace(stated, why=fault.detail)
         own = {name: column for name, column in columns.items() if name in moved}
         if not own:
-            return columns, replace(
-                stated, why="it is not propagated to what is summed up along the motion, and there is nothing else"
-            )
+            return columns, replace(stated, why=ONLY_SUMS)
         moved = {name: moved[name] for name in own}
         share = uncertainty * relative(moved, own)
         until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
@@ -281,7 +285,8 @@ class DescribedSystem:
         with np.errstate(over="ignore", invalid="ignore"):
             for index, output in enumerate(self.outputs):
                 if isinstance(output, When):
-                    times_found.extend(occurrences(self.whole, self._sampler(output, index), output, end))
+                    grid = watched_times(self.whole, end)
+                    times_found.extend(occurrences(grid, self._sampler(output, index), output))
                 elif isinstance(output, ExtremesOf):
                     ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, end))
         return tuple(times_found), tuple(ranges)

@@ -74,10 +74,15 @@ class Whole:
 
     @cached_property
     def _arrays(self) -> tuple[Packed, Units, list[int]]:
-        table = self.measures.table
-        chosen = independent(row.line(table.q) for row in table.rows)
+        table, chosen = self.measures.table, self.independent_rows
         units = units_of(table, self.acceleration)
         return packed(table, chosen, units), units, chosen
+
+    @cached_property
+    def independent_rows(self) -> list[int]:
+        """The rows of the table that do not follow from those before them."""
+        table = self.measures.table
+        return independent(row.line(table.q) for row in table.rows)
 
     @cached_property
     def _glanced(self) -> list[tuple[int, Glanced]]:
@@ -193,6 +198,14 @@ class Whole:
         for k, r in enumerate(chosen):
             total[:, r] = found[:, k, 0] * two_to(units.multiplier(r))
         return total
+
+    def largest_multipliers(self, multipliers: Floats) -> Floats:
+        """Return the largest of multipliers of shape (t, rows), in the units of the kernels, as one of each row."""
+        units = self._arrays[1]
+        powers = np.array([units.multiplier(row) for row in range(multipliers.shape[1])], dtype=np.int64)
+        largest = np.max(np.ldexp(np.max(np.abs(multipliers), axis=0, initial=0.0), -powers), initial=0.0)
+        found: Floats = np.ldexp(largest, powers)
+        return found
 
     def accelerations(self, q: Floats, v: Floats) -> Floats:
         """Return the acceleration of every coordinate at states, shape (t, n); it raises as `multipliers` does."""

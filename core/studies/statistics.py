@@ -1,6 +1,6 @@
 """Statistics of one figure over the members of a study, from the whole column in member order.
 
-Sums are exact and rounded once (`math.fsum`), so that the same column gives the same bits on every machine and in
+Sums are exact and rounded once, so that the same column gives the same bits on every machine and in
 whatever order its parts came about. Members without the figure are NaN in the column and left out.
 """
 
@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -21,8 +20,8 @@ STATISTICS: tuple[Statistic, ...] = get_args(Statistic)
 PROBABILITIES = (0.01, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99)
 BINS = 50
 
-PIECE = 65_536
-"""Numbers that are objects at a time."""
+PIECE = 2**18
+"""Numbers that are added at a time: few enough that the sums of parts of their significands are exact."""
 
 
 class Quantile(NamedTuple):
@@ -106,11 +105,11 @@ def column_statistics(
     exponent = math.frexp(max(abs(values[low]), abs(values[high])))[1]
     if "mean" in wanted or "std" in wanted:
         scaled = np.ldexp(values, -exponent)
-        mean = math.fsum(_floats(scaled)) / values.size
+        mean = _sum(scaled) / values.size
         deviation = None
         if values.size > 1:
             squares = np.square(scaled - mean)
-            deviation = math.sqrt(math.fsum(_floats(squares)) / (values.size - 1))
+            deviation = math.sqrt(_sum(squares) / (values.size - 1))
         if "mean" in wanted:
             found["mean"] = _unscaled(mean, exponent)
             found["standard_error"] = _unscaled(
@@ -135,10 +134,22 @@ def failure_counts(codes: np.ndarray[Any, Any], names: Sequence[str]) -> Mapping
     return {name: count for name, count in sorted(zip(names, counted, strict=True)) if count}
 
 
-def _floats(values: Floats) -> Iterator[float]:
-    """Return the numbers of an array one by one, of which few are objects at a time."""
-    pieces = (values[start : start + PIECE] for start in range(0, values.size, PIECE))
-    return chain.from_iterable(map(np.ndarray.tolist, pieces))
+def _sum(values: Floats) -> float:
+    """Return the exact sum, rounded once; no partial sum may leave the range of doubles."""
+    return math.fsum(term for start in range(0, values.size, PIECE) for term in _terms(values[start : start + PIECE]))
+
+
+def _terms(values: Floats) -> Iterator[float]:
+    """Yield a few numbers whose sum is exactly that of many.
+
+    Of numbers with the same exponent the upper 27 and the lower 26 bits are added as integers, which doubles hold.
+    """
+    significands, exponents = np.frexp(values)
+    lowest = int(exponents.min())
+    upper = np.trunc(significands * 2.0**27)
+    for bits, part in ((27, upper), (53, significands * 2.0**53 - upper * 2.0**26)):
+        sums = np.bincount(exponents - lowest, part)
+        yield from map(math.ldexp, sums.tolist(), range(lowest - bits, lowest - bits + sums.size))
 
 
 def _member(known: np.ndarray[Any, np.dtype[np.bool_]], place: int) -> int:

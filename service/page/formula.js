@@ -1,10 +1,12 @@
 // Numbers of a described scene: decimals, formulas over named numbers, angles in degrees, polar vectors.
 
-const FUNCTIONS = { sqrt: Math.sqrt, sin: Math.sin, cos: Math.cos, tan: Math.tan };
+const OWN = ["sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "abs"];
+const FUNCTIONS = Object.fromEntries(OWN.map((name) => [name, Math[name]]));
+Object.assign(FUNCTIONS, { arcsin: Math.asin, arccos: Math.acos, arctan: Math.atan, ln: Math.log });
 
 /** Value of a formula such as `"2*cos(pi/6)"`; NaN where it is none, which the service then refuses. */
 export function formula(text, names = {}) {
-  const tokens = text.match(/\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+|[A-Za-z_]\w*|[-+*/()]|\S/g) || [];
+  const tokens = text.match(/\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+|[A-Za-z_]\w*|\*\*|[-+*/^()]|\S/g) || [];
   let at = 0;
   const sum = () => {
     let value = product();
@@ -17,10 +19,15 @@ export function formula(text, names = {}) {
     return value;
   };
   const factor = () => {
+    if (tokens[at] === "-" || tokens[at] === "+") return tokens[at++] === "-" ? -factor() : factor();
+    const base = atom();
+    if (tokens[at] !== "^" && tokens[at] !== "**") return base;
+    at++;
+    return base ** factor();
+  };
+  const atom = () => {
     const token = tokens[at++];
-    if (token === "-") return -factor();
-    if (token === "+") return factor();
-    if (token === "(" || token in FUNCTIONS) {
+    if (token === "(" || Object.hasOwn(FUNCTIONS, token ?? "")) {
       if (token !== "(" && tokens[at++] !== "(") return NaN;
       const value = sum();
       if (tokens[at++] !== ")") return NaN;

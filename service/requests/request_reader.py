@@ -49,17 +49,22 @@ class Reader(Generic[Q]):
 
     def __init__(self, question: type[Q], limits: Limits, elsewhere: Mapping[str, str] | None = None) -> None:
         self._schema = TypeAdapter(question).core_schema
-        schema = _failing_fast(self._schema)
-        # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
-        self._validate = SchemaValidator(schema, _use_prebuilt=False).validate_json
-        self._wording = Wording(Layout(schema), elsewhere or {})
-        self._limits = limits
+        self._limits, self._elsewhere = limits, elsewhere or {}
         self._keeps_digits = hasattr(question, "with_digits")
+
+    @cached_property
+    def _validate(self) -> Any:
+        # Otherwise the validators that pydantic built with the classes would be taken, which lack the change.
+        return SchemaValidator(_failing_fast(self._schema), _use_prebuilt=False).validate_json
 
     @cached_property
     def _validate_with_arrays(self) -> Any:
         schema = taking_arrays(self._schema, self._limits.bytes // DOUBLE)
         return SchemaValidator(_failing_fast(schema), _use_prebuilt=False).validate_json
+
+    @cached_property
+    def _wording(self) -> Wording:
+        return Wording(Layout(_failing_fast(self._schema)), self._elsewhere)
 
     def read(self, body: bytes, *, npz: bool = False) -> Q:
         """Return the question that a request's body asks.

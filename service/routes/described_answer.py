@@ -116,7 +116,10 @@ class EndEvent(View):
     impulses: dict[str, Annotated[float, Unit("N s")]] = Field(
         description="Of an impact: normal (of a stop, N m s), and friction where there is some."
     )
-    energy_loss: Joules[float] = Field(description="Of an impact; of several at once, it stands with the first.")
+    energy_loss: Joules[float] = Field(
+        description="Of an impact, by this connection: impulse times mean rate. Those of one time add up to what is "
+        "lost; one of them may be negative."
+    )
 
 
 class SceneProblem(View):

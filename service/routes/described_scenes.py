@@ -71,6 +71,9 @@ AMPLIFIED = 1.0
 PUSHING = ("spring", "torsion-spring", "damper", "inverse-square", "motor", "spinning-frame")
 """Connections that most often leave a motion without a period."""
 
+SPRINGS, DAMPERS = ("spring", "torsion-spring"), ("damper",)
+"""Connections that may make one linear system of all bodies, whose modes with damping are complex."""
+
 LONGEST = 4000.0
 """About the time (s) after which a scene that one can watch has used up the steps that core allows."""
 
@@ -156,13 +159,16 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     turning = sum(
         {"inertia", "moments", "tensor", "body"} & body.model_fields_set != set() for body in question.bodies.values()
     )
-    pushing = float(sum(isinstance(one, Mapping) and one.get("kind") in PUSHING for one in question.connections))
+    kinds = [one.get("kind") for one in question.connections if isinstance(one, Mapping)]
+    pushing = float(sum(kind in PUSHING for kind in kinds))
     found = {
         "question": 1.0,
         "bodies": bodies,
         "connections": connections,
         "pairs of connections": connections**2,
         "connections times pairs of bodies": connections * bodies**2,
+        "cubes of bodies on springs": bodies**3 * any(kind in SPRINGS for kind in kinds),
+        "cubes of bodies with dampers": bodies**3 * any(kind in DAMPERS for kind in kinds),
     }
     # A scene is read anew for every value of a number at which it is looked.
     read = 1.0 + VALUES * len(_thresholds(question))

@@ -23,7 +23,7 @@ from service.observability.logs import LOG
 from service.problems import Refusal
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
 from service.studies.cluster import Cluster
-from service.studies.store import FAILED, Store
+from service.studies.store import FAILED, Store, reason_of
 from service.studies.summary import summary
 from service.studies.task import Computed, compute, end_process, without_answer
 from service.studies.work import CHUNK_SECONDS, Stretch, Work, gaps, stretch_seconds
@@ -70,7 +70,7 @@ class Engine:
         try:
             self._hand_over()
         except OSError as fault:
-            self._say(f"the Dask cluster cannot be reached, and is tried again: {fault}")
+            self._say("the Dask cluster cannot be reached, and is tried again", fault)
             self._cluster.close()
             time.sleep(PAUSE)
             return True
@@ -188,7 +188,8 @@ class Engine:
         if isinstance(fault, KilledWorker):
             self._after_death(work, stretch, "worker-lost")
             return
-        self._fail(work, f"the cluster could not compute its members: {fault!r}")
+        LOG.error("a stretch has failed", extra={"study": work.study.id, "fault": repr(fault)})
+        self._fail(work, f"the cluster could not compute its members: {type(fault).__name__}")
 
     def _after_death(self, work: Work, stretch: Stretch, code: str) -> None:
         start, stop = stretch
@@ -219,7 +220,7 @@ class Engine:
         except Exception as fault:
             # A full disk, most often: the members are computed again when there is room.
             work.missing.appendleft(stretch)
-            self._say(f"results cannot be stored, which is tried again: {fault}")
+            self._say("results cannot be stored, which is tried again", fault)
             time.sleep(PAUSE)
             return
         if stop < stretch[1]:
@@ -259,7 +260,7 @@ class Engine:
         try:
             damaged, statistics = finished.result()
         except Exception as fault:
-            self._say(f"results cannot be read, which is tried again: {fault}")
+            self._say("results cannot be read, which is tried again", fault)
             time.sleep(PAUSE)
             return
         for stretch in damaged:
@@ -285,12 +286,12 @@ class Engine:
         found = summary(work.study, work.request, chunks)
         return [*dict.fromkeys(damaged)], found
 
-    def _say(self, message: str) -> None:
-        LOG.error(message)
+    def _say(self, message: str, fault: Exception) -> None:
+        LOG.error(message, extra={"reason": str(fault)})
         for work in self._works.values():
             # On a full disk there may be no room for it.
             with suppress(Refusal):
-                self._store.note(work.study.id, message)
+                self._store.note(work.study.id, f"{message}: {reason_of(fault)}")
 
 
 def _processes_with(keys: set[str], client: Any) -> list[str]:

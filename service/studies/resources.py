@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import AsyncIterator, Callable, Iterator
-from datetime import UTC, datetime
 from typing import Any
 from urllib.parse import parse_qs
 
@@ -22,12 +20,12 @@ from service.responses.svg import SVG
 from service.routes.studies import PATH
 from service.routes.studies.views import RESULTS, STATE, StudyList, StudyResults, StudyState
 from service.routing import ResourceRoute
-from service.schemas import SIGNATURE
 from service.settings import Settings
 from service.studies import grids, tables
 from service.studies.chunk_files import CorruptedChunk
 from service.studies.figures import figure
 from service.studies.results import Results
+from service.studies.states import JSON_TYPE, signed, state_of
 from service.studies.store import DISMISSED, SUCCESSFUL, Study, storage_unavailable
 from service.studies.supervisor import Supervisor
 
@@ -49,8 +47,6 @@ EVENTS_EVERY = 0.25
 
 MOST_WATCHED = 200
 """Connections on which events are sent, in all; those of one study share the looks at it."""
-
-JSON_TYPE = "application/json"
 
 
 class Studies:
@@ -74,7 +70,7 @@ class Studies:
                 "studies",
                 self.list_all,
                 StudyList,
-                example=_signed({"studies": [STATE]}),
+                example=signed({"studies": [STATE]}),
             ),
             ResourceRoute(
                 "GET",
@@ -84,7 +80,7 @@ class Studies:
                 "studies",
                 self.state,
                 StudyState,
-                example=_signed(dict(STATE)),
+                example=signed(dict(STATE)),
             ),
             ResourceRoute(
                 "DELETE",
@@ -94,7 +90,7 @@ class Studies:
                 "studies",
                 self.dismiss,
                 StudyState,
-                example=_signed({**STATE, "status": "dismissed"}),
+                example=signed({**STATE, "status": "dismissed"}),
             ),
             ResourceRoute(
                 "GET",
@@ -107,7 +103,7 @@ class Studies:
                 description="`?start=` and `?count=` (at most 10000) choose the members of a page. Other media types "
                 "have all members.",
                 representations=(archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE, SVG),
-                example=_signed(dict(RESULTS)),
+                example=signed(dict(RESULTS)),
             ),
             ResourceRoute(
                 "GET",
@@ -133,7 +129,9 @@ class Studies:
             context.key.work(seconds)
         try:
             identity = await run_in_daemon_thread(
-                lambda: self._store.create(_owner(context), body, known, self._settings.max_studies)
+                lambda: self._store.create(
+                    _owner(context), body, known, self._settings.max_studies, self._settings.max_studies_bytes
+                )
             )
         except Refusal:
             if context.key is not None:
@@ -142,16 +140,16 @@ class Studies:
         await run_in_daemon_thread(self._supervisor.ensure)
         study = await self._own(context, identity)
         location = f"{PATH}/{identity}".encode()
-        await self._send(context, _signed(state_of(study)), 202, ((b"location", location),))
+        await self._send(context, signed(state_of(study)), 202, ((b"location", location),))
 
     async def list_all(self, context: RequestContext) -> None:
         """Answer with the client's studies."""
         found = await self._in_thread(lambda: self._store.listed(_owner(context), MOST_LISTED))
-        await self._send(context, _signed({"studies": [state_of(study) for study in found]}))
+        await self._send(context, signed({"studies": [state_of(study) for study in found]}))
 
     async def state(self, context: RequestContext) -> None:
         """Answer with the state of a study."""
-        await self._send(context, _signed(state_of(await self._own(context))))
+        await self._send(context, signed(state_of(await self._own(context))))
 
     async def dismiss(self, context: RequestContext) -> None:
         """Stop a study; remove one that has ended."""
@@ -162,7 +160,7 @@ class Studies:
                 # What is not going to be computed is given back.
                 left = study.plan["seconds"] * (1.0 - study.done / study.count)
                 context.key.charge(-left)
-            await self._send(context, _signed(state_of(await self._own(context))))
+            await self._send(context, signed(state_of(await self._own(context))))
             return
 
         def remove() -> None:
@@ -170,7 +168,7 @@ class Studies:
             self._store.remove(study.id)
 
         await self._in_thread(remove)
-        await self._send(context, _signed(state_of(study)))
+        await self._send(context, signed(state_of(study)))
 
     async def results(self, context: RequestContext) -> None:
         """Answer with results, in the media type that the client accepts."""
@@ -221,7 +219,7 @@ class Studies:
                 **found.page(start, stop),
             }
             after = f"{PATH}/{study.id}/results?start={stop}&count={size}"
-            return _signed(page | {"next": after if stop < study.count else None})
+            return signed(page | {"next": after if stop < study.count else None})
 
         await self._send(context, await self._in_thread(made))
 
@@ -294,52 +292,6 @@ def _stored(pieces: Iterator[bytes]) -> Iterator[bytes]:
         yield from pieces
     except OSError as fault:
         raise storage_unavailable(fault) from fault
-
-
-def state_of(study: Study) -> dict[str, Any]:
-    """Return the state of a study as it is written."""
-    now, address = time.time(), f"{PATH}/{study.id}"
-    links = [("self", address, JSON_TYPE), ("events", f"{address}/events", "text/event-stream")]
-    if study.status == SUCCESSFUL:
-        links.append(("results", f"{address}/results", JSON_TYPE))
-    return {
-        "jobID": study.id,
-        "type": "process",
-        "processID": "study",
-        "status": study.status,
-        "message": study.message,
-        "created": _moment(study.created),
-        "started": _moment(study.started),
-        "finished": _moment(study.finished),
-        "updated": _moment(now),
-        "progress": 100 * study.done // study.count,
-        "path": study.plan["path"],
-        "count": study.count,
-        **{name: study.plan[name] for name in ("shape", "inputs", "figures", "together")},
-        "done": study.done,
-        "failed": study.failed,
-        "seconds": study.seconds,
-        "predicted_seconds": study.plan["seconds"],
-        "predicted_end": _moment(_end(study, now)),
-        "links": [{"href": href, "rel": rel, "type": kind} for rel, href, kind in links],
-    }
-
-
-def _end(study: Study, now: float) -> float | None:
-    """Return when an unfinished study should end: by its price, and then by how long its members have taken."""
-    if not study.unfinished:
-        return None
-    if not study.done or study.started is None:
-        return now + float(study.plan["seconds"])
-    return now + (now - study.started) * (study.count - study.done) / study.done
-
-
-def _moment(seconds: float | None) -> str | None:
-    return None if seconds is None else datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds")
-
-
-def _signed(document: dict[str, Any]) -> dict[str, Any]:
-    return {"signature": SIGNATURE, **document}
 
 
 def _owner(context: RequestContext) -> str:

@@ -13,6 +13,7 @@ from numpy.lib import format as npy
 from service.responses.npz import METADATA, Sink
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
 from service.studies.store import Store, Study
+from service.studies.work import gaps
 
 
 class Results:
@@ -23,11 +24,19 @@ class Results:
     study : Study
     store : Store
     files : ChunkFiles
+
+    Raises
+    ------
+    CorruptedChunk
+        If the record of some results is missing; they are computed again.
     """
 
     def __init__(self, study: Study, store: Store, files: ChunkFiles) -> None:
         self.study, self._store, self._files = study, store, files
         self._stretches = store.chunks(study.id)
+        for missing, _ in gaps(self._stretches, study.count):
+            store.drop_chunk(study.id, missing)
+            raise CorruptedChunk("some results are not recorded")
         self.request = json.loads(store.request(study.id))
 
     def chunks(self, start: int = 0, stop: int | None = None) -> Iterator[Chunk]:

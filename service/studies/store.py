@@ -6,7 +6,6 @@ members whose results are stored.
 
 from __future__ import annotations
 
-import errno
 import json
 import os
 import secrets
@@ -19,6 +18,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from service.observability.logs import LOG
 from service.problems import Refusal
 
 DATABASE = "studies.sqlite"
@@ -26,7 +26,11 @@ DATABASE = "studies.sqlite"
 ACCEPTED, RUNNING, SUCCESSFUL, FAILED, DISMISSED = "accepted", "running", "successful", "failed", "dismissed"
 """States, as OGC API Processes names them."""
 
+STATES = (ACCEPTED, RUNNING, SUCCESSFUL, FAILED, DISMISSED)
 UNFINISHED = (ACCEPTED, RUNNING)
+
+PLANNED = {"path", "count", "shape", "inputs", "figures", "together", "seconds", "bytes"}
+"""What a plan says."""
 
 PATIENCE = 5.0
 """Seconds for which a process waits for another's writing."""
@@ -129,17 +133,17 @@ class Store:
                 yield self._connection
             except (OSError, sqlite3.Error) as fault:
                 self._drop()
-                raise storage_unavailable(self._reason(fault)) from fault
+                raise storage_unavailable(fault, self._reason(fault)) from fault
             except BaseException:
                 # Nothing is left half written.
                 self._drop()
                 raise
 
-    def _reason(self, fault: Exception) -> Exception:
+    def _reason(self, fault: Exception) -> str:
         # SQLite says of every folder that it cannot write to that a file cannot be opened.
         if self.folder.is_dir() and not os.access(self.folder, os.W_OK):
-            return PermissionError(errno.EROFS, "it cannot be written to")
-        return fault
+            return "it cannot be written to"
+        return reason_of(fault)
 
     def _opened(self) -> sqlite3.Connection:
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -152,18 +156,20 @@ class Store:
         connection.executescript(_TABLES)
         return connection
 
-    def create(self, owner: str, request: bytes, plan: Mapping[str, Any], most: int) -> str:
+    def create(self, owner: str, request: bytes, plan: Mapping[str, Any], most: int, most_bytes: int) -> str:
         """Record a study and return its id, which cannot be guessed.
 
         Parameters
         ----------
         most : int
             Unfinished studies that the owner may have.
+        most_bytes : int
+            Of the results of all studies together, with those that are still to be computed.
 
         Raises
         ------
         Refusal
-            429 beyond them.
+            429 beyond the first, 503 beyond the second.
         """
         identity = secrets.token_urlsafe(18)
         with self._connected() as connection:
@@ -174,6 +180,18 @@ class Store:
             if open_ >= most:
                 detail = f"{open_} studies are unfinished already, the limit max_studies"
                 raise Refusal("too-busy", detail, retry_after=10.0)
+            (taken,) = connection.execute(
+                "SELECT COALESCE(SUM(json_extract(plan, '$.bytes')), 0) FROM studies"
+                " WHERE status != ? AND json_valid(plan)",
+                (DISMISSED,),
+            ).fetchone()
+            if taken + plan["bytes"] > most_bytes:
+                raise Refusal(
+                    "storage-unavailable",
+                    f"the results of all studies may take {most_bytes} bytes, the limit max_studies_bytes, of which "
+                    f"{max(0, most_bytes - taken)} are free and {plan['bytes']} are needed: "
+                    "remove studies that are not needed any more, or ask for fewer members",
+                )
             connection.execute(
                 "INSERT INTO studies (id, owner, request, plan, status, message, created)"
                 " VALUES (?, ?, ?, ?, ?, '', ?)",
@@ -213,7 +231,8 @@ class Store:
         if not self.exists:
             return []
         with self._connected() as connection:
-            return [_study(row) for row in connection.execute(_STUDY + condition, values)]
+            rows = map(_study, connection.execute(_STUDY + condition, values))
+            return [study for study in rows if study is not None]
 
     def chunks(self, identity: str) -> list[tuple[int, int]]:
         """Return the stretches of members whose results are stored, in member order."""
@@ -293,12 +312,33 @@ class Store:
             return connection.execute(statement, values).rowcount > 0
 
 
-def _study(row: tuple[Any, ...]) -> Study:
-    identity, owner, plan, *rest = row
-    return Study(identity, owner, json.loads(plan), *rest)
+def _study(row: tuple[Any, ...]) -> Study | None:
+    """Return a study as it is recorded, None where its row is damaged: the others are not to suffer from it."""
+    identity, owner, plan, status, *rest = row
+    try:
+        # An earlier version did not record what results take.
+        known = {"bytes": 0, **json.loads(plan)}
+    except ValueError:
+        known = {}
+    if not known.keys() >= PLANNED or status not in STATES:
+        LOG.error("the record of a study is damaged", extra={"study": identity})
+        return None
+    return Study(identity, owner, known, status, *rest)
 
 
-def storage_unavailable(fault: Exception) -> Refusal:
-    """Return the refusal of what cannot be stored."""
-    reason = getattr(fault, "strerror", None) or str(fault)
-    return Refusal("storage-unavailable", f"the folder of data cannot be used: {reason}", retry_after=10.0)
+def storage_unavailable(fault: Exception, reason: str | None = None) -> Refusal:
+    """Return the refusal of what cannot be stored, and log the fault itself."""
+    LOG.error("the folder of data cannot be used", extra={"reason": str(fault)})
+    return Refusal(
+        "storage-unavailable", f"the folder of data cannot be used: {reason or reason_of(fault)}", retry_after=10.0
+    )
+
+
+def reason_of(fault: Exception) -> str:
+    """Return what clients are told of a fault; its own words may hold paths, addresses and credentials."""
+    if isinstance(fault, Refusal):
+        return str(fault.problem.detail)
+    if isinstance(fault, sqlite3.Error):
+        return str(fault)
+    number = getattr(fault, "errno", None)
+    return "it cannot be reached" if number is None else os.strerror(number)

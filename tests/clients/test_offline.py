@@ -26,7 +26,7 @@ REQUESTS: dict[str, Any] = {
 REQUESTS |= {f"documented-{name}": json.loads(json.dumps(one.question)) for name, one in ROUTE.examples.items()}
 
 ALONE = """
-import runpy, socket, sys
+import contextlib, io, json, runpy, socket, sys
 
 def refuse(*arguments, **options):
     raise OSError("there is no network")
@@ -39,7 +39,13 @@ class OnlyHere:
 socket.socket.connect = socket.create_connection = socket.getaddrinfo = refuse
 sys.meta_path.insert(0, OnlyHere())
 bundle = sys.argv[1]
-runpy.run_path(bundle, run_name="__main__")
+requests, answers = json.load(sys.stdin), []
+for request in requests:
+    sys.stdin = io.StringIO(json.dumps(request))
+    with contextlib.redirect_stdout(io.StringIO()) as written:
+        runpy.run_path(bundle, run_name="__main__")
+    answers.append(json.loads(written.getvalue()))
+json.dump(answers, sys.stdout)
 import core
 assert core.__file__.startswith(bundle)
 assert "pint" not in sys.modules or sys.modules["pint"].__file__.startswith(bundle)
@@ -59,17 +65,25 @@ def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "bundle"
 
 
-def graded_offline(bundle: Path, request: Any) -> subprocess.CompletedProcess[str]:
+def graded_offline(bundle: Path, *requests: Any) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-I", "-c", ALONE, str(bundle)]
     return subprocess.run(
-        command, cwd=bundle.parent, input=json.dumps(request), capture_output=True, text=True, check=False, timeout=100
+        command, cwd=bundle.parent, input=json.dumps(requests), capture_output=True, text=True, check=False, timeout=100
     )
 
 
-def results_of(bundle: Path, name: str, submissions: Any) -> Any:
-    done = graded_offline(bundle, {"question": name, "submissions": submissions})
+def results_of(bundle: Path, *asked: tuple[str, Any]) -> list[Any]:
+    """Return the results of questions, each with its submissions."""
+    done = graded_offline(bundle, *({"question": name, "submissions": handed_in} for name, handed_in in asked))
     assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)["results"]
+    return [answer["results"] for answer in json.loads(done.stdout)]
+
+
+@pytest.fixture(scope="module")
+def results(bundle: Path) -> dict[str, Any]:
+    """Return the results of all requests."""
+    found = results_of(bundle, *((name, request["submissions"]) for name, request in REQUESTS.items()))
+    return dict(zip(REQUESTS, found, strict=True))
 
 
 def comparable(results: Any) -> Any:
@@ -83,12 +97,12 @@ def comparable(results: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", REQUESTS)
-def test_results_are_those_of_the_service(bundle: Path, name: str) -> None:
+def test_results_are_those_of_the_service(results: dict[str, Any], name: str) -> None:
     request = REQUESTS[name]
     own = comparable(
         json.loads(written(HANDLER.answer(ROUTE, HANDLER.read(ROUTE, json.dumps(request).encode()))))["results"]
     )
-    found = results_of(bundle, name, request["submissions"])
+    found = results[name]
     for mine, theirs in zip(own, found, strict=True):
         if "feedback" not in mine:
             theirs.pop("feedback")
@@ -109,17 +123,18 @@ def test_results_are_those_of_the_service(bundle: Path, name: str) -> None:
     ],
 )
 def test_submissions_that_were_not_there_are_graded(bundle: Path, claim: Any, verdict: str) -> None:
-    ((test,),) = ([result["tests"] for result in results_of(bundle, "1f", [{"/period": claim}])],)
-    assert test[0]["verdict"] == verdict
+    (found,) = results_of(bundle, ("1f", [{"/period": claim}]))
+    ((test,),) = (result["tests"] for result in found)
+    assert test["verdict"] == verdict
     request = REQUESTS["1f"] | {"submissions": [{"/period": claim}]}
     own = json.loads(written(HANDLER.answer(ROUTE, HANDLER.read(ROUTE, json.dumps(request).encode()))))
-    assert results_of(bundle, "1f", [{"/period": claim}]) == own["results"]
+    assert found == own["results"]
 
 
 def test_samples_at_other_times_and_unknown_figures_are_not_guessed(bundle: Path) -> None:
     other = {"/angular_velocity": {"value": [[1.0, 0.0, 0.0]], "times": [0.123], "unit": "rad/s"}}
     for submission in (other, {"/nothing": {"value": 1.0}}):
-        (result,) = results_of(bundle, "1g", [submission])
+        ((result,),) = results_of(bundle, ("1g", [submission]))
         assert not result["gradable"]
         assert result["score"] is None
         assert result["format_errors"][0]["pointer"].startswith("/submissions/0/")

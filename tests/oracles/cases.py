@@ -6,6 +6,8 @@ The list is the same in every run: all that is random comes from named seeds.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
+from itertools import chain
 from math import sqrt, ulp
 from random import Random
 from typing import NamedTuple
@@ -33,9 +35,10 @@ class Case(NamedTuple):
     times: tuple[float, ...]
 
 
-def cases(extra: int = 0) -> Iterator[Case]:
-    """Yield the default cases, and after them `extra` random ones."""
-    for family in (
+@cache
+def cases(extra: int = 0) -> tuple[Case, ...]:
+    """Return the default cases, and after them `extra` random ones."""
+    families = (
         _axis_orders,
         _drawn_by_lot,
         _near_symmetric,
@@ -48,9 +51,8 @@ def cases(extra: int = 0) -> Iterator[Case]:
         _principal_and_nearly,
         _equal_moments,
         _t_handle,
-    ):
-        yield from family()
-    yield from _drawn_by_lot(40, 40 + extra)
+    )
+    return tuple(chain(*(family() for family in families), _drawn_by_lot(40, 40 + extra)))
 
 
 def _case(name: str, moments: Triple, rates: Triple, horizon: float = 3.0) -> Case:

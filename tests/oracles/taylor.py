@@ -1,7 +1,7 @@
 """A second way to the torque-free motion, for judging the first: Taylor's series, step by step.
 
 Euler's equations and the kinematics of the quaternion are quadratic, so every coefficient of the series is a sum of
-products of earlier ones.
+products of earlier ones. These sums are FLINT's, in balls of which only the middles are used from one step to the next.
 
 References
 ----------
@@ -12,8 +12,12 @@ References
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import mul
 
+from flint import arb, arb_poly, ctx
 from mpmath import mp, mpf
+
+from .elliptic import real_of
 
 State = list[mpf]
 
@@ -42,25 +46,30 @@ def integrate(k: Sequence[mpf], start: Sequence[mpf], times: Sequence[float]) ->
         One state per time.
     """
     states: dict[float, State] = {}
-    for direction in (1, -1):
-        now, state = mpf(0), list(start)
-        for time in sorted((t for t in set(times) if direction * t >= 0), key=abs):
-            while now != time:
-                series = _coefficients(k, state)
-                step = min(abs(time - now), _step(series))
-                state = [mp.polyval(coefficients, direction * step, asc=True) for coefficients in series]
-                now = mpf(time) if step == abs(time - now) else now + direction * step
-            states[time] = state
+    before, ctx.prec = ctx.prec, mp.prec + 30
+    try:
+        factors = list(map(arb, k))
+        for direction in (1, -1):
+            now, state = mpf(0), list(start)
+            for time in sorted((t for t in set(times) if direction * t >= 0), key=abs):
+                while now != time:
+                    series = _coefficients(factors, state)
+                    step = min(abs(time - now), _step(series))
+                    state = [real_of(arb_poly(one)(arb(direction * step))) for one in series]
+                    now = mpf(time) if step == abs(time - now) else now + direction * step
+                states[time] = state
+    finally:
+        ctx.prec = before
     return [states[time] for time in times]
 
 
-def _coefficients(k: Sequence[mpf], state: State) -> list[State]:
+def _coefficients(k: Sequence[arb], state: State) -> list[list[arb]]:
     """Return the Taylor coefficients of every component."""
-    series = [[x] for x in state]
+    series = [[arb(x)] for x in state]
     for n in range(round(1.15 * mp.dps) + 2):
 
-        def convolution(i: int, j: int) -> mpf:
-            return mp.fdot(series[i], reversed(series[j]))
+        def convolution(i: int, j: int) -> arb:
+            return sum(map(mul, series[i], reversed(series[j])), arb(0))
 
         rates = [k[i] * convolution((i + 1) % 3, (i + 2) % 3) for i in range(3)]
         if len(state) == 7:
@@ -76,9 +85,8 @@ def _coefficients(k: Sequence[mpf], state: State) -> list[State]:
     return series
 
 
-def _step(series: list[State]) -> mpf:
+def _step(series: list[list[arb]]) -> mpf:
     """Return the step at which the last two terms fall below the rounding unit of the state."""
     order = len(series[0]) - 1
-    size = max(abs(c[0]) for c in series)
-    last = (max(abs(c[n]) for c in series) for n in (order - 1, order))
+    size, *last = (max(abs(real_of(c[n])) for c in series) for n in (0, order - 1, order))
     return min((mp.eps * size / term) ** (mpf(1) / n) for n, term in zip((order - 1, order), last, strict=True) if term)

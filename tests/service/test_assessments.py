@@ -508,7 +508,8 @@ async def test_what_is_no_formula_is_a_format_error(formula: Any) -> None:
     ("names", "pointer"),
     [
         ({"g": "/nothing"}, "/names/g"),
-        ({"2g": "/gravity"}, "/names"),
+        ({"2g": "/gravity"}, "/names/2g"),
+        ({"g" * 65: "/gravity"}, "/names"),
         ({"sin": "/gravity"}, "/names/sin"),
         ({"g": ""}, "/names/g"),
     ],
@@ -516,7 +517,7 @@ async def test_what_is_no_formula_is_a_format_error(formula: Any) -> None:
 async def test_names_lead_to_numbers(names: dict[str, str], pointer: str) -> None:
     response = await asked(SHAFTS, {"/tension": {"formula": "1"}}, names=names)
     assert response.status_code == 422
-    assert response.json()["errors"][0]["pointer"] in (pointer, "/names/sin")
+    assert response.json()["errors"][0]["pointer"] == pointer
 
 
 def units_in(node: Any) -> list[str]:

@@ -2597,6 +2597,7 @@ class StudyState(TypedDict):
     failed: int
     seconds: float
     predicted_seconds: float
+    bytes: int
     predicted_end: str | None
     links: list[Link]
 
@@ -2654,6 +2655,7 @@ class StudyStatus(TypedDict):
     failed: int
     seconds: float
     predicted_seconds: float
+    bytes: int
     predicted_end: str | None
     links: list[Link]
 

@@ -14,12 +14,13 @@ from core.assessment.catalogue import MISTAKES
 from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import is_null, steps_of, value_at
-from core.assessment.formulas import CONSTANTS, FUNCTIONS, NAME
 from core.assessment.graded_question import VARIATIONS
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
 from core.errors import InvalidParameter, Path
+from core.formulas import is_name
+from core.multibody.numerals import member
 from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget
@@ -252,8 +253,8 @@ def _names(question: AssessmentRequest) -> dict[str, Path] | None:
         return None
     numbers, found = dict(numbers_of(question.question.request, zeros=True)), {}
     for name, pointer in question.names.items():
-        place = ("names", name) if NAME.fullmatch(name) else ("names",)
-        if not NAME.fullmatch(name) or name in FUNCTIONS or name in CONSTANTS:
+        place = member(("names",), name)
+        if not is_name(name):
             raise InvalidParameter(place, "have names of letters, digits and _ that are no functions")
         if not pointer.startswith("/") or steps_of(pointer) not in numbers:
             raise InvalidParameter(place, "lead to a number of the request", remedy='such as "/gravity"')

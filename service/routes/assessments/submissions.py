@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field, TypeAdapter
 
 from core.assessment.claims import LONGEST_TEXT, MOST_CLAIMS, array_of
-from core.assessment.formulas import LONGEST_FORMULA
+from core.formulas import LONGEST_FORMULA
 from service.schemas import View
 
 

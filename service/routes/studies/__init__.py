@@ -108,6 +108,7 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         members = Members(question, source)
         together = members.together
         each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
+        seconds = design.members * each
         axes = zip(question.vary, inputs, strict=True)
         return {
             "path": route.path,
@@ -126,7 +127,8 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
                 for pointer, path in zip(question.quantities, figures, strict=True)
             ],
             "together": together,
-            "seconds": design.members * each,
+            "seconds": seconds,
+            "bytes": members.bytes_of(seconds),
             "warnings": [notice.inside(*WITHIN) for notice in answer.get("warnings", ())],
         }
 

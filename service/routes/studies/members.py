@@ -29,6 +29,12 @@ NO_ROOM = "no-room"
 TOGETHER = 8192
 """Members that are answered at a time where many are: few enough that their process answers its scheduler between."""
 
+BYTES_OF_A_FILE = 4096
+"""Beside its numbers, as folders round it up."""
+
+FILES_PER_SECOND = 4
+"""Stretches of members have half a second, unless they are the last."""
+
 Labels = NDArray[np.uint16]
 
 
@@ -118,6 +124,12 @@ class Members:
     def together(self) -> bool:
         """Whether members are answered many at a time."""
         return self._many(self.design.numbers(0, 1)) is not None
+
+    def bytes_of(self, seconds: float) -> int:
+        """Return what the results of all members take, if these take some processor time (s)."""
+        count: int = self.design.members
+        each = 8 * (len(self._places) + len(self._figures)) + 4
+        return count * each + BYTES_OF_A_FILE * min(count, 1 + int(FILES_PER_SECOND * seconds))
 
     def read(self, member: int) -> Any:
         """Return the question that a member asks, or raise its refusal."""

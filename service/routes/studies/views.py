@@ -58,6 +58,7 @@ class StudyStatus(View):
     failed: int = Field(description="Of these, members that have no result but a problem.", json_schema_extra=WHOLE)
     seconds: Seconds[float] = Field(description="Processor time that they took.")
     predicted_seconds: Seconds[float] = Field(description="Processor time of all members, as predicted.")
+    bytes: int = Field(description="Of all results where they are stored, as predicted.", json_schema_extra=WHOLE)
     predicted_end: str | None = Field(description="When it should be finished (RFC 3339); null when it is.")
     links: list[Link] = Field(description="To what else there is.")
 
@@ -93,6 +94,7 @@ STATE: Mapping[str, Any] = {
     "failed": 0,
     "seconds": 0.0,
     "predicted_seconds": 0.033,
+    "bytes": 86016,
     "predicted_end": "2026-11-22T12:00:00.034+00:00",
     "links": [
         {"href": "/v1/studies/Zq3mJ0yN8cXb1VtLr5wUeK7a", "rel": "self", "type": "application/json"},

@@ -8,8 +8,8 @@ from math import sqrt
 import pytest
 
 from core.assessment.compare import Reference
-from core.assessment.formulas import Formula
 from core.assessment.judged_formulas import AT_ONE_PLACE, ENOUGH, judge_formula
+from core.formulas import Formula
 
 UNITS = {"g": "m s^-2", "l": "m", "m": "kg"}
 

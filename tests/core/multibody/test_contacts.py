@@ -11,7 +11,6 @@ import pytest
 
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.answer import SceneAnswer
-from core.multibody.occurrences import ExtremesOf, When
 from core.multibody.solve import solve_scene
 from core.systems.methods import RungeKutta4
 from tests.core.multibody.worked_examples import column, force, read
@@ -302,13 +301,6 @@ def test_what_is_not_answered_is_refused() -> None:
         solve_scene(read(LADDER), [0.1], ("equilibria",))
     assert still.value.remedy is not None
     assert "thresholds" in still.value.remedy
-    searches: tuple[Any, ...] = ("work-in-time", "paths-in-time", When("ladder.angle", 0.5), ExtremesOf("ladder.angle"))
-    for output, instead in zip(searches, ("energy-in-time", "trajectory", "events", "events"), strict=True):
-        with pytest.raises(NotApplicable) as left:
-            solve_scene(read(LADDER), [0.1], ("trajectory", output))
-        assert left.value.path == ("outputs", 1)
-        assert left.value.remedy is not None
-        assert instead in left.value.remedy
     with pytest.raises(NotApplicable):
         solve_scene(read(LADDER), [0.1], method=RungeKutta4(step=0.01))
     for missing, where, on in (

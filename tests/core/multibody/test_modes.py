@@ -131,3 +131,41 @@ def test_a_spring_beside_a_free_fall_has_its_mode() -> None:
     slack = answer.events[0]
     assert (slack.kind, slack.name) == ("slack", "s")
     assert abs(slack.time - first) <= slack.error + 1e-15
+
+
+def test_a_hundred_masses_on_springs_swing_as_their_closed_form_says() -> None:
+    """Fixed at one end: omega_k = 2 sin((2 k - 1) pi/(4 n + 2)), shapes sin((2 k - 1) i pi/(2 n + 1))."""
+    count, pushed = 100, mpmath.mpf("0.25")
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {f"m{i}": {"mass": 1, "at": [i + 0.25 * (i == 1), 0]} for i in range(1, count + 1)},
+        "connections": [
+            {
+                "kind": "spring",
+                "a": f"m{i}",
+                "b": f"m{i - 1}" if i > 1 else [0, 0],
+                "stiffness": 1,
+                "rest_length": 1,
+            }
+            for i in range(1, count + 1)
+        ],
+    }
+    answer = solve_scene(read(scene), [7.0])
+    frequencies = [frequency for frequency, _ in answer.model.apart[0].modes]
+    with mpmath.workdps(30):
+        half = mpmath.pi / (2 * count + 1)
+        assert frequencies == [
+            pytest.approx(float(2 * mpmath.sin((2 * k - 1) * half / 2)), rel=1e-15) for k in range(1, count + 1)
+        ]
+        for i in (1, 4, 9):
+            away = mpmath.fsum(
+                4
+                * pushed
+                / (2 * count + 1)
+                * mpmath.sin((2 * k - 1) * half)
+                * mpmath.sin((2 * k - 1) * i * half)
+                * mpmath.cos(14 * mpmath.sin((2 * k - 1) * half / 2))
+                for k in range(1, count + 1)
+            )
+            place = column(answer, f"m{i}.position")
+            assert abs(place.values[0, 0] - i - away) <= place.error

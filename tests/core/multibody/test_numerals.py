@@ -59,6 +59,10 @@ def test_tenths_add_up() -> None:
         ("cos(0)", 1),
         ("h*h", 2.25),
         ("8/4/2", 1),
+        ("tan(pi/4)", 1),
+        ("h^2 - 2**-2", 2),
+        ("acos(cos(pi))/pi + asin(sin(pi/2))/pi", 1.5),
+        ("4^0.5", 2),
     ],
 )
 def test_formulas(text: str, value: float) -> None:
@@ -84,8 +88,9 @@ def test_angles_in_degrees_are_exact_where_they_can_be() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", "1+", "(1", "1)", "1 2", "x", "sin 1", "sin", "1//2", "2**3", "__import__('os')", "1e99999", "1/0", "sqrt(-1)",
-     "(" * 100 + "1" + ")" * 100, "-" * 100 + "1", "1" * 300, "nan", "inf", "0x10", "1_000", "1;2", "π"],
+    ["", "1+", "(1", "1)", "1 2", "x", "sin 1", "sin", "1//2", "2^101", "0^-1", "tan(pi/2)", "log(0)", "asin(2)",
+     "9^9^9", "__import__('os')", "1e99999", "1/0", "sqrt(-1)",
+     "(" * 100 + "1" + ")" * 100, "-" * 100 + "1", "1" * 301, "nan", "inf", "0x10", "1_000", "1;2", "π"],
 )  # fmt: skip
 def test_what_is_no_number_is_refused(text: str) -> None:
     with pytest.raises(InvalidParameter) as refused:

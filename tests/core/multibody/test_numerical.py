@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -115,3 +116,25 @@ def test_stiff_springs_are_followed() -> None:
 def test_a_motion_that_would_take_too_many_steps_is_refused() -> None:
     with pytest.raises((BudgetExceeded, AccuracyUnreachable)):
         solve_scene(read(pendulum_of_points(np.random.default_rng(1), 3)), [1e7])
+
+
+@pytest.mark.parametrize("speed", ["0.3", "0.01", "1e-4", "1e-6"])
+@pytest.mark.parametrize("angle", ["0.3", "1", "2.5"])
+def test_what_starts_beside_its_turning_point_has_a_period(speed: str, angle: str) -> None:
+    """It passes its start twice in 2 v/a; K of the energy: sin^2(amplitude/2) = sin^2(angle/2) + v^2/(4 g l)."""
+    scene = {
+        "gravity": [0, "-9.81"],
+        "bodies": {
+            "bob": {
+                "mass": 1,
+                "at": [f"sin({angle})", f"-cos({angle})"],
+                "velocity": [f"{speed}*cos({angle})", f"{speed}*sin({angle})"],
+            }
+        },
+        "connections": [{"kind": "rod", "a": "bob", "b": [0, 0]}],
+    }
+    answer = solve_scene(read(scene), [0.1])
+    with mpmath.workdps(30):
+        g = mpmath.mpf("9.81")
+        m = mpmath.sin(mpmath.mpf(angle) / 2) ** 2 + mpmath.mpf(speed) ** 2 / (4 * g)
+        assert answer.period == pytest.approx(float(4 * mpmath.ellipk(m) / mpmath.sqrt(g)), rel=4e-16)

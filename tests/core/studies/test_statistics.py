@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.studies.statistics import PROBABILITIES, column_statistics, failure_counts
+from core.studies.statistics import PIECE, PROBABILITIES, column_statistics, failure_counts
 
 COLUMNS = st.lists(st.floats(-1e100, 1e100), min_size=2, max_size=40)
 
@@ -30,6 +30,20 @@ def test_mean_and_deviation_are_those_of_exact_arithmetic(values: list[float]) -
     variance = sum((x - mean) ** 2 for x in exact) / (len(exact) - 1)
     assert abs(found.std - math.sqrt(variance / size**2) * float(size) if size else found.std) <= 2.0**-50 * size
     assert found.standard_error == pytest.approx(found.std / math.sqrt(len(values)), rel=1e-15)
+
+
+def test_sums_of_many_numbers_of_every_scale_are_exact() -> None:
+    chance = np.random.default_rng(5)
+    size = PIECE + 1000
+    column = chance.normal(size=size) * 10.0 ** chance.uniform(-340.0, 0.0, size)
+    # The scaling by a power of two is exact, so that one rounding of the sum and one of the quotient are left.
+    exponent = math.frexp(float(np.abs(column).max()))[1]
+    found = column_statistics(column, ["mean", "std"])
+    scaled = np.ldexp(column, -exponent)
+    mean = math.fsum(scaled.tolist()) / size
+    assert found.mean == math.ldexp(mean, exponent)
+    squares = np.square(scaled - mean)
+    assert found.std == math.ldexp(math.sqrt(math.fsum(squares.tolist()) / (size - 1)), exponent)
 
 
 @given(COLUMNS)

@@ -94,7 +94,8 @@ class Desk:
         figures = [{"pointer": pointer, "unit": None} for pointer in request["quantities"]]
         inputs = [{"pointer": entry["pointer"], "unit": None, "levels": None} for entry in request["vary"]]
         plan = {"path": "/v1/toy", "count": count, "shape": [count], "inputs": inputs, "figures": figures}
-        return self.store.create("", body, plan | {"together": False, "seconds": each * count}, 100)
+        rest = {"together": False, "seconds": each * count, "bytes": 0}
+        return self.store.create("", body, plan | rest, 100, 0)
 
     def work(self, until: Callable[[], Any] = lambda: False, most: float = 60.0) -> None:
         """Work until there is nothing to do, or something has come about."""

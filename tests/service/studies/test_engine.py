@@ -146,6 +146,23 @@ def test_a_full_disk_is_said_and_waited_for(desk_on: Desks, in_process: str, mon
     assert (study.status, study.done, study.message) == (SUCCESSFUL, 300, "")
 
 
+def test_the_place_of_results_is_not_told(
+    desk_on: Desks, in_process: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    desk = desk_on(in_process)
+    secret = "https://user:secret@store.example"
+
+    def write(*arguments: Any) -> None:
+        raise OSError(f"{secret} does not answer")
+
+    monkeypatch.setattr(desk.files, "write", write)
+    monkeypatch.setattr("service.studies.engine.PAUSE", 0.01)
+    identity = desk.submit(UNIFORM)
+    desk.work(until=lambda: desk.study(identity).message)
+    assert desk.study(identity).message == "results cannot be stored, which is tried again: it cannot be reached"
+    assert any(secret in getattr(record, "reason", "") for record in caplog.records)
+
+
 def test_a_scheduler_that_cannot_be_reached_is_said(desk_on: Desks, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.studies.engine.PAUSE", 0.01)
     monkeypatch.setattr("service.studies.cluster.CONNECTING", 0.2)
@@ -153,6 +170,7 @@ def test_a_scheduler_that_cannot_be_reached_is_said(desk_on: Desks, monkeypatch:
     identity = desk.submit(UNIFORM)
     assert desk.engine.turn()
     assert "cannot be reached" in desk.study(identity).message
+    assert "127.0.0.1" not in desk.study(identity).message
 
 
 def test_a_dismissed_study_lets_its_processes_go(desk_on: Desks, processes: str) -> None:

@@ -215,6 +215,29 @@ async def test_results_that_are_damaged_are_computed_again(desk_on: Desks, in_pr
         assert (await client.get(f"{place}/results")).json() == before
 
 
+async def test_a_damaged_row_harms_no_other_study(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    import sqlite3
+
+    async with finished(desk_on, in_process, tmp_path) as (client, place):
+        before = (await client.get(f"{place}/results")).json()
+        others = [(await submitted(client)).rpartition("/")[2] for _ in range(3)]
+        changes = ("plan = '{'", "plan = '{}'", "status = 'odd'")
+        with sqlite3.connect(tmp_path / "studies.sqlite") as database:
+            for change, identity in zip(changes, others, strict=True):
+                database.execute(f"UPDATE studies SET {change} WHERE id = ?", (identity,))
+            database.execute("DELETE FROM chunks")
+        listed = (await client.get("/v1/studies")).json()["studies"]
+        assert [entry["jobID"] for entry in listed] == [before["jobID"]]
+        for identity in others:
+            assert (await client.get(f"/v1/studies/{identity}")).status_code == 404
+        # The record of its results is gone: they are computed again, and so is another study.
+        assert (await client.get(f"{place}/results")).json()["code"] == "results-not-ready"
+        new = await submitted(client)
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        assert (await client.get(f"{place}/results")).json() == before
+        assert (await client.get(new)).json()["status"] == "successful"
+
+
 async def test_a_key_sees_its_own_studies_and_is_charged(tmp_path: Path) -> None:
     lines, secrets = [], {}
     for name, work in (("ada", "60"), ("bob", "-")):
@@ -299,6 +322,26 @@ async def test_unfinished_studies_are_limited(tmp_path: Path) -> None:
         await submitted(client)
 
 
+async def test_stored_bytes_are_limited_until_results_are_removed(
+    desk_on: Desks, in_process: str, tmp_path: Path
+) -> None:
+    async with client_at(tmp_path, max_studies_bytes=40_000) as client:
+        first = await submitted(client, UNIFORM)
+        state = (await client.get(first)).json()
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        stored = sum(file.stat().st_size for file in (tmp_path / "studies").rglob("*.npz"))
+        # Two inputs and two figures of 300 members, their labels, and what a file has beside them.
+        assert 300 * 36 < stored <= state["bytes"] < 20_000
+        await submitted(client, UNIFORM)
+        await submitted(client, GRID)
+        refused = await client.post("/v1/studies", json=UNIFORM)
+        assert (refused.status_code, refused.json()["code"]) == (503, "storage-unavailable")
+        assert "max_studies_bytes" in refused.json()["detail"]
+        assert len((await client.get("/v1/studies")).json()["studies"]) == 3
+        await client.delete(first)
+        await submitted(client, UNIFORM)
+
+
 async def test_a_plan_tells_the_price_before(tmp_path: Path) -> None:
     async with client_at(tmp_path) as client:
         state = (await client.post("/v1/studies", json=UNIFORM)).json()
@@ -316,8 +359,9 @@ async def test_a_folder_that_cannot_be_used_is_said(tmp_path: Path) -> None:
 
 
 async def test_results_that_cannot_be_stored_anywhere_are_refused_before(tmp_path: Path) -> None:
-    async with client_at(tmp_path, studies_results="nowhere://results") as client:
+    async with client_at(tmp_path, studies_results="nowhere://user:secret@results") as client:
         response = await client.post("/v1/studies", json=GRID)
+        assert "nowhere" not in response.text
         assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable")
         assert (await client.get("/v1/studies")).json()["studies"] == []
 
@@ -326,7 +370,7 @@ async def test_storage_that_cannot_be_reached_is_said(
     desk_on: Desks, in_process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def unreachable(*arguments: Any) -> Any:
-        raise OSError("no connection")
+        raise OSError("https://user:secret@store.example does not answer")
 
     async with finished(desk_on, in_process, tmp_path) as (client, place):
         monkeypatch.setattr("service.studies.chunk_files.ChunkFiles.read", unreachable)
@@ -334,6 +378,7 @@ async def test_storage_that_cannot_be_reached_is_said(
         for media in ("application/json", "application/x-npz", "image/svg+xml"):
             response = await get(client, place, media)
             assert (response.status_code, response.json()["code"]) == (503, "storage-unavailable"), media
+            assert "secret" not in response.text
         assert (await client.delete(place)).json()["code"] == "storage-unavailable"
 
 
@@ -389,7 +434,7 @@ async def test_old_studies_are_removed(desk_on: Desks, in_process: str, tmp_path
 
 def test_ids_are_long_and_random(tmp_path: Path) -> None:
     store = Store(tmp_path)
-    ids = {store.create("", b"{}", {"count": 1}, 100) for _ in range(9)}
+    ids = {store.create("", b"{}", {"count": 1, "bytes": 0}, 100, 0) for _ in range(9)}
     store.close()
     assert len(ids) == 9
     assert all(len(identity) == 24 for identity in ids)

@@ -1,0 +1,239 @@
+"""Formulas as clients and students write them: one grammar, evaluated in whatever arithmetic is needed.
+
+    sum     = product (("+" | "-") product)*
+    product = factor (("*" | "/") factor)*
+    factor  = ("+" | "-") factor | power
+    power   = atom (("^" | "**") factor)?
+    atom    = number | "pi" | name | function "(" sum ")" | "(" sum ")"
+
+Nothing is evaluated as code: names are those that the caller knows, functions those of a list, and length, nesting and
+exponents are limited.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from core.errors import InvalidParameter
+
+LONGEST_FORMULA = 300
+"""Characters."""
+DEEPEST = 20
+"""Parentheses, signs and powers inside one another."""
+LARGEST_EXPONENT = 400
+"""Of ten, in a number."""
+
+FUNCTIONS = ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "abs")
+_ALSO = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
+"""Other names of functions."""
+NAMES_OF_FUNCTIONS = (*FUNCTIONS, *_ALSO)
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
+_DIGITS = r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?"
+_TOKEN = re.compile(rf"\s*(?:({_DIGITS})|([A-Za-z]\w*)|(\*\*|[-+*/^()]))", re.ASCII)
+
+T = TypeVar("T")
+
+
+def is_name(text: object) -> bool:
+    """Return whether something can be called that in a formula: letters, digits and _, and no function."""
+    return isinstance(text, str) and _NAME.fullmatch(text) is not None and text not in (*NAMES_OF_FUNCTIONS, "pi")
+
+
+@dataclass(frozen=True)
+class Node:
+    """A number, a name, or what is done to other nodes.
+
+    Attributes
+    ----------
+    kind : str
+        ``"number"``, ``"pi"``, ``"name"``, ``"negative"``, one of ``+ - * / ^``, or one of `FUNCTIONS`.
+    text : str
+        The digits of a number, or a name.
+    inner : tuple of Node
+        What it is done to.
+    """
+
+    kind: str
+    text: str = ""
+    inner: tuple[Node, ...] = ()
+
+
+@dataclass(frozen=True)
+class Arithmetic(Generic[T]):
+    """How formulas are evaluated, beside the operators + - * of the values themselves.
+
+    Attributes
+    ----------
+    number : callable
+        Value of digits.
+    pi : callable
+        Its value, without arguments.
+    divide, power : callable
+        Of two values.
+    functions : mapping of str to callable
+        One for each of `FUNCTIONS`.
+    """
+
+    number: Callable[[str], T]
+    pi: Callable[[], T]
+    divide: Callable[[T, T], T]
+    power: Callable[[T, T], T]
+    functions: Mapping[str, Callable[[T], T]]
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A formula that can be read.
+
+    Attributes
+    ----------
+    root : Node
+    names : frozenset of str
+        That occur in it.
+    """
+
+    root: Node
+    names: frozenset[str]
+
+    @classmethod
+    def read(cls, text: str, known: Collection[str]) -> Formula:
+        """Return the formula that a text states.
+
+        Raises
+        ------
+        InvalidParameter
+            For a text that is none, is too long or too deeply nested, or uses a name that is not among `known`.
+        """
+        if len(text) > LONGEST_FORMULA:
+            raise InvalidParameter((), f"have at most {LONGEST_FORMULA} characters, not {len(text)}")
+        reader = _Reader(_tokens(text), known)
+        root = reader.sum()
+        if reader.at != len(reader.tokens):
+            raise InvalidParameter((), "be one complete formula")
+        return cls(root, frozenset(reader.names))
+
+    def value(self, names: Mapping[str, T], arithmetic: Arithmetic[T]) -> T:
+        """Return the value with some values of its names; errors are those of the arithmetic."""
+        return value_of(self.root, names, arithmetic)
+
+
+def value_of(node: Node, names: Mapping[str, T], arithmetic: Arithmetic[T]) -> T:
+    """Return the value of a part of a formula."""
+    if node.kind == "number":
+        return arithmetic.number(node.text)
+    if node.kind == "pi":
+        return arithmetic.pi()
+    if node.kind == "name":
+        return names[node.text]
+    values: list[Any] = [value_of(inner, names, arithmetic) for inner in node.inner]
+    match node.kind:
+        case "negative":
+            found = -values[0]
+        case "+":
+            found = values[0] + values[1]
+        case "-":
+            found = values[0] - values[1]
+        case "*":
+            found = values[0] * values[1]
+        case "/":
+            found = arithmetic.divide(values[0], values[1])
+        case "^":
+            found = arithmetic.power(values[0], values[1])
+        case _:
+            found = arithmetic.functions[node.kind](values[0])
+    return found  # type: ignore[no-any-return]
+
+
+def _tokens(text: str) -> list[tuple[str, str, str]]:
+    found, end, text = [], 0, text.rstrip()
+    while end < len(text):
+        token = _TOKEN.match(text, end)
+        if token is None:
+            raise InvalidParameter((), "be a formula of numbers, names, + - * / ^ ( ) and functions")
+        number, exponent, name, sign = token.groups(default="")
+        if exponent and abs(int(exponent)) > LARGEST_EXPONENT:
+            raise InvalidParameter((), f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
+        found.append((number, name, "^" if sign == "**" else sign))
+        end = token.end()
+    return found
+
+
+class _Reader:
+    """Reads tokens by recursive descent."""
+
+    def __init__(self, tokens: list[tuple[str, str, str]], known: Collection[str]) -> None:
+        self.tokens, self.known, self.at, self.depth = tokens, known, 0, 0
+        self.names: set[str] = set()
+
+    def sum(self) -> Node:
+        self._enter()
+        node = self._product()
+        while sign := self._take("+", "-"):
+            node = Node(sign, inner=(node, self._product()))
+        self.depth -= 1
+        return node
+
+    def _product(self) -> Node:
+        node = self._factor()
+        while sign := self._take("*", "/"):
+            node = Node(sign, inner=(node, self._factor()))
+        return node
+
+    def _factor(self) -> Node:
+        if sign := self._take("+", "-"):
+            self._enter()
+            node = self._factor()
+            self.depth -= 1
+            return Node("negative", inner=(node,)) if sign == "-" else node
+        node = self._atom()
+        if self._take("^"):
+            self._enter()
+            node = Node("^", inner=(node, self._factor()))
+            self.depth -= 1
+        return node
+
+    def _atom(self) -> Node:
+        number, name, _ = self.tokens[self.at] if self.at < len(self.tokens) else ("", "", "")
+        if not number and not name:
+            return self._parenthesis()
+        self.at += 1
+        if number:
+            return Node("number", number)
+        if name in self.known:
+            self.names.add(name)
+            return Node("name", name)
+        if name == "pi":
+            return Node("pi")
+        if name in NAMES_OF_FUNCTIONS:
+            return Node(_ALSO.get(name, name), inner=(self._parenthesis(),))
+        raise InvalidParameter((), f'use known names, unlike "{name[:64]}"', remedy=_names_here(self.known))
+
+    def _parenthesis(self) -> Node:
+        if not self._take("("):
+            raise InvalidParameter((), "be one complete formula")
+        node = self.sum()
+        if not self._take(")"):
+            raise InvalidParameter((), "close every parenthesis")
+        return node
+
+    def _take(self, *signs: str) -> str:
+        sign = self.tokens[self.at][2] if self.at < len(self.tokens) else ""
+        if sign and sign in signs:
+            self.at += 1
+            return sign
+        return ""
+
+    def _enter(self) -> None:
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise InvalidParameter((), f"be nested at most {DEEPEST} deep")
+
+
+def _names_here(known: Iterable[str]) -> str:
+    names = ", ".join(sorted(known))
+    functions = "functions: " + ", ".join(FUNCTIONS)
+    return f"names: {names}; {functions}" if names and len(names) < 200 else functions

@@ -1,0 +1,61 @@
+"""The state of a study as it is written, in the shape of OGC API Processes."""
+
+from __future__ import annotations
+
+import time
+from datetime import UTC, datetime
+from typing import Any
+
+from service.routes.studies import PATH
+from service.schemas import SIGNATURE
+from service.studies.store import SUCCESSFUL, Study
+
+JSON_TYPE = "application/json"
+
+
+def state_of(study: Study) -> dict[str, Any]:
+    """Return the state of a study as it is written."""
+    now, address = time.time(), f"{PATH}/{study.id}"
+    links = [("self", address, JSON_TYPE), ("events", f"{address}/events", "text/event-stream")]
+    if study.status == SUCCESSFUL:
+        links.append(("results", f"{address}/results", JSON_TYPE))
+    return {
+        "jobID": study.id,
+        "type": "process",
+        "processID": "study",
+        "status": study.status,
+        "message": study.message,
+        "created": _moment(study.created),
+        "started": _moment(study.started),
+        "finished": _moment(study.finished),
+        "updated": _moment(now),
+        "progress": 100 * study.done // study.count,
+        "path": study.plan["path"],
+        "count": study.count,
+        **{name: study.plan[name] for name in ("shape", "inputs", "figures", "together")},
+        "done": study.done,
+        "failed": study.failed,
+        "seconds": study.seconds,
+        "predicted_seconds": study.plan["seconds"],
+        "bytes": study.plan["bytes"],
+        "predicted_end": _moment(_end(study, now)),
+        "links": [{"href": href, "rel": rel, "type": kind} for rel, href, kind in links],
+    }
+
+
+def _end(study: Study, now: float) -> float | None:
+    """Return when an unfinished study should end: by its price, and then by how long its members have taken."""
+    if not study.unfinished:
+        return None
+    if not study.done or study.started is None:
+        return now + float(study.plan["seconds"])
+    return now + (now - study.started) * (study.count - study.done) / study.done
+
+
+def _moment(seconds: float | None) -> str | None:
+    return None if seconds is None else datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds")
+
+
+def signed(document: dict[str, Any]) -> dict[str, Any]:
+    """Return a document with the name and version of what has made it."""
+    return {"signature": SIGNATURE, **document}
