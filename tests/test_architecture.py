@@ -193,7 +193,9 @@ TESTED_IN |= {
     for through, names in {
         "impacts": "accumulation impulses recurring_bounces",
         "description": "coordinates inertia laws measures rolling strings",
-        "language": "reading",
+        "columns": "column_errors",
+        "language": "connections reading",
+        "passes": "pinning reduction",
         "along": "integrals",
         "complementarity": "contact_forces contact_responses contact_states",
         "contacts": (

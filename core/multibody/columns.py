@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
-from core.errors import AccuracyUnreachable, NotApplicable
 from core.multibody.attitudes import quaternions
 from core.multibody.measures import Force
 from core.multibody.momenta import StateFunction, momenta
@@ -23,8 +22,6 @@ _SMALL = 2.0**-50
 """What rounding to doubles adds to an error, relative to the largest value of a column."""
 NEAREST = 2.0**-53 * (1 + 2.0**-20)
 """The same for coordinates and rates that are the doubles nearest to pairs."""
-FINEST = 2.0**-50
-"""An accuracy below this is only met by such doubles."""
 _SOLVED = 2.0**-100
 """Share of the largest multiplier to which all of them are known, with the state."""
 _TELL = 1.02
@@ -281,90 +278,3 @@ def _at(function: StateFunction, q: Floats, v: Floats) -> Floats:
 def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
     size = np.abs(values) if values.ndim == 1 else np.linalg.norm(values, axis=1)
     return _TELL * float(np.max(errors, initial=0.0)) + rounding * float(np.max(size, initial=0.0))
-
-
-def apart(column: Column, other: Column) -> float:
-    """Return the largest distance between the samples of two columns of one quantity.
-
-    Opposite quaternions are one attitude.
-    """
-    first, second = column.values, other.values
-    if first.ndim == 1:
-        return float(np.max(np.abs(first - second), initial=0.0))
-    each = np.linalg.norm(first - second, axis=1)
-    if first.shape[1] == 4:
-        each = np.minimum(each, np.linalg.norm(first + second, axis=1))
-    return float(np.max(each, initial=0.0))
-
-
-def worst(columns: Mapping[str, Column]) -> float:
-    """Return the largest error of a column, relative to the largest value among the columns of its unit."""
-    return relative({name: column.error for name, column in columns.items()}, columns)
-
-
-def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> float:
-    """Return the largest of figures by column, relative to the largest value among the columns of its unit."""
-    scales = scales_of(columns)
-    return max((figure / scales[name] for name, figure in figures.items() if scales[name] > 0.0), default=0.0)
-
-
-def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
-    """Return what the error of each column is relative to: the largest value among the columns of its unit.
-
-    What is zero by symmetry has no scale of its own. Angles that are zero within their error are measured against one
-    radian, and their rates against the largest speed over the largest distance.
-    """
-    largest: dict[str, float] = {}
-    unknown: dict[str, float] = {}
-    for column in columns.values():
-        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest)
-        unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
-    away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
-    for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
-        if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
-            largest[unit] = max(largest.get(unit, 0.0), scale)
-    # Momenta and energies that are zero within their error have no scale; what they follow from has.
-    for unit in ("kg m/s", "kg m^2/s", "J"):
-        if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
-            largest[unit] = 0.0
-    return {name: largest[column.unit] for name, column in columns.items()}
-
-
-def require_known(columns: Mapping[str, Column]) -> None:
-    """Raise `NotApplicable` for columns that leave the range of doubles."""
-    lost = [name for name, one in columns.items() if not (np.isfinite(one.values).all() and np.isfinite(one.error))]
-    if lost:
-        raise NotApplicable(
-            f"{lost[0]} or its error leaves the range of doubles",
-            path=("times",),
-            remedy="ask for a shorter time, or choose units in which the numbers are moderate",
-        )
-
-
-def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: float | None = None) -> None:
-    """Raise for columns that leave the range of doubles, or whose errors are larger than the accuracy.
-
-    The remedy names the time `before` which they are not, where that is known.
-
-    Raises
-    ------
-    NotApplicable, AccuracyUnreachable
-    """
-    require_known(columns)
-    reached = worst(columns)
-    if reached > accuracy and reached <= 2 * FINEST:
-        raise AccuracyUnreachable(
-            accuracy,
-            reached,
-            "the samples are doubles, in which momenta, works, paths and the phases of contacts are computed",
-            remedy="ask for other outputs, or for digits: POST /v1/certified/scenes",
-        )
-    if reached > accuracy:
-        raise AccuracyUnreachable(
-            accuracy,
-            reached,
-            "the motion amplifies rounding, even that of pairs of doubles",
-            remedy="ask for a shorter time or a larger accuracy"
-            if before is None
-            else f"ask for times before {before:.6g} s, or for a larger accuracy",
-        )

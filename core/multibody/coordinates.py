@@ -14,8 +14,9 @@ from typing import Any
 from flint import arb
 
 from core.errors import InvalidParameter, Path
+from core.multibody.connections import GROUND, Place
 from core.multibody.inertia import inertia_of, symmetry_axes, three_vectors
-from core.multibody.language import GROUND, Place, Scene, SceneBody
+from core.multibody.language import Scene, SceneBody
 from core.multibody.numerals import Numerals
 from core.multibody.polynomials import (
     ONE,

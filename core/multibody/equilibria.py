@@ -16,7 +16,8 @@ from core.multibody.coordinates import Frame
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
 from core.multibody.packed import Floats, Packed, Units, packed, state, two_to, units_of
-from core.multibody.passes import Reduced, reduced
+from core.multibody.passes import reduced
+from core.multibody.reduction import Reduced
 from core.multibody.resting_places import RestingPlaces
 from core.multibody.small_systems import solutions
 from core.work import spend

@@ -17,7 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import MechanicsError, NotApplicable, Path
-from core.multibody.columns import Columns, relative
+from core.multibody.column_errors import relative
+from core.multibody.columns import Columns
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled, modelled
 from core.multibody.numerals import SHIFT, Numerals

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from core.errors import InvalidParameter, Path
+from core.multibody.connections import GROUND
 from core.multibody.coordinates import Point
-from core.multibody.language import GROUND
 from core.multibody.measures import Force, Measures, Work
 from core.multibody.polynomials import (
     ONE,

@@ -9,11 +9,9 @@ start only, never questions about its surroundings.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
-from core.multibody.centre_of_mass import centred, free_shift
-from core.multibody.dynamics import undetermined, weightless
+from core.multibody.pinning import pin, separate
 from core.multibody.polynomials import (
     ONE,
     ZERO,
@@ -31,30 +29,11 @@ from core.multibody.polynomials import (
     variables,
 )
 from core.multibody.rank import Elimination
+from core.multibody.reduction import Reduced, substitute
 from core.multibody.table import Row, Table, identity
 
 _MOST_FACTORED = 8
 """Coordinates in a measure for which a factor is looked for."""
-
-
-@dataclass
-class Reduced:
-    """A smaller table, and the coordinates of the larger one in terms of it.
-
-    Attributes
-    ----------
-    expressions : list of affine polynomials
-        Every coordinate of the original table.
-    pinned : list of str
-        Coordinates found never to move.
-    steps : list of str
-        What each pass did.
-    """
-
-    table: Table
-    expressions: list[Poly]
-    pinned: list[str] = field(default_factory=list)
-    steps: list[str] = field(default_factory=list)
 
 
 def reduced(table: Table, *, pinning: bool) -> Reduced:
@@ -67,7 +46,7 @@ def reduced(table: Table, *, pinning: bool) -> Reduced:
         changed = _linear(state) or changed
         changed = _straighten(state) or changed
         if not changed and pinning:
-            changed = _pin(state) or _separate(state)
+            changed = pin(state) or separate(state)
         if not changed:
             return state
 
@@ -197,7 +176,7 @@ def _linear(state: Reduced) -> bool:
         if value != 0:
             expression[()] = value
         expressions[i] = expression
-    _substitute(state, expressions)
+    substitute(state, expressions)
     return True
 
 
@@ -274,124 +253,3 @@ def _readiness(table: Table, i: int) -> int:
     if table.units[i] == "m" and (i, i) not in table.mass:
         return 6
     return {"s": 0, "1": 1, "1/m": 1, "rad": 2, "m": 3}[table.units[i]]
-
-
-def _substitute(state: Reduced, expressions: list[Poly | None]) -> None:
-    """Replace coordinates by expressions in those that have none."""
-    fresh = [i for i, expression in enumerate(expressions) if expression is None]
-    number = {i: k for k, i in enumerate(fresh)}
-    final: list[Poly] = []
-    for i, expression in enumerate(expressions):
-        if expression is None:
-            final.append({(number[i],): ONE})
-        else:
-            final.append({tuple(number[k] for k in key): value for key, value in expression.items()})
-    _recast(state, final, fresh)
-
-
-def _recast(state: Reduced, final: list[Poly], fresh: list[int]) -> None:
-    """Write the table in new coordinates, of which the present ones are affine functions."""
-    state.table = state.table.changed(final, fresh)
-    state.table.rows = [row for row in state.table.rows if row.rates or (row.measure is None and row.rate != 0)]
-    state.expressions = [substituted(expression, final) for expression in state.expressions]
-
-
-def _pin(state: Reduced) -> bool:
-    """Make constants of coordinates at rest whose equations vanish wherever the others are."""
-    table = state.table
-    pinned = {i for i in range(len(table.names)) if is_zero(table.v[i]) and table.units[i] != "s"}
-    coupled: dict[int, dict[tuple[int, ...], None]] = {i: {} for i in pinned}
-    for part in (table.mass, table.stiffness, table.damping, table.gyration):
-        keys: list[tuple[int, ...]] = list(part)
-        for key in keys:
-            if key[0] in coupled:
-                coupled[key[0]][key] = None
-            if part is table.mass and key[1] in coupled and key[0] != key[1]:
-                coupled[key[1]][key] = None
-    while pinned:
-        live = [
-            row
-            for row in table.rows
-            if row.drag or any(not _vanishes(table, poly, pinned) for j, poly in row.rates.items() if j not in pinned)
-        ]
-        leave = {i for i in pinned if not _stays(table, i, pinned, coupled[i], live)}
-        if not leave:
-            break
-        pinned -= leave
-    if not pinned:
-        return False
-    lost = set(undetermined(table, pinned, [row.line(table.q) for row in table.rows])) - _moved_with_mass(table)
-    if lost:
-        raise weightless(table, lost, ())
-    state.pinned.extend(table.names[i] for i in sorted(pinned))
-    state.steps.append(f"nothing ever moves {', '.join(table.names[i] for i in sorted(pinned))}")
-    expressions: list[Poly | None] = [None] * len(table.names)
-    for i in pinned:
-        expressions[i] = constant(table.q[i])
-    _substitute(state, expressions)
-    return True
-
-
-def _separate(state: Reduced) -> bool:
-    """Split off a coordinate of the centre of mass of what nothing ties to a place: it falls freely by itself."""
-    shift = free_shift(state.table)
-    if shift is None:
-        return False
-    expressions, start, name = centred(state.table, shift)
-    pivot = min(shift)
-    old = state.table
-    _recast(state, expressions, list(range(len(old.names))))
-    table = state.table
-    for j in shift:
-        table.q[j], table.v[j] = (x[j] - shift[j] / shift[pivot] * x[pivot] for x in (old.q, old.v))
-        table.names[j] = f"{old.names[j]} - {old.names[pivot]}"
-    (table.q[pivot], table.v[pivot]), table.names[pivot] = start, name
-    state.steps.append(f"{name} moves by itself")
-    return True
-
-
-def _moved_with_mass(table: Table) -> set[int]:
-    """Return coordinates that have mass, or are connected to some: a weightless pulley stays where strings pull it."""
-    found = {i for key in table.mass for i in key}
-    waiting = [set(row.rates) for row in table.rows]
-    while touching := [row for row in waiting if row & found]:
-        found.update(*touching)
-        waiting = [row for row in waiting if not row & found]
-    return found
-
-
-def _vanishes(table: Table, poly: Poly, pinned: set[int]) -> bool:
-    """Return whether an affine polynomial is zero whatever the coordinates that are not pinned."""
-    total: Ball = ZERO
-    for key, value in poly.items():
-        if not key:
-            total = total + value
-        elif key[0] in pinned:
-            total = total + value * table.q[key[0]]
-        else:
-            return False
-    return is_zero(total)
-
-
-def _stays(table: Table, i: int, pinned: set[int], coupled: Iterable[tuple[int, ...]], live: list[Row]) -> bool:
-    """Return whether the equation of a pinned coordinate vanishes, the multipliers of idle rows being zero."""
-    for row in live:
-        for line in (row.rates, row.drag):
-            if i in line and not _vanishes(table, line[i], pinned):
-                return False
-    push: Ball = entry(table.load, i)
-    carried: dict[int, Ball] = {}
-    for key in coupled:
-        if len(key) == 3:
-            _, j, k = key
-            if k not in pinned:
-                if j not in pinned:
-                    return False
-                carried[k] = entry(carried, k) + table.gyration[(i, j, k)] * table.q[j]
-            continue
-        other = key[1] if key[0] == i else key[0]
-        if other not in pinned:
-            return False
-        if key[0] == i and key in table.stiffness:
-            push = push - table.stiffness[key] * table.q[other]
-    return is_zero(push) and all(is_zero(value) for value in carried.values())

@@ -19,7 +19,7 @@ from core.multibody.answer import (
     SceneModel,
     SceneProblem,
 )
-from core.multibody.columns import relative, require_reached, scales_of, worst
+from core.multibody.column_errors import relative, require_reached, scales_of, worst
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.inherited_in_phases import inherited_in_phases
 from core.multibody.language import Scene

@@ -7,7 +7,8 @@ from dataclasses import MISSING, fields
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.language import KINDS, MOST_BODIES, MOST_CONNECTIONS, NOT_YET, Scene, SceneBody
+from core.multibody.connections import KINDS, NOT_YET
+from core.multibody.language import MOST_BODIES, MOST_CONNECTIONS, Scene, SceneBody
 from core.multibody.numerals import member
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from core.multibody.description import Described
 from core.multibody.packed import Floats, Units, two_to
-from core.multibody.passes import Reduced
 from core.multibody.polynomials import Poly
+from core.multibody.reduction import Reduced
 from core.multibody.table import Table
 
 Terms = list[tuple[float, tuple[int, ...]]]

@@ -10,11 +10,8 @@ import numpy as np
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError, NotApplicable, inside_field
 from core.multibody.along import Along, watched_times
 from core.multibody.answer import Occurrence, SceneEvent, SceneExtremes
-from core.multibody.columns import (
-    COLUMNS_OF_STATES,
+from core.multibody.column_errors import (
     FINEST,
-    NEAREST,
-    Columns,
     apart,
     relative,
     require_known,
@@ -22,6 +19,7 @@ from core.multibody.columns import (
     scales_of,
     worst,
 )
+from core.multibody.columns import COLUMNS_OF_STATES, NEAREST, Columns
 from core.multibody.events import first_event
 from core.multibody.generic_equation import SceneSystem
 from core.multibody.inherited import changes, horizon, looks

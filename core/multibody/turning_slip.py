@@ -24,9 +24,9 @@ from core.multibody.measures import COMPONENTS, Force, Unilateral
 from core.multibody.modelling import Modelled, Piece
 from core.multibody.motion import States
 from core.multibody.packed import Floats, exponent, pair
-from core.multibody.passes import Reduced
 from core.multibody.polynomials import ZERO, Ball, is_zero
 from core.multibody.rank import independent
+from core.multibody.reduction import Reduced
 from core.multibody.table import Row, Table, identity
 from core.multibody.tracks import TOLD
 from core.multibody.whole import Whole

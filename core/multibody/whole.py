@@ -15,9 +15,9 @@ from core.multibody.measures import Force, Measures
 from core.multibody.motion import Glanced, Motion
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats, Packed, Units, packed, pair, two_to, units_of
-from core.multibody.passes import Reduced
 from core.multibody.polynomials import Ball, Poly
 from core.multibody.rank import independent
+from core.multibody.reduction import Reduced
 from core.multibody.series_pairs import multipliers_pairs
 
 

@@ -17,7 +17,7 @@ from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
-from core.multibody import language
+from core.multibody import connections, language
 from core.multibody.numerals import member
 from core.multibody.occurrences import MOST_FOUND, ExtremesOf, When
 from core.multibody.reading import scene_from
@@ -87,7 +87,7 @@ def _connection_form() -> type[Request]:
     """Return the form with the fields of all kinds; core checks those of each."""
     kinds: dict[str, list[str]] = {}
     hints: dict[str, Any] = {}
-    for kind, cls in language.KINDS.items():
+    for kind, cls in connections.KINDS.items():
         for name, hint in get_type_hints(cls).items():
             if name != "kind":
                 kinds.setdefault(name, []).append(kind)
@@ -96,9 +96,9 @@ def _connection_form() -> type[Request]:
         name: (_by_core(hint), Field(default=None, description=f"For {', '.join(kinds[name])}."))
         for name, hint in hints.items()
     }
-    meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in language.KINDS.items())
-    own["kind"] = (Literal.__getitem__(tuple(language.KINDS)), Field(description=meaning))
-    docs = language.Connection.__doc__
+    meaning = " ".join(f"{kind}: {' '.join((cls.__doc__ or '').split())}" for kind, cls in connections.KINDS.items())
+    own["kind"] = (Literal.__getitem__(tuple(connections.KINDS)), Field(description=meaning))
+    docs = connections.Connection.__doc__
     form: type[Request] = create_model("SceneConnection", __base__=Request, __doc__=docs, **own)
     return form
 

@@ -177,7 +177,8 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         # What is searched or summed up along the motion looks at it as often as thousands of samples do.
         samples = sample_count(question.times, budget) + FOLLOWED * len(_along(question))
         # The motion of a single body most often repeats, or has a closed form: then no time is long.
-        coupled, seconds = max(0.0, min(bodies - 1.0, connections)), min(LONGEST, extent(question.times))
+        coupled = 0.0 if _in_a_row(question) else max(0.0, min(bodies - 1.0, connections))
+        seconds = min(LONGEST, extent(question.times))
         # Where doubles lose a motion to rounding, pairs of doubles follow it.
         lost = log(question.accuracy) < AMPLIFIED * seconds - 53.0 * log(2.0) if coupled else False
         found |= {
@@ -204,6 +205,18 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     if "equilibria" in (question.outputs or ()):
         found |= {"search": 1.0, "searches": bodies, "searches of pairs": bodies**2}
     return found
+
+
+def _in_a_row(question: DescribedSceneRequest) -> bool:
+    """Return whether springs and dampers alone connect bodies on one line: modes, for which no time is long."""
+    connections = [one for one in question.connections if isinstance(one, Mapping)]
+    vectors = [question.gravity]
+    for body in question.bodies.values():
+        vectors += [body.at, body.velocity]
+    for one in connections:
+        vectors += [end for end in (one.get("a"), one.get("b")) if not isinstance(end, str)]
+    along = all(one is None or (isinstance(one, (list, tuple)) and not any(one[1:])) for one in vectors)
+    return along and all(one.get("kind") in ("spring", "damper") for one in connections)
 
 
 def _along(question: DescribedSceneRequest) -> list[Any]:

@@ -428,6 +428,21 @@ class TestPrice:
         assert self.price(PENDULUM | often) > self.price(PENDULUM | few)
         assert self.price(PENDULUM | {"outputs": ["equilibria"]}) > 5 * self.price(PENDULUM)
 
+    def test_a_row_on_springs_is_priced_by_its_modes(self) -> None:
+        def row(count: int, slope: int = 0, *more: dict[str, Any]) -> dict[str, Any]:
+            bodies = {f"p{i}": {"mass": 1, "at": [i + 1, slope * i]} for i in range(count)}
+            springs = [
+                {"kind": "spring", "a": name, "b": end, "stiffness": 1, "rest_length": 1}
+                for name, end in zip(bodies, [[0, 0], *bodies], strict=False)
+            ]
+            return {"bodies": bodies, "connections": [*springs, *more]}
+
+        damper = {"kind": "damper", "a": "p0", "b": [0, 0], "coefficient": 1}
+        late = {"times": [1e6]}
+        assert self.price(row(20) | late) == self.price(row(20) | {"times": [1]})
+        assert self.price(row(20, 1) | late) > 10 * self.price(row(20) | late)
+        assert self.price(row(100, 0, damper)) > 5 * self.price(row(100)) > 100 * self.price(row(10))
+
     def test_no_time_is_priced_beyond_the_steps_that_core_takes(self) -> None:
         apart = {"bodies": {"p": POINT, "q": POINT}, "connections": [ROD]}
         assert self.price(apart | {"times": [1e9]}) == self.price(apart | {"times": [1e300]})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.multibody.columns import worst
+from core.multibody.column_errors import worst
 from core.multibody.solve import solve_scene
 from core.systems.trajectory import Column
 from tests.core.multibody.worked_examples import column, read

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from core.bodies import Cuboid
-from core.multibody.language import Pin, Scene, SceneBody
+from core.multibody.connections import Pin
+from core.multibody.language import Scene, SceneBody
 from core.multibody.solve import solve_scene
 from tests.core.multibody.oracles import integrated
 from tests.core.multibody.worked_examples import column, force, linear, points, read

@@ -10,7 +10,7 @@ import pytest
 
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.multibody.answer import SceneAnswer
-from core.multibody.columns import worst
+from core.multibody.column_errors import worst
 from core.multibody.solve import solve_scene
 from core.systems.budget import Budget
 from core.systems.methods import (

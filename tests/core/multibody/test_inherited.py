@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from core.multibody.columns import apart
+from core.multibody.column_errors import apart
 from core.multibody.solve import solve_scene
 from core.systems.trajectory import Accuracy
 from tests.core.multibody.random_scenes import any_scene

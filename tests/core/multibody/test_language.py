@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from core.errors import InvalidParameter
-from core.multibody.language import KINDS, Rod, Scene, SceneBody
+from core.multibody.connections import KINDS, Rod
+from core.multibody.language import Scene, SceneBody
 from core.multibody.reading import scene_from
 from core.multibody.solve import solve_scene
 
