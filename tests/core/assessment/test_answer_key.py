@@ -57,6 +57,7 @@ def same(submission: Any, grader: Grader, key: AnswerKey, *, reveal: bool) -> An
         ({"/lengths": {"value": [1.0, 2.001], "unit": "s"}}, 1.0),
         ({"/lengths/0": {"value": 1.0, "unit": "s"}, "/lengths/1": {"value": 3.0, "unit": "s"}}, 0.5),
         ({"/nothing": {"value": 1.0}}, None),
+        ({"/force": {"value": 1.0}}, None),
         ({"/period": {"formula": "2*"}}, None),
         ([], None),
     ],
