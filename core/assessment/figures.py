@@ -82,7 +82,7 @@ def single_values(answer: Any, path: Path) -> list[str]:
         found = vars(found)
     if not isinstance(found, Mapping):
         return []
-    return [str(name) for name, entry in found.items() if isinstance(entry, _ONE_VALUE)]
+    return [str(name) for name, entry in found.items() if isinstance(entry, _ONE_VALUE) and str(name)[:1] != "_"]
 
 
 def is_null(answer: Any, path: Path) -> bool:

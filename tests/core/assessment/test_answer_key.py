@@ -80,6 +80,14 @@ def test_whatever_is_submitted(value: float, pointer: str, unit: str | None) -> 
     same(claim, HIDDEN, HIDDEN_KEY, reveal=False)
 
 
+def test_a_key_names_the_figure_in_an_object() -> None:
+    for pointer, remedy in (("/force", "/force/value"), ("/lengths", None), ("/nothing", None)):
+        found = same({pointer: {"formula": "1"}}, ASKED, KEY, reveal=True)
+        (fault,) = found["format_errors"]
+        assert ("remedy" in fault) == (remedy is not None)
+        assert fault.get("remedy", "").endswith(remedy or "")
+
+
 def test_references_are_written_with_their_bounds() -> None:
     grader, uncertain = graders(uncertainty=1e-3)
     key = uncertain.grader()
