@@ -12,7 +12,7 @@ import os
 import signal
 import socket
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from multiprocessing import forkserver
 
 from pydantic import ValidationError
@@ -22,7 +22,13 @@ from service.execution import PRELOAD
 from service.http.keys import new_key
 from service.observability.logs import LOG, configure
 from service.observability.shared_counts import sharing
+from service.requests.suggestions import nearest
 from service.settings import Settings
+
+PREFIX = Settings.model_config["env_prefix"]
+
+ALIKE_SETTINGS = 0.9
+"""Share of its letters, the prefix among them, that a variable has in common with a setting that it misspells."""
 
 
 def _written(default: object) -> object:
@@ -65,14 +71,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         settings = Settings(**given)
     except ValidationError as error:
-        faults = [f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}" for fault in error.errors()]
+        faults = [
+            f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}, given {str(fault['input'])!r}"
+            for fault in error.errors()
+        ]
         sys.exit("\n".join(faults))
+    unknown = unknown_settings(os.environ)
+    misspelt = [f"{name} is no setting; did you mean {near}?" for name, near in unknown.items() if near]
+    if misspelt:
+        sys.exit("\n".join(misspelt))
     if options.openapi:
         from service.app import app
 
         sys.stdout.buffer.write(app.openapi_text() + b"\n")
         return
     configure(settings.log_level)
+    for name in unknown:
+        LOG.warning("%s is no setting and has no effect; python -m service --help lists them all", name)
     host, port = settings.host, free_port(settings.host, settings.port)
     # Server processes read their settings from the environment that they inherit.
     os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
@@ -107,6 +122,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
             timeout_graceful_shutdown=settings.shutdown_seconds,
             timeout_keep_alive=settings.keep_alive_seconds,
         )
+
+
+def unknown_settings(environment: Mapping[str, str]) -> dict[str, str | None]:
+    """Return the variables that look like settings and are none, each with the setting that was probably meant."""
+    known = [f"{PREFIX}{name.upper()}" for name in Settings.model_fields]
+    given = [name for name in environment if name.startswith(PREFIX) and name not in known]
+    return {name: nearest(name, known, ALIKE_SETTINGS) for name in given}
 
 
 def free_port(host: str, port: int) -> int:

@@ -63,6 +63,7 @@ class Service(FastAPI):
         super().__init__(**ABOUT, lifespan=self.lifespan)
         self.settings = settings
         self.warm, self.address = False, ""
+        self._starting = False
         self.metrics = Metrics()
         questions: tuple[PostRoute, ...] = resolve_name(table)()
         self.compute = Compute(settings, self.metrics, table)
@@ -86,6 +87,7 @@ class Service(FastAPI):
             settings=settings,
             keys=self._keys,
             submit=studies.submit,
+            starting=lambda: self._starting,
         )
         self._handlers, self._bodies = dispatcher.handlers, dispatcher.bodies
         serve_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
@@ -132,6 +134,7 @@ class Service(FastAPI):
         if not LOG.hasHandlers():
             # Servers configure their own logging, not that of an application.
             configure(self.settings.log_level)
+        self._starting = True
         kept_up = [self._warm(), self._publish(), self._bodies.watch(), self._supervisor.watch()]
         if self._keys is not None:
             kept_up.append(self._keys.follow())
@@ -157,7 +160,7 @@ class Service(FastAPI):
         # What has been built until now stays for good: the collector of garbage need not walk through it ever again.
         gc.collect()
         gc.freeze()
-        self.warm = True
+        self.warm, self._starting = True, False
         at = f" at {self.address}" if self.address else ""
         LOG.info("ready%s", at, extra={"compute_processes": self.compute.size})
 

@@ -8,12 +8,11 @@ from flint import arb, arb_mat
 
 from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.coordinates import Given
+from core.multibody.measures import CLOSE
 from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.rank import Elimination, Line, independent
 from core.multibody.table import Row, Table
 
-CLOSE = 1e-6
-"""Relative mismatch of positions up to which rounded figures are taken to be meant as the connections say."""
 CLOSE_RATE = 1e-9
 _ROUNDS = 40
 

@@ -15,7 +15,7 @@ from core.multibody.measures import Limit
 from core.multibody.modes import Modes
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats
-from core.multibody.polynomials import substituted
+from core.multibody.polynomials import is_zero, substituted
 from core.multibody.uniform import Uniform, first_zero
 from core.multibody.whole import Whole, values
 
@@ -72,6 +72,7 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEven
         grid = _grid(whole, reach)
         curves = _curves(whole, watched, grid)[0]
         _require_known(watched, curves[:, :1])
+        _require_weight(whole, watched, curves)
         events = (_first_loss(whole, limit, grid, curve) for limit, curve in zip(watched, curves, strict=True))
         lost = [event for event in events if event is not None]
         if lost:
@@ -90,6 +91,18 @@ def _require_known(watched: Sequence[Limit], curves: Floats) -> None:
                 f"{what} of {limit.name} leaves the range of doubles, and whether it stays positive is not known",
                 path=("times",),
                 remedy="ask for a shorter time, or choose units in which the numbers are moderate",
+            )
+
+
+def _require_weight(whole: Whole, watched: Sequence[Limit], curves: Floats) -> None:
+    """Raise for forces that are zero in doubles where a mass is, too: whether they stay positive is not known."""
+    weightless = any(not is_zero(x) and float(x) == 0.0 for x in whole.measures.table.mass.values())
+    for limit, curve in zip(watched, curves, strict=True):
+        if weightless and limit.force is not None and not curve.any():
+            raise NotApplicable(
+                f"a force of {limit.name} leaves the range of doubles, and whether it stays positive is not known",
+                path=("bodies",),
+                remedy="choose units in which the masses are moderate",
             )
 
 

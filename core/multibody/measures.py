@@ -34,6 +34,9 @@ from core.multibody.table import Row
 
 COMPONENTS = ("x", "y", "z")
 
+CLOSE = 1e-6
+"""Relative mismatch of positions up to which rounded figures are taken to be meant as the connections say."""
+
 
 @dataclass(frozen=True)
 class Force:
@@ -224,6 +227,12 @@ class Measures:
             square = span * span
         if not square > 0:
             raise InvalidParameter((*path, "length"), "be greater than 0 m", remedy="hold the places by a pin")
+        if not abs(now - square) < CLOSE * (now + square):
+            raise InvalidParameter(
+                (*path, "length"),
+                f"be {float(now.sqrt()):.10g} m, as the places are apart at the start",
+                remedy="leave it out, or move the bodies",
+            )
         half = ONE / 2
         row = self.hold(name, combined((half, dot(d, d)), (-half, constant(square))))
         self.force(f"{name}.force", [(row, constant(-span))])

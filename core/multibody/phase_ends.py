@@ -118,7 +118,7 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
 
 def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
     tables, wholes = [one.table for one in phase.tables], [model.whole for model in phase.models]
-    hit = Sampled(tables[0], wholes[0], watched).first(left)
+    hit = Sampled(tables[0], wholes[0], watched, tables[-1]).first(left)
     if hit is None:
         return []
     time, watch = hit

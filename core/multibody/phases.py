@@ -15,7 +15,7 @@ from dataclasses import replace
 from flint import arb
 
 from core.balls import precision
-from core.errors import AccuracyUnreachable
+from core.errors import AccuracyUnreachable, InvalidParameter
 from core.multibody.answer import SceneEvent
 from core.multibody.complementarity import LOOKED, Decided, decided
 from core.multibody.contact_responses import gap_rate, slip_rate
@@ -99,6 +99,16 @@ class _Run:
 
     def go(self) -> None:
         """Go through the phases until the end, or until mechanics does not decide."""
+        try:
+            self._follow()
+        except InvalidParameter:
+            if self.tracks.exact or not self.motion.phases:
+                raise
+            # The description is not at fault: what is known of the state does not tell any more what holds it.
+            explanation = "the error of the motion has grown as large as the motion, and what holds it cannot be told"
+            self._stop(Problem("lost-event", explanation, (), decided_by="an answer up to an earlier time"))
+
+    def _follow(self) -> None:
         still, last = 0, -1.0
         while True:
             if not self._collide():

@@ -13,9 +13,10 @@ from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats, two_to
 from core.multibody.periods import Periodic
 from core.multibody.polynomial_roots import first_of_quadratic
-from core.multibody.polynomials import is_zero
+from core.multibody.polynomials import evaluated, is_zero
 from core.multibody.table import Rates, Table
 from core.multibody.taylor_crossings import ORDER
+from core.multibody.tracks import TOLD
 from core.multibody.watches import Watch
 from core.multibody.whole import Whole, values
 
@@ -52,10 +53,12 @@ class Sampled:
     whole : Whole
         Its motion.
     watched : sequence of Watch
+    other : Table, optional
+        Of another computation of the same phase: what they differ by at the start is not known.
     """
 
-    def __init__(self, table: Table, whole: Whole, watched: Sequence[Watch]) -> None:
-        self.table, self.whole, self.watched = table, whole, list(watched)
+    def __init__(self, table: Table, whole: Whole, watched: Sequence[Watch], other: Table | None = None) -> None:
+        self.table, self.whole, self.watched, self.other = table, whole, list(watched), other
 
     def grid(self, end: float) -> tuple[Floats, float | None]:
         """Return times up to `end` between which nothing turns twice, and the time of a singular place."""
@@ -140,7 +143,7 @@ class Sampled:
     def _near_start(self) -> tuple[float, Watch] | None:
         """Return the first root that comes so soon that the start of its Taylor series tells it."""
         motion = expansion(self.table, ORDER)
-        noise = self.curves(np.zeros(1))[1][:, 0] * KNOWN
+        noise = np.maximum(self.curves(np.zeros(1))[1][:, 0] * KNOWN, [self._apart(watch) for watch in self.watched])
         best: tuple[float, Watch] | None = None
         for watch, unknown in zip(self.watched, noise, strict=True):
             series = [0.0 if is_zero(x) else float(x.mid()) for x in watch.series(motion)]
@@ -159,6 +162,13 @@ class Sampled:
             if best is None or guess < best[0]:
                 best = guess, watch
         return best
+
+    def _apart(self, watch: Watch) -> float:
+        """Return by how much a gap at the start is wrong, as two computations say."""
+        if self.other is None or watch.what != "gap":
+            return 0.0
+        gap = watch.one.gap
+        return TOLD * abs(float(evaluated(gap, self.table.q) - evaluated(gap, self.other.q)))
 
     def _look(self, times: Floats) -> tuple[float, Watch] | None:
         """Return about when and what first becomes negative between times."""

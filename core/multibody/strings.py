@@ -15,7 +15,7 @@ from typing import Any
 from core.errors import InvalidParameter, Path, SlackAtStart
 from core.multibody.contacts import bounciness
 from core.multibody.coordinates import Point, Rate
-from core.multibody.measures import Limit, Measures, Unilateral
+from core.multibody.measures import CLOSE, Limit, Measures, Unilateral
 from core.multibody.numerals import member
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, coordinate, difference, dot, evaluated
 from core.multibody.rolling import rate_of, sum_of_rates
@@ -156,6 +156,7 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
         held = evaluated(total, measures.table.q) if length is None else _length(measures, length, path)
         longer = combined((ONE, total), (-held, constant(ONE)))
         if measures.one_sided:
+            _require_long_enough(evaluated(total, measures.table.q), held, path)
             measures.unilateral.append(_at_most(measures, part, longer, connection, path))
             return
         _require_taut(evaluated(total, measures.table.q), held, path)
@@ -186,6 +187,13 @@ def _require_taut(way: Ball, length: Ball, path: Path) -> None:
         )
 
 
+def _require_long_enough(way: Ball, length: Ball, path: Path) -> None:
+    if way - length > CLOSE * length:
+        raise InvalidParameter(
+            (*path, "length"), f"be at least {float(way):.10g} m, the way it goes at the start", remedy="leave it out"
+        )
+
+
 def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, path: Path) -> None:
     """Hold two points at a distance, as long as that takes a pull."""
     length = connection.length
@@ -194,6 +202,8 @@ def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, pa
         square = measures.squared(d) if length is None else _length(measures, length, path) ** 2
         if not square > 0:
             raise InvalidParameter((*path, "through"), "pass places that are apart")
+        way = measures.squared(d)
+        _require_long_enough(way.sqrt() if way > 0 else ZERO, square.sqrt(), path)
         half = 1 / (2 * square.sqrt())
         longer = combined((half, dot(d, d)), (-half * square, constant(ONE)))
         measures.unilateral.append(_at_most(measures, part, longer, connection, path))

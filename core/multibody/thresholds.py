@@ -22,6 +22,7 @@ from flint import arb
 
 from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path
 from core.multibody.answer import RestEnd, RestRange
+from core.multibody.chains import has_chain
 from core.multibody.complementarity import decided, stays
 from core.multibody.contact_start import assemble_contacts
 from core.multibody.contact_states import Problem
@@ -113,6 +114,12 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
         Where other places touch with another value.
     """
     path, least, most = _checked(question, where)
+    if has_chain(scene):
+        raise NotApplicable(
+            "thresholds of rest are not answered beside a chain",
+            path=where,
+            remedy="ask for accelerations with other values of the number: at rest they are zero",
+        )
     numerals = Numerals.of(scene.let, scene.numbers)
     base = described(scene, numerals, one_sided=True)
     if path not in numerals.every:

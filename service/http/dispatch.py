@@ -39,6 +39,8 @@ Submit = Callable[[RequestContext, bytes, bytes], Awaitable[None]]
 class Dispatcher:
     """Serves the routes: `answering` answers questions in this process, `compute` in others, `submit` stores studies.
 
+    While the service is `starting`, questions are refused: answered in this process, they would compile kernels in it.
+
     Attributes
     ----------
     handlers : mapping
@@ -55,8 +57,9 @@ class Dispatcher:
         settings: Settings,
         keys: Keys | None = None,
         submit: Submit | None = None,
+        starting: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._submit = submit
+        self._submit, self._starting = submit, starting
         self._compute, self._metrics, self._settings, self._keys = compute, metrics, settings, keys
         self._executor = Executor(answering, compute, metrics, settings)
         self._cache = ResponseCache(settings.cached_answers)
@@ -74,6 +77,9 @@ class Dispatcher:
     async def _serve(self, route: Route, scope: Scope, receive: Receive, send: Send) -> None:
         context = RequestContext(self._records, route.operation_id, scope, receive, send)
         try:
+            if self._starting() and isinstance(route, PostRoute | StudyRoute):
+                detail = "kernels are being compiled; GET /readyz answers 200 when that is done"
+                raise Refusal("not-ready", detail, retry_after=2.0)
             if isinstance(route, StudyRoute):
                 await self._study(route, context)
             elif isinstance(route, PostRoute):

@@ -5,9 +5,13 @@ from __future__ import annotations
 import re
 import secrets
 from itertools import count
+from logging import DEBUG, INFO
 
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
+
+PROBES = ("get_health", "get_readiness")
+"""Operations that supervisors send all the time, failing as long as the service starts."""
 
 _PLAIN_ID = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 
@@ -32,7 +36,8 @@ class Records:
         """Count a request, and log it if such requests are."""
         self._observe((operation, status), seconds)
         if status >= self._log_from:
-            LOG.info(
+            LOG.log(
+                DEBUG if operation in PROBES else INFO,
                 "request",
                 extra={
                     "request_id": identity.decode(),

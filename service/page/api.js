@@ -1,5 +1,7 @@
 // Questions to the service, one at a time for each purpose: a newer question cancels the older one.
 
+import { keyFromReader, storedKey } from "./key.js";
+
 /** A refusal of the service: a problem document (RFC 9457). */
 export class Refusal extends Error {
   constructor(problem) {
@@ -9,10 +11,16 @@ export class Refusal extends Error {
   }
 }
 
-/** Fetch; while the service is starting, wait until it is ready. */
-async function fetched(path, options) {
+/** Fetch with the reader's key; while there is none, or a wrong one, wait for it, and while the service starts, for that. */
+export async function fetched(path, options = {}) {
   for (;;) {
-    const response = await fetch(path, options);
+    const key = storedKey();
+    const headers = key ? { ...options.headers, authorization: `Bearer ${key}` } : options.headers;
+    const response = await fetch(path, { ...options, headers });
+    if (response.status === 401) {
+      await keyFromReader(key);
+      continue;
+    }
     if (response.status !== 503 || (await fetch("/readyz")).ok) return response;
     await new Promise((later) => setTimeout(later, 1000));
   }

@@ -1,10 +1,10 @@
 // Studies: their progress as it comes, and maps, histograms and links of those that are finished.
-import { ask, get } from "./api.js";
+import { ask, fetched, get } from "./api.js";
 import { $, color, make, onTheme, written } from "./dom.js";
 
 const STUDIES = "/v1/studies";
 const LARGEST_MAP = 250000;
-const TYPES = [["JSON", ""], ["npz", "application/x-npz"], ["Parquet", "application/vnd.apache.parquet"], ["Zarr", "application/vnd.zarr+zip"]];
+const TYPES = [["JSON", "application/json"], ["npz", "application/x-npz"], ["Parquet", "application/vnd.apache.parquet"], ["Zarr", "application/vnd.zarr+zip"]];
 const START = {
   question: { path: "/v1/rotation/precession", request: { body: { kind: "principal-moments", moments: [0.5, 0.8, 1.0] }, angular_velocity: [0.01, 1.0, 0.01] } },
   vary: [{ pointer: "/body/moments/0", min: 0.35, max: 0.65, count: 80 }, { pointer: "/body/moments/1", min: 0.68, max: 0.98, count: 80 }],
@@ -13,11 +13,17 @@ const START = {
 const rows = new Map();
 let shown = null;
 
+/** What tells a study from others of the same question: what is varied, how often, and when it was submitted. */
+function titleOf(state) {
+  const axes = state.inputs.map((axis) => axis.pointer).join(", ");
+  return `${state.path}, ${axes}, ${new Date(state.created).toLocaleString([], { dateStyle: "short", timeStyle: "medium" })}`;
+}
+
 /** Show the state of a study in its row, which is made where it is missing. */
 function show(state) {
   let row = rows.get(state.jobID);
   if (!row) {
-    const open = make("button", { type: "button", textContent: state.path });
+    const open = make("button", { type: "button", textContent: titleOf(state) });
     const drop = make("button", { type: "button", textContent: "Remove" });
     row = { open, drop, bar: make("progress", { max: state.count }), text: make("span") };
     row.item = make("li", {}, open, " ", row.bar, " ", row.text, " ", drop);
@@ -36,20 +42,19 @@ function show(state) {
   $("none").hidden = rows.size > 0;
 }
 
-function follow(state) {
+/** Show a study until it is finished or removed; its events would need a key that an EventSource cannot send. */
+async function follow(state) {
   show(state);
-  if (!state.predicted_end) return;
-  const events = new EventSource(`${STUDIES}/${state.jobID}/events`);
-  for (const name of ["accepted", "running", "successful", "failed", "dismissed"])
-    events.addEventListener(name, (event) => {
-      const now = JSON.parse(event.data);
-      if (rows.has(now.jobID)) show(now);
-      if (!now.predicted_end) events.close();
-    });
+  while (state.predicted_end) {
+    await new Promise((later) => setTimeout(later, 500));
+    if (!rows.get(state.jobID)?.state.predicted_end) return;
+    state = await get(`${STUDIES}/${state.jobID}`);
+    if (rows.has(state.jobID)) show(state);
+  }
 }
 
 async function remove(state) {
-  const response = await fetch(`${STUDIES}/${state.jobID}`, { method: "DELETE" });
+  const response = await fetched(`${STUDIES}/${state.jobID}`, { method: "DELETE" });
   if (state.predicted_end && response.ok) return show(await response.json());
   rows.get(state.jobID).item.remove();
   rows.delete(state.jobID);
@@ -73,10 +78,9 @@ async function results(state) {
 }
 
 function link(name, type, path, state) {
-  if (!type) return make("a", { href: path, textContent: name });
   const button = make("button", { type: "button", textContent: name });
   button.addEventListener("click", async () => {
-    const response = await fetch(path, { headers: { accept: type } });
+    const response = await fetched(path, { headers: { accept: type } });
     if (!response.ok) return tell(new Error((await response.json()).detail));
     const place = URL.createObjectURL(await response.blob());
     make("a", { href: place, download: `${state.jobID}.${name.toLowerCase()}${name === "Zarr" ? ".zip" : ""}` }).click();
@@ -158,6 +162,6 @@ $("price").addEventListener("click", () => send(async (text) => {
   if (!answer.answerable) throw Object.assign(new Error(), { errors: answer.errors });
   $("told").textContent = `${written(answer.cost.milliseconds / 1000, 3)} s of one processor`;
 }));
-$("start").addEventListener("click", () => send(async (text) => follow((await ask(STUDIES, text)).answer)));
+$("start").addEventListener("click", () => send(async (text) => { follow((await ask(STUDIES, text)).answer).catch(tell); }));
 onTheme(() => shown && draw());
-get(STUDIES).then(({ studies }) => studies.forEach(follow), tell).finally(() => { document.body.dataset.ready = "yes"; });
+get(STUDIES).then(({ studies }) => studies.forEach((state) => follow(state).catch(tell)), tell).finally(() => { document.body.dataset.ready = "yes"; });

@@ -4,7 +4,7 @@ import socket
 import pytest
 from pydantic import ValidationError
 
-from service.__main__ import free_port, main, parser
+from service.__main__ import free_port, main, parser, unknown_settings
 from service.settings import LONGEST, Settings
 
 
@@ -56,6 +56,19 @@ def test_paths_lead_somewhere_or_stop_the_start(
     with pytest.raises(SystemExit) as stop:
         main([])
     assert str(stop.value.code).startswith(f"POLHODE_{name}: ")
+    assert str(stop.value.code).endswith(f"given '{value}'")
+
+
+def test_misspelt_settings_stop_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("POLHODE_MAX_SAMPLE", "17")
+    with pytest.raises(SystemExit) as stop:
+        main([])
+    assert stop.value.code == "POLHODE_MAX_SAMPLE is no setting; did you mean POLHODE_MAX_SAMPLES?"
+
+
+def test_other_variables_with_the_prefix_do_not() -> None:
+    given = ("POLHODE_PORT", "POLHODE_URL", "POLHODE_COUNTS", "POLHODE_ROWS", "POLHODE_FUZZ", "PATH")
+    assert unknown_settings(dict.fromkeys(given, "")) == dict.fromkeys(given[1:5])
 
 
 def test_defaults() -> None:

@@ -273,9 +273,9 @@ KINDS: tuple[Callable[[np.random.Generator], Scene], ...] = (
 )
 
 
-def any_scene(seed: int) -> Scene:
+def any_scene(seed: int, kinds: Sequence[Callable[[np.random.Generator], Scene]] = KINDS) -> Scene:
     """Return the scene of a seed, the kinds in turn."""
-    found = KINDS[seed % len(KINDS)](np.random.default_rng(seed))
+    found = kinds[seed % len(kinds)](np.random.default_rng(seed))
     for body in found["bodies"].values():
         for name in [name for name, value in body.items() if value is None]:
             del body[name]
@@ -498,9 +498,8 @@ def require_same(answer: SceneAnswer, other: SceneAnswer) -> float:
     return worst
 
 
-def judged(seed: int) -> str:
+def judged(scene: Scene) -> str:
     """Judge one scene and return how it ended."""
-    scene = any_scene(seed)
     answer = solved(scene)
     require_physical(answer, scene)
     other = solved(mirrored(scene))
@@ -516,7 +515,7 @@ def main(count: int, first: int = 0) -> None:
     for seed in range(first, first + count):
         begun = time.perf_counter()
         try:
-            ends[judged(seed)] += 1
+            ends[judged(any_scene(seed))] += 1
         except MechanicsError as fault:
             ends[f"refused: {type(fault).__name__}"] += 1
             sys.stdout.write(f"{seed} {KINDS[seed % len(KINDS)].__name__} refused {fault}\n")

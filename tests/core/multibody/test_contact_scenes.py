@@ -21,9 +21,9 @@ ENDS |= {"event-limit", "lost-event"}
 
 @pytest.mark.parametrize("kind", range(len(KINDS)))
 def test_random_scenes_are_physical_and_their_mirror_images_alike(kind: int) -> None:
-    for seed in range(kind, 10 * len(KINDS), len(KINDS)):
+    for seed in range(kind, 8 * len(KINDS), len(KINDS)):
         try:
-            end = judged(seed)
+            end = judged(any_scene(seed))
         except (AccuracyUnreachable, BudgetExceeded):
             # Bounces of several contacts in turn are followed as far as pairs of doubles know them.
             continue
@@ -36,7 +36,13 @@ def test_scenes_in_which_the_judge_found_a_fault_are_physical(seed: int) -> None
 
     Bounces that are left out make the state wrong in a way that no second track shows, and the forces with it.
     """
-    assert judged(seed) == "horizon"
+    assert judged(any_scene(seed, KINDS[:8])) == "horizon"
+
+
+def test_a_bounce_below_what_is_known_of_the_state_is_not_passed_over() -> None:
+    """Two corners of a box bounce in turn until one is 1e-15 off the floor, known to 1e-12: it sank in by 1 mm."""
+    with pytest.raises(AccuracyUnreachable):
+        judged(any_scene(1968))
 
 
 def test_the_judge_sees_a_shifted_event() -> None:

@@ -316,3 +316,28 @@ def test_what_is_not_answered_is_refused() -> None:
             solve_scene(read(space))
         assert spatial.value.path == ("connections", 0, where)
         assert spatial.value.remedy is not None
+
+
+@pytest.mark.parametrize(
+    ("connection", "rule"),
+    [
+        ({"kind": "rod", "a": "p", "b": [0, 0], "length": 0.4}, "be 0.5 m"),
+        ({"kind": "string", "through": ["p", [0, 0]], "length": 0.4}, "be 0.5 m"),
+        ({"kind": "string", "through": ["p", [0, 0]], "length": 0.4, "restitution": 0}, "be at least 0.5 m"),
+        ({"kind": "string", "through": ["p", [0, 0], "q"], "length": 0.9, "restitution": 0}, "be at least 1 m"),
+    ],
+)
+def test_a_length_that_does_not_fit_the_places_is_named(connection: dict[str, Any], rule: str) -> None:
+    bodies = {"p": {"mass": 1, "at": [0.3, -0.4]}, "q": {"mass": 1, "at": [-0.3, -0.4]}}
+    with pytest.raises(InvalidParameter, match=rule) as fault:
+        solve_scene(read({"gravity": [0, -9.81], "bodies": bodies, "connections": [connection]}), [0.1])
+    assert fault.value.path == ("connections", 0, "length")
+    assert fault.value.remedy is not None
+
+
+def test_a_mass_below_the_range_of_doubles_does_not_hide_that_a_string_is_slack() -> None:
+    stone = {"mass": "1e-400", "at": [0, -0.5], "velocity": [4, 0]}
+    string = {"kind": "string", "name": "s", "through": ["stone", [0, 0]]}
+    with pytest.raises(NotApplicable, match="range of doubles") as refused:
+        solve_scene(read({"gravity": [0, -9.81], "bodies": {"stone": stone}, "connections": [string]}), [0.6])
+    assert refused.value.path == ("bodies",)

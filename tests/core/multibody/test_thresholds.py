@@ -213,3 +213,13 @@ def test_faults_of_the_question(vary: str, between: Any, where: str) -> None:
     with pytest.raises(InvalidParameter) as fault:
         solve_scene(read(INCLINE), outputs=[RestOf(vary, between)])
     assert fault.value.path[:4] == ("outputs", 0, "thresholds", where)
+
+
+def test_a_chain_is_named_as_what_is_in_the_way() -> None:
+    ends = {name: {"mass": 1, "at": [x, -1]} for name, x in (("a", -0.1), ("b", 0.1))}
+    chain = {"kind": "chain", "through": ["a", [0, 0], "b"], "density": 0.1}
+    scene = read({"gravity": [0, -9.81], "bodies": ends, "connections": [chain]})
+    with pytest.raises(NotApplicable, match="beside a chain") as refused:
+        solve_scene(scene, outputs=[RestOf("/bodies/a/mass", [0.5, 2])])
+    assert refused.value.path == ("outputs", 0, "thresholds")
+    assert "accelerations" in (refused.value.remedy or "")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
 from pathlib import Path
 from typing import get_args
 
 from core.multibody.undecided import DOCUMENT, UNDECIDED, Code
+from docs.site.blocks import blocks
 
 ROOT = Path(__file__).parents[3]
 WITHOUT_CODE = {"rigid-redundancy", "references"}
@@ -42,6 +44,17 @@ def test_every_code_has_its_section() -> None:
     assert len(set(anchors)) == len(anchors)
     assert set(anchors) == {kind.section.partition("#")[2] for kind in UNDECIDED.values()} | WITHOUT_CODE
     assert {kind.section.partition("#")[0] for kind in UNDECIDED.values()} == {DOCUMENT}
+
+
+def test_every_code_has_a_request_that_is_answered_with_it() -> None:
+    """The requests run against a service with all code blocks of the documentation."""
+    text = (ROOT / DOCUMENT).read_text(encoding="utf-8")
+    for part in re.split(r"^## ", text, flags=re.MULTILINE)[1:]:
+        heading = part.partition("\n")[0].strip()
+        if heading in UNDECIDED:
+            request, answer = blocks(part)
+            assert request.endpoint == "/v1/scenes"
+            assert json.loads(answer.code) == {"problem": {"code": heading}}
 
 
 def test_each_says_what_it_is() -> None:

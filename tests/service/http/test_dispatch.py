@@ -247,6 +247,15 @@ async def test_not_ready_before_the_start(client: httpx.AsyncClient) -> None:
     assert (await client.get("/healthz")).json() == {"status": "alive"}
 
 
+async def test_questions_are_refused_while_the_service_starts() -> None:
+    starting = inline_toys()
+    async with starting.lifespan(), client_of(starting) as client:
+        response = await client.post("/v1/toy", json=GOOD)
+        assert (response.status_code, response.json()["code"]) == (503, "not-ready")
+        assert response.headers["retry-after"] == "2"
+        assert (await client.get("/healthz")).status_code == 200
+
+
 async def test_a_body_is_not_held_beyond_the_limit() -> None:
     small = toy_service(max_body_bytes=1000)
     for declared in (True, False):

@@ -28,6 +28,11 @@ def test_the_requests_that_are_to_be_logged_are(
         for status in (200, 404, 500):
             records.finished(b"abc", "ask_toy", "POST", status, 0.25)
     assert [record.__dict__["status"] for record in caplog.records] == logged
+    with caplog.at_level(logging.DEBUG, "polhode"):
+        caplog.clear()
+        records.finished(b"abc", "get_readiness", "GET", 503, 0.25)
+    # As long as the service starts, probes fail all the time.
+    assert [record.levelno for record in caplog.records] == [logging.DEBUG] * (which != "none")
     text = metrics.exposition().decode()
     for status in (200, 404, 500):
         assert f'polhode_request_seconds_count{{operation="ask_toy",status="{status}"}} 1.0' in text

@@ -74,7 +74,7 @@ def said(line: str) -> None:
 
 def submitted(server: Server, request: dict[str, Any]) -> str:
     """Submit a study and return its path."""
-    answer = httpx.post(f"{server.url}/v1/studies", json=request)
+    answer = httpx.post(f"{server.url}/v1/studies", json=request, timeout=60.0)
     assert answer.status_code == 202, answer.text
     return answer.headers["location"]
 
