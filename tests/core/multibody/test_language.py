@@ -79,7 +79,7 @@ FAULTS: list[tuple[Any, tuple[str | int, ...]]] = [
     (joined(kind="pin", a="p", b="p"), ("connections", 0)),
     (joined(kind="rod", a=[0, 0], b=[1, 0]), ("connections", 0)),
     (joined(kind="rod", a="p", b=[0, -1]), ("connections", 0, "length")),
-    (joined(kind="rod", a="p", b=[0, 0], length=2), ("connections", 0)),
+    (joined(kind="rod", a="p", b=[0, 0], length=2), ("connections", 0, "length")),
     (joined(kind="pin", a="p", b=[0, 0]), ("connections", 0)),
     (joined(kind="string", through=["p"]), ("connections", 0, "through")),
     (joined(kind="string", through=5), ("connections", 0, "through")),
