@@ -138,7 +138,7 @@ def study(server: Server, folder: str, request: dict[str, Any]) -> dict[str, flo
     engine = engine_of(server)
     before, engine_before = processor_time(engine), own_time(engine)
     while state["status"] in ("accepted", "running"):
-        time.sleep(0.05)
+        time.sleep(0.5)
         state = asked(server.port, "GET", path)
     spent, engine_spent = processor_time(engine) - before, own_time(engine) - engine_before
     assert state["status"] == "successful", state

@@ -17,12 +17,12 @@ from multiprocessing import forkserver
 
 from pydantic import ValidationError
 
+from core.near_names import nearest
 from service import VERSION
 from service.execution import PRELOAD
 from service.http.keys import new_key
 from service.observability.logs import LOG, configure
 from service.observability.shared_counts import sharing
-from service.requests.suggestions import nearest
 from service.settings import Settings
 
 PREFIX = Settings.model_config["env_prefix"]

@@ -18,6 +18,7 @@ ALLOWED: dict[str, set[str]] = {
     "lanes": set(),
     "compiled": {"lanes"},
     "balls": set(),
+    "near_names": set(),
     "notices": {"errors"},
     "quantities": {"errors"},
     "formulas": {"errors"},
@@ -31,7 +32,7 @@ ALLOWED: dict[str, set[str]] = {
 ALLOWED["rotation"] = {"systems", "bodies", "elliptic"} | ALLOWED["bodies"] | ALLOWED["elliptic"]
 ALLOWED["scenes"] = {"systems", "elliptic"} | ALLOWED["systems"] | ALLOWED["elliptic"]
 ALLOWED["certified"] = {"rotation", "scenes"} | ALLOWED["rotation"] | ALLOWED["scenes"]
-ALLOWED["multibody"] = {"certified", "formulas"} | ALLOWED["certified"]
+ALLOWED["multibody"] = {"certified", "formulas", "near_names"} | ALLOWED["certified"]
 """What each package or module of core may import besides itself. Those in OUTER may import all of core."""
 
 WEB = {"fastapi", "starlette", "pydantic", "pydantic_core", "pydantic_settings", "uvicorn", "httpx", "orjson",

@@ -15,6 +15,9 @@ EQUAL = 1e-9
 """Difference of moments, of the largest, up to which they count as equal."""
 
 
+_ONE_VALUE = (np.generic, bool, int, float, str, type(None))
+
+
 def steps_of(pointer: str) -> Path:
     """Return the steps of an RFC 6901 JSON pointer into an answer.
 
@@ -66,6 +69,20 @@ def inside(found: Any, step: str | int) -> Any:
     if isinstance(found, (list, tuple, np.ndarray)) and not hasattr(found, "_fields"):
         return found[step] if step < len(found) else None
     return None
+
+
+def single_values(answer: Any, path: Path) -> list[str]:
+    """Return the fields of the object at a path that hold one value or null; none where no object is."""
+    found = answer
+    for step in path:
+        found = inside(found, step)
+    if hasattr(found, "_asdict"):
+        found = found._asdict()
+    elif is_dataclass(found) and not isinstance(found, type):
+        found = vars(found)
+    if not isinstance(found, Mapping):
+        return []
+    return [str(name) for name, entry in found.items() if isinstance(entry, _ONE_VALUE) and str(name)[:1] != "_"]
 
 
 def is_null(answer: Any, path: Path) -> bool:

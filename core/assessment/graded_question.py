@@ -13,7 +13,7 @@ import numpy as np
 
 from core.assessment.compare import Floats, Form, Reference, distance
 from core.assessment.curves import dense
-from core.assessment.figures import equal_moments, form_of, inside, is_null, name_of, value_at
+from core.assessment.figures import equal_moments, form_of, inside, is_null, name_of, single_values, value_at
 from core.assessment.propagation import Propagation, changed, numbers_of, relative_uncertainties
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
@@ -153,6 +153,10 @@ class GradedQuestion:
         if path not in self._references:
             self._references[path] = self._made(path)
         return self._references[path]
+
+    def figures_in(self, path: Path) -> list[str]:
+        """Return the fields of the object at a path of the answer that hold one value or null."""
+        return single_values(self.answer, path)
 
     def samples(self, path: Path, times: Floats) -> Reference | None:
         """Return a column of samples at other times, None if the path leads to no column.

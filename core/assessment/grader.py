@@ -17,7 +17,7 @@ from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
 from core.assessment.units import factor
-from core.errors import InvalidParameter, MechanicsError, Path
+from core.errors import InvalidParameter, MechanicsError, Path, pointer_of
 from core.formulas import Formula
 from core.work import spend
 
@@ -36,6 +36,9 @@ MOST_SOLVED = 3
 """Sets of times in one request at which solvers that choose their steps are looked for: up to a second for each."""
 
 LONGEST_POINTER = 200
+
+MOST_NAMED = 10
+"""Figures of an object that are named where a pointer stops at it."""
 
 UNITLESS = ("1", "rad")
 """Units that may be left out."""
@@ -116,6 +119,9 @@ class Question(Protocol):
 
     def reference(self, path: Path) -> Reference | None:
         """Return the reference at a path of the answer, None if nothing that can be compared stands there."""
+
+    def figures_in(self, path: Path) -> Sequence[str]:
+        """Return the fields of the object at a path of the answer that hold one value or null."""
 
     def samples(self, path: Path, times: Floats) -> Reference | None:
         """Return a column of samples at other times, None if the path leads to no column."""
@@ -213,7 +219,7 @@ class Grader:
         if claim.times is None or path != ("angular_velocity",):
             return self._result(pointer, judgement, reference, mistakes)
         samples = self._samples_judged(claim.times, value, reference, judgement, identify=not mistakes)
-        why = [one.feedback for one in mistakes]
+        why = [explained(mistakes)] if mistakes else []
         if any(one.tag == "permuted-axes" for one in mistakes):
             why.append(exchanged(value, reference.value))
         if samples is not None and not mistakes:
@@ -258,11 +264,17 @@ class Grader:
         if pointer not in self.references:
             reference = self._question.reference(path)
             if reference is None:
-                raise InvalidParameter(
-                    (), "lead to a figure of the answer: a number, an array, a string, true or false"
-                )
+                rule = "lead to a figure of the answer: a number, an array, a string, true or false"
+                raise InvalidParameter((), rule, remedy=self._deeper(path))
             self.references[pointer] = reference
         return self.references[pointer]
+
+    def _deeper(self, path: Path) -> str | None:
+        """Return the remedy of a pointer that stops at an object: the figure that stands in it, or those that do."""
+        names = sorted(self._question.figures_in(path))
+        names = ["value"] if "value" in names else names[:MOST_NAMED]
+        pointers = [pointer_of((*path, name)) for name in names]
+        return f"an object stands there; name its figure: {' or '.join(pointers)}" if pointers else None
 
     def _column(self, path: Path, times: Floats) -> Reference:
         try:
@@ -312,10 +324,18 @@ class Grader:
         why: str = "",
         samples: tuple[SampleErrors, Consistent | None] | None = None,
     ) -> JudgedClaim:
-        feedback = why or " ".join(one.feedback for one in mistakes) or FEEDBACK[judgement.verdict]
+        feedback = why or explained(mistakes) or FEEDBACK[judgement.verdict]
         if reference.sensitive is not None and judgement.verdict != "correct":
             feedback += f" Compare {reference.sensitive}: the figure itself is so near a constant that it shows little."
         return JudgedClaim(pointer, judgement, reference, mistakes, feedback, samples)
+
+
+def explained(mistakes: Sequence[Mistake]) -> str:
+    """Return the feedback of the mistakes by which one value comes out: of several, a numbered list of what may be."""
+    if len(mistakes) < 2:
+        return "".join(one.feedback for one in mistakes)
+    entries = " ".join(f"({k}) {one.feedback}" for k, one in enumerate(mistakes, 1))
+    return f"Several mistakes give this value, each by itself. {entries}"
 
 
 def credited(catalogue: Sequence[Mistake], credits: Mapping[str, float]) -> tuple[Mistake, ...]:

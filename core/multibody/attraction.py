@@ -12,6 +12,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.coordinates import Point
 from core.multibody.measures import Force, Measures, Work
 from core.multibody.polynomials import Ball, entry, is_zero
+from core.near_names import near_and_all
 
 
 def gravitation(measures: Measures, name: str, connection: Any, path: Path) -> None:
@@ -29,7 +30,8 @@ def gravitation(measures: Measures, name: str, connection: Any, path: Path) -> N
         body = getattr(connection, end)
         frame = measures.coordinates.frames.get(body) if isinstance(body, str) else None
         if frame is None:
-            raise InvalidParameter((*path, end), "name a body of the scene", remedy="use inverse-square for a place")
+            remedy = f"{near_and_all(body, measures.coordinates.frames, 'bodies')}; use inverse-square for a place"
+            raise InvalidParameter((*path, end), "name a body of the scene", remedy=remedy)
         mass = entry(measures.table.mass, (frame.position[0], frame.position[0]))
         if is_zero(mass):
             raise InvalidParameter((*path, end), f'name a body with mass, unlike "{body}"')

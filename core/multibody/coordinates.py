@@ -30,6 +30,7 @@ from core.multibody.polynomials import (
     is_zero,
 )
 from core.multibody.table import Row, Table
+from core.near_names import near_and_all
 
 Rate = dict[int, Poly]
 """A linear form in the rates, with affine coefficients."""
@@ -116,12 +117,14 @@ class Coordinates:
         body, _, spot = place.partition(".")
         frame = self.frames.get(body)
         if frame is None:
-            raise InvalidParameter(path, f'name a body of the scene or a point of the ground, unlike "{place[:80]}"')
+            rule = f'name a body of the scene or a point of the ground, unlike "{place[:80]}"'
+            raise InvalidParameter(path, rule, remedy=near_and_all(body, self.frames, "bodies"))
         centre = [coordinate(i) for i in frame.position]
         if spot in ("", "centre"):
             return Point(centre, body)
         if spot not in frame.places:
-            raise InvalidParameter(path, f'name a place of "{body}"; "{spot[:80]}" is none')
+            rule = f'name a place of "{body}"; "{spot[:80]}" is none'
+            raise InvalidParameter(path, rule, remedy=near_and_all(spot, ["centre", *frame.places], "places"))
         return Point(self._offset(frame, centre, frame.places[spot], path), body)
 
     def vector_of(self, body: str | None, components: Sequence[Ball], path: Path) -> list[Poly]:
@@ -136,7 +139,8 @@ class Coordinates:
         if body == GROUND:
             return {}
         if not isinstance(body, str) or body not in self.frames:
-            raise InvalidParameter(path, 'name a body of the scene, or "ground"')
+            remedy = near_and_all(body, self.frames, "bodies")
+            raise InvalidParameter(path, 'name a body of the scene, or "ground"', remedy=remedy)
         turn = self.frames[body].turn
         if turn is None:
             raise InvalidParameter(
@@ -341,7 +345,8 @@ def dimension_of(scene: Scene) -> int:
     if isinstance(leading, Mapping):
         return 2
     if isinstance(leading, str) or not isinstance(leading, Sequence) or len(leading) not in (2, 3):
-        raise InvalidParameter(path, "have two components in the plane or three in space")
+        remedy = f"such as {'[0, -9.81]' if path == ('gravity',) else '[0, 0]'}"
+        raise InvalidParameter(path, "have two components in the plane or three in space", remedy=remedy)
     return len(leading)
 
 

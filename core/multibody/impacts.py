@@ -49,6 +49,8 @@ class Impact:
         Rates afterwards.
     impulses : mapping of int to (ball, ball, ball)
         Of every measure that takes one: along its gap, and along its slip, of which there are two in space.
+    works : mapping of int to ball
+        Of these impulses (J): they add up to the change of kinetic energy.
     unilateral : sequence of Unilateral
         The measures, those that slip in space turned into the direction in which they did.
     change : list of ball
@@ -61,20 +63,34 @@ class Impact:
 
     v: list[Ball]
     impulses: dict[int, tuple[Ball, Ball, Ball]]
+    works: dict[int, Ball]
     unilateral: Sequence[Unilateral]
     change: list[Ball]
     together: bool = False
     shared: set[int] = field(default_factory=set)
 
-    def work(self, i: int, q: Sequence[Ball], before: Sequence[Ball]) -> Ball:
-        """Return the work (J) of the impulse of a measure: the impulse times the mean of its rates before and after.
 
-        These works add up to the change of kinetic energy (Kelvin and Tait, 1867, section 309).
-        """
-        one, total = self.unilateral[i], ZERO
-        for impulse, rate in zip(self.impulses[i], (gap_rate, slip_rate, across_rate), strict=True):
-            total = total + impulse * (rate(one, q, before) + rate(one, q, self.v)) / 2
-        return ZERO if is_zero(total) else total
+@dataclass(frozen=True)
+class _Outcome:
+    """Impulses by line, and the work of each measure that gives them."""
+
+    impulses: Forces
+    works: dict[int, Ball]
+
+
+def _outcome(group: Sequence[int], impulses: Forces, rates: Rates, found: Responses) -> _Outcome:
+    """Return impulses at once with their works: each times the mean of its rates before and after.
+
+    References
+    ----------
+    W. Thomson, P. G. Tait, "Treatise on Natural Philosophy" (1867), section 309.
+    """
+    after, works = rates_after(impulses, rates, found), {}
+    for i in group:
+        lines = [found.normal[i], *found.grip(i)]
+        work = sum((impulses[a] * (rates[a] + after[a]) / 2 for a in lines if a in impulses), ZERO)
+        works[i] = ZERO if is_zero(work) else work
+    return _Outcome(impulses, works)
 
 
 def approaching(unilateral: Sequence[Unilateral], touching: Sequence[int], q: list[Ball], v: list[Ball]) -> list[int]:
@@ -106,7 +122,7 @@ def impact(
     found = responses(table, unilateral, touching)
     normal, slips, across = found.normal, found.slips, found.across
     before = kinetic(table)
-    after, impulses, together = list(v), {}, False
+    after, impulses, works, together = list(v), {}, {}, False
     shared: set[int] = set()
     for group in found.clusters():
         if not approaching(unilateral, group, q, v):
@@ -115,15 +131,16 @@ def impact(
         outcome = _group(unilateral, group, q, v, found, settled=settled)
         if isinstance(outcome, Problem):
             return outcome
-        for b, x in outcome.items():
+        works.update(outcome.works)
+        for b, x in outcome.impulses.items():
             if x != 0:
                 after = [a + x * y for a, y in zip(after, found.columns[b], strict=True)]
-        taking = [i for i in group if outcome.get(normal[i], ZERO) != 0]
+        taking = [i for i in group if outcome.impulses.get(normal[i], ZERO) != 0]
         together = together or len(taking) > 1
         if len(taking) > 1 and _shares(unilateral, taking, q, after, found):
             shared.update(taking)
-        rubs = [[outcome.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
-        impulses.update({i: (outcome[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
+        rubs = [[outcome.impulses.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
+        impulses.update({i: (outcome.impulses[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
     loss = before - kinetic(replace(table, v=after))
     if not is_zero(loss) and loss < 0 and settled is None:
         return Problem(
@@ -133,7 +150,7 @@ def impact(
             decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
         )
     change = [x - y for x, y in zip(after, v, strict=True)]
-    return Impact(after, impulses, unilateral, change, together, shared)
+    return Impact(after, impulses, works, unilateral, change, together, shared)
 
 
 def _shares(
@@ -154,7 +171,7 @@ def _group(
     found: Responses,
     *,
     settled: Impact | None,
-) -> Forces | Problem:
+) -> _Outcome | Problem:
     """Return the impulses of contacts that push one another, or why they are undecided."""
     normal = found.normal
     rates = {a: ZERO if is_zero(x) else x for a, x in _rates(unilateral, group, q, v, found).items()}
@@ -165,23 +182,24 @@ def _group(
         in_turn = _in_turn(unilateral, ordered, rates, found)
         return in_turn if in_turn is not None else _endless(names)
     if settled is not None:
-        return likest(unilateral, group, rates, settled.change, found)
-    at_once = impulses_at_once(unilateral, group, rates, found)
-    if isinstance(at_once, Problem):
-        return at_once
-    taking = [i for i in group if at_once.get(normal[i], ZERO) != 0]
+        return _outcome(group, likest(unilateral, group, rates, settled.change, found), rates, found)
+    impulses = impulses_at_once(unilateral, group, rates, found)
+    if isinstance(impulses, Problem):
+        return impulses
+    at_once = _outcome(group, impulses, rates, found)
+    taking = [i for i in group if impulses.get(normal[i], ZERO) != 0]
     # A taut string passes on what pulls it at once.
     apart = [i for i in taking if rates[normal[i]] != 0 or unilateral[i].closes != "taut"]
     if len(apart) <= 1 and sum(rates[normal[i]] < 0 for i in group) <= 1:
         return at_once
-    outcomes: list[tuple[str, Forces]] = [("together", at_once)]
+    outcomes: list[tuple[str, Forces]] = [("together", impulses)]
     if len(group) <= _MOST_ORDERED:
         middle = _without_width(rates, found)
         for order in permutations(group):
             in_turn = _in_turn(unilateral, order, *middle)
             if in_turn is not None:
-                outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn))
-    first = rates_after(at_once, rates, found)
+                outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn.impulses))
+    first = rates_after(impulses, rates, found)
     in_order = [rates_after(one, rates, found) for _, one in outcomes[1:]]
     if len(group) <= _MOST_ORDERED and all(alike(first, then, rates) for then in in_order):
         return at_once
@@ -241,9 +259,10 @@ def _in_turn(
     order: Sequence[int],
     rates: Rates,
     found: Responses,
-) -> Forces | None:
+) -> _Outcome | None:
     """Return the sum of the impulses if the first that approaches always comes first; None if that does not end."""
     total: Forces = {}
+    works: dict[int, Ball] = {}
     normal = found.normal
     now = dict(rates)
     # Impacts that only come ever nearer to an end have come to it here.
@@ -251,10 +270,12 @@ def _in_turn(
     for _ in range(_MOST_IN_TURN):
         hit = next((i for i in order if now[normal[i]] < -least), None)
         if hit is None:
-            return total
+            return _Outcome(total, works)
         one = impulses_at_once(unilateral, [hit], now, found)
         if isinstance(one, Problem):
             return None
+        work = _outcome([hit], one, now, found).works[hit] + works.get(hit, ZERO)
+        works[hit] = ZERO if is_zero(work) else work
         for b, x in one.items():
             total[b] = total.get(b, ZERO) + x
         now = rates_after(total, rates, found)

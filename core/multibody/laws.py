@@ -24,6 +24,7 @@ from core.multibody.polynomials import (
 )
 from core.multibody.rolling import rate_of, sum_of_rates
 from core.multibody.table import Row
+from core.near_names import near_and_all
 
 
 def spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
@@ -183,10 +184,13 @@ def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
             table.add_load(next(iter(turn))[0], value)
             measures.works.append(Work(name, combined((-value, turn))))
             return
-        raise InvalidParameter((*path, "body"), "name a body of the scene")
+        remedy = near_and_all(body, measures.coordinates.frames, "bodies")
+        raise InvalidParameter((*path, "body"), "name a body of the scene", remedy=remedy)
     frame = measures.coordinates.frames.get(body) if isinstance(body, str) else None
     if frame is None or frame.axes is None:
-        raise InvalidParameter((*path, "body"), "name a rigid body of the scene")
+        rigid = [one for one, entry in measures.coordinates.frames.items() if entry.axes is not None]
+        remedy = near_and_all(body, rigid, "rigid bodies") if rigid else "give the body its moments"
+        raise InvalidParameter((*path, "body"), "name a rigid body of the scene", remedy=remedy)
     vector = measures.numerals.vector(connection.torque, (*path, "torque"), 3)
     terms: list[tuple[Ball, int, int]] = []
     # The forces (torque x e)/2 on the three unit vectors have the torque as their moment, and no other effect.

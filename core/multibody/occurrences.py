@@ -7,7 +7,7 @@ most once; where a parabola through three values comes near, it is looked at mor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from core.multibody.along import watched_times
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole
+from core.near_names import did_you_mean
 from core.systems.trajectory import Column
 
 _SECTIONS = 33
@@ -56,10 +57,24 @@ def component(columns: dict[str, Column], quantity: str) -> Column | None:
         return None
     if part == "length":
         return Column(np.linalg.norm(column.values, axis=1), column.unit, column.error, column.how)
-    order = "wxyz" if column.values.shape[1] == 4 else "xyz"[: column.values.shape[1]]
+    order = _components(column)
     if len(part) != 1 or part not in order:
         return None
     return Column(column.values[:, order.index(part)], column.unit, column.error, column.how)
+
+
+def _components(column: Column) -> str:
+    """Return the names of a vector's components, a letter each."""
+    return "wxyz" if column.values.shape[1] == 4 else "xyz"[: column.values.shape[1]]
+
+
+def _quantities(columns: Mapping[str, Column]) -> Iterator[str]:
+    """Yield every quantity of which the values can be searched for."""
+    for name, column in columns.items():
+        if column.values.ndim == 1:
+            yield name
+        else:
+            yield from (f"{name}.{part}" for part in (*_components(column), "length"))
 
 
 def occurrences(grid: Floats, sampler: Sampler, search: When, most: int = MOST_FOUND) -> list[Occurrence]:
@@ -212,10 +227,12 @@ def check_search(search: When | ExtremesOf, index: int) -> None:
         raise InvalidParameter((*where, "nth"), f"be a whole number from 1 to {MOST_FOUND}")
 
 
-def unknown(search: When | ExtremesOf, index: int, known: Sequence[str]) -> InvalidParameter:
+def unknown(search: When | ExtremesOf, index: int, columns: Mapping[str, Column]) -> InvalidParameter:
     """Return the fault of a quantity that the scene has not."""
+    near = did_you_mean(search.quantity, _quantities(columns))
+    components = 'take a component of a vector by ".x", its length by ".length"'
     return InvalidParameter(
         ("outputs", index, "when", "quantity") if isinstance(search, When) else ("outputs", index, "extremes"),
-        f'name a quantity of the scene, unlike "{search.quantity[:80]}"; there are {", ".join(known[:40])}',
-        remedy='take a component of a vector by ".x", its length by ".length"',
+        f'name a quantity of the scene, unlike "{search.quantity[:80]}"; there are {", ".join([*columns][:40])}',
+        remedy=f"{near} {components}" if near else components,
     )

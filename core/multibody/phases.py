@@ -29,7 +29,7 @@ from core.multibody.numerals import Numerals
 from core.multibody.packed import nearest
 from core.multibody.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phase_ends import Undecided, crossings_of
-from core.multibody.polynomials import ZERO, Ball, evaluated, is_zero
+from core.multibody.polynomials import ZERO, evaluated, is_zero
 from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
@@ -175,7 +175,7 @@ class _Run:
             if isinstance(outcome, Problem):
                 self._stop(outcome)
                 return False
-            self._record(hit, outcome, q, v)
+            self._record(hit, outcome)
             rates = [outcome.v]
             if not tracks.exact:
                 rates = []
@@ -207,8 +207,8 @@ class _Run:
         fastest = self.tracks.fastest("rad" if one.unit == "N m" else "m")
         return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf
 
-    def _record(self, hit: Sequence[int], outcome: Impact, q: list[Ball], v: list[Ball]) -> None:
-        """Add the events of an impact from a state, each with the energy that its connection takes."""
+    def _record(self, hit: Sequence[int], outcome: Impact) -> None:
+        """Add the events of an impact, each with the energy that its connection takes."""
         self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, (push, rub, beside) = outcome.unilateral[i], outcome.impulses[i]
@@ -219,7 +219,7 @@ class _Run:
             elif one.slip is not None:
                 impulses["friction"] = nearest(rub)
             time, late = nearest(self.tracks.time), self.tracks.late()
-            work = outcome.work(i, q, v)
+            work = outcome.works[i]
             known = None if i in outcome.shared else work
             self.motion.impacts.append((len(self.motion.phases), one.name, known))
             self.motion.events.append(SceneEvent(one.closes, one.name, time, late, impulses, nearest(ZERO - work)))

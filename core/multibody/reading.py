@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, fields
 from typing import Any
 
@@ -10,6 +10,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.connections import KINDS, NOT_YET
 from core.multibody.language import MOST_BODIES, MOST_CONNECTIONS, Scene, SceneBody
 from core.multibody.numerals import member
+from core.near_names import did_you_mean
 
 
 def scene_from(description: Any) -> Scene:
@@ -45,7 +46,7 @@ def _connection(entry: Any, path: Path) -> Any:
             (*path, "kind"), "be a connection that holds, pushes, pulls or drives; blows are not answered yet"
         )
     if not isinstance(kind, str) or kind not in KINDS:
-        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(KINDS)}")
+        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(KINDS)}", remedy=did_you_mean(kind, KINDS))
     rest = {key: value for key, value in entry.items() if key != "kind"}
     return KINDS[kind](**_object(rest, path, KINDS[kind]))
 
@@ -56,8 +57,14 @@ def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
     known = {entry.name: entry for entry in fields(cls)}
     for key in value:
         if key not in known:
-            raise InvalidParameter(member(path, key), f"be left out; the fields here are {', '.join(known)}")
+            raise unknown_field(key, known, path)
     for name, entry in known.items():
         if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
             raise InvalidParameter((*path, name), "be given")
     return dict(value)
+
+
+def unknown_field(key: str, known: Collection[str], path: Path) -> InvalidParameter:
+    """Return the fault of a field that does not exist in the object at a path."""
+    rule = f"be left out; the fields here are {', '.join(known)}"
+    return InvalidParameter(member(path, key), rule, remedy=did_you_mean(key, known))

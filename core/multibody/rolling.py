@@ -9,6 +9,12 @@ from core.multibody.coordinates import Point, Rate
 from core.multibody.measures import Measures
 from core.multibody.polynomials import ONE, Ball, Poly, combined, constant, coordinate, difference, dot, evaluated
 from core.multibody.table import Row
+from core.near_names import near_and_all
+
+_FIXED = (
+    'for a circle of the ground give "place": the body, and "on": {"at": [0, 0], "radius": 1}, in place of a and b; '
+    "or describe it as a body with a radius that is pinned to the ground"
+)
 
 
 def rate_of(poly: Poly) -> Rate:
@@ -50,7 +56,8 @@ def _rim(measures: Measures, name: Any, path: Path) -> tuple[Point, Ball, Poly]:
     """Return centre, radius and turn of a body with a rim."""
     frame = measures.coordinates.frames.get(name) if isinstance(name, str) else None
     if frame is None:
-        raise InvalidParameter(path, "name a body of the scene")
+        remedy = near_and_all(name, measures.coordinates.frames, "bodies") if isinstance(name, str) else _FIXED
+        raise InvalidParameter(path, "name a body of the scene", remedy=remedy)
     if frame.radius is None:
         raise InvalidParameter(path, f'name a body with a rim; "{name}" has no radius')
     return measures.coordinates.point(name, path), frame.radius, measures.coordinates.turn_of(name, path)

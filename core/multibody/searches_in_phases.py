@@ -78,10 +78,10 @@ class SearchInPhases:
 
     def _samplers(self, search: When | ExtremesOf, index: int) -> list[Sampler]:
         """Return the samplers of a quantity on every stretch."""
-        known: list[str] = []
+        known: dict[str, Column] = {}
         for group in COLUMNS_OF_STATES:
             columns = self.pieces[0].columns(np.zeros(1), self.how, group)
-            known.extend(columns)
+            known |= columns
             if component(columns, search.quantity) is not None:
                 return [self._sampler(piece, group, search) for piece in self.pieces]
         raise unknown(search, index, known)

@@ -24,6 +24,7 @@ from core.multibody.polynomials import BITS
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.thresholds import RestOf, range_of_rest
 from core.multibody.trajectories import DescribedSystem, SceneRequest
+from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty, check_value
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
@@ -102,7 +103,9 @@ def solve_scene(
             if not np.max(moments, initial=0.0) > 0.0:
                 raise InvalidParameter("times", "reach beyond the start, up to where a quantity is to be searched for")
         elif not isinstance(output, RestOf) and (not isinstance(output, str) or output not in OUTPUTS):
-            raise InvalidParameter(("outputs", i), f"be one of {', '.join(OUTPUTS)}")
+            raise InvalidParameter(
+                ("outputs", i), f"be one of {', '.join(OUTPUTS)}", remedy=did_you_mean(output, OUTPUTS)
+            )
     of_motion = [output if not isinstance(output, RestOf) else THRESHOLDS for output in outputs]
     request = SceneRequest(moments, of_motion, float(accuracy), method, input_uncertainty, digits, budget)
     with precision(BITS):

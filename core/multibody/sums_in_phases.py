@@ -218,7 +218,8 @@ class SumsInPhases:
         errors = np.append(sum(one.errors[mine] for one in others), sum(one.error for one in others))
         one = found[settling]
         one.carried, one.error = 0.0, 0.0
-        self._put(one, mine, left, errors + 2.0 * kinetic.error)
+        # Arcs are evaluated in doubles: their rates may be wrong by two roundings of each of their terms.
+        self._put(one, mine, left, errors + 8.0 * kinetic.error)
 
     def _come_to_rest(self, one: _Sum, piece: Stretch, following: Stretch) -> None:
         """Add what impacts take that are over in next to no time: their loss is that at the end of the stretch."""

@@ -20,7 +20,7 @@ from math import isfinite
 
 from flint import arb
 
-from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path
+from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, pointer_of
 from core.multibody.answer import RestEnd, RestRange
 from core.multibody.chains import has_chain
 from core.multibody.complementarity import decided, stays
@@ -31,6 +31,7 @@ from core.multibody.language import Scene
 from core.multibody.numerals import Numerals
 from core.multibody.packed import nearest
 from core.multibody.polynomials import Ball, is_zero
+from core.near_names import did_you_mean
 from core.work import spend
 
 LOOKS = 64
@@ -123,10 +124,11 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
     numerals = Numerals.of(scene.let, scene.numbers)
     base = described(scene, numerals, one_sided=True)
     if path not in numerals.every:
+        near = did_you_mean(question.vary, [pointer_of(one) for one in numerals.every])
         raise InvalidParameter(
             (*where, "vary"),
             f'be the JSON pointer of a number of the description, unlike "{question.vary[:80]}"',
-            remedy="name one that is written there, as /connections/0/friction",
+            remedy=f"{f'{near} ' if near else ''}name one that is written there, as /connections/0/friction",
         )
     written = numerals.every[path]
     if written < least or written > most:

@@ -307,10 +307,10 @@ class DescribedSystem:
             states = self.whole.states(times, finer=self.finer)
             return Columns(self.whole, times, states, self.how).group(group, self.determined)
 
-        known: list[str] = []
+        known: dict[str, Column] = {}
         for group in COLUMNS_OF_STATES:
             columns = of(group, np.zeros(1))
-            known.extend(columns)
+            known |= columns
             if component(columns, search.quantity) is not None:
 
                 def sampled(times: Floats, group: str = group) -> Column:

@@ -18,17 +18,20 @@ from pydantic import Field, SkipValidation, create_model
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
 from core.multibody import connections, language
-from core.multibody.numerals import member
 from core.multibody.occurrences import MOST_FOUND, ExtremesOf, When
-from core.multibody.reading import scene_from
+from core.multibody.reading import scene_from, unknown_field
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
 from core.multibody.thresholds import RestOf
+from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
 from service.schemas import ROUND, Request, Rounding, Times
 
 MOST_OUTPUTS = 30
 """Outputs of one question, among them searches along the motion."""
+
+SEARCHES = ("when", "extremes", "thresholds")
+"""The key of each search."""
 
 
 class AngleInDegrees(Request):
@@ -239,6 +242,7 @@ def _searched(output: Any, path: Path) -> Any:
             path,
             'be a name, {"when": {"quantity", "equals", "nth"}}, {"extremes": quantity} or '
             '{"thresholds": {"vary", "between"}}',
+            remedy=next((near for key in output if (near := did_you_mean(key, SEARCHES))), None),
         )
     return When(**_fields(output["when"], WhenQuestion, (*path, "when")))
 
@@ -249,8 +253,7 @@ def _fields(given: Any, form: type[Request], path: Path) -> dict[str, Any]:
         raise InvalidParameter(path, "be an object")
     for key in given:
         if key not in form.model_fields:
-            known = ", ".join(form.model_fields)
-            raise InvalidParameter(member(path, key), f"be left out; the fields here are {known}")
+            raise unknown_field(key, form.model_fields, path)
     for key, entry in form.model_fields.items():
         if key not in given and entry.is_required():
             raise InvalidParameter((*path, key), "be given")

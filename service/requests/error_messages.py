@@ -13,11 +13,12 @@ from itertools import islice
 from typing import Any
 
 from core.errors import InvalidParameter, pointer_of
+from core.near_names import plain
 from core.quantities import RADIANS
 from service.problems import KNOWN, MOST_FAULTS, Fault, code_of
 from service.requests.document_limits import LONGEST_KEY_SHOWN
 from service.requests.layout import ARRAY, OBJECT, Layout, Step
-from service.requests.suggestions import FORCES, STEPS, count_in_place_of_step, nearest, plain
+from service.requests.suggestions import FORCES, STEPS, count_in_place_of_step, nearest
 
 LOOKED_AT = 3 * MOST_FAULTS
 """Findings among which the most useful ones are looked for."""

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 from math import isfinite
 from typing import Any
 
-LONGEST_NAME = 80
-"""Characters of a name that is compared with others; a longer one is no misspelling."""
-
-ALIKE = 0.78
-"""Share of its letters that a name must have in common with another to be taken for a misspelling of it."""
+from core import near_names
 
 ALIKE_PATHS = 0.6
 """The same of paths, which share most of their letters and of which whole parts are left out."""
@@ -84,28 +78,14 @@ FORCES = (
 """Names of forces and torques, which a free rotation does not have."""
 
 
-def plain(name: str) -> str:
-    """Return the letters and digits of a name, in lower case."""
-    return re.sub("[^a-z0-9]", "", name[: 2 * LONGEST_NAME].lower())
-
-
-def nearest(given: str, names: Iterable[str], alike: float = ALIKE) -> str | None:
-    """Return the name that a client probably meant, whatever its case and hyphens; None if none is near."""
-    if not given or len(given) > LONGEST_NAME:
-        return None
-    known, written = {plain(name): name for name in names}, plain(given)
-    if written in known:
-        return known[written]
-    for name in known.values():
-        if written in map(plain, SYNONYMS.get(name, ())):
-            return name
-    found = get_close_matches(written, known, 1, alike)
-    return known[found[0]] if found else None
+def nearest(given: str, names: Iterable[str]) -> str | None:
+    """Return the name that a client probably meant, by its letters or by another word; None if none is near."""
+    return near_names.nearest(given, names, synonyms=SYNONYMS)
 
 
 def nearest_path(given: str, paths: Iterable[str]) -> str | None:
     """Return the path that a client probably meant; None if none is near."""
-    return nearest(given, paths, ALIKE_PATHS)
+    return near_names.nearest(given, paths, ALIKE_PATHS)
 
 
 def count_in_place_of_step(span: Any, step: Any) -> str:

@@ -52,6 +52,24 @@ def test_waiting_shows_a_bar_and_ends_with_the_study(capsys: pytest.CaptureFixtu
     assert "6/6" in capsys.readouterr().err
 
 
+def test_the_bar_shows_at_once_and_is_drawn_at_every_look(capsys: pytest.CaptureFixture[str]) -> None:
+    drawn: list[str] = []
+
+    class Watched(Service):
+        def get_study(self, study: str) -> documents.StudyState:
+            drawn.append(capsys.readouterr().err)
+            return super().get_study(study)
+
+    states = [("accepted", 0), ("accepted", 0), ("running", 0), ("running", 0), ("running", 1), ("successful", 6)]
+    Study(Watched(*states), "x").wait(progress=True, every=0.0)
+    shown = [text.rpartition("\r")[2] for text in drawn[1:]]
+    # What the client sees while it waits for the next look.
+    expected = [("accepted", "0/6"), ("accepted", "0/6"), ("running", "0/6"), ("running", "0/6"), ("running", "1/6")]
+    for text, (status, done) in zip(shown, expected, strict=True):
+        assert text.startswith(f"{status}:")
+        assert done in text
+
+
 @pytest.mark.parametrize("status", ["failed", "dismissed"])
 def test_an_end_without_results_is_an_exception(status: str) -> None:
     with pytest.raises(StudyEnded) as ended:

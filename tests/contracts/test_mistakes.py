@@ -73,6 +73,26 @@ def rod(chance: Random) -> Question:
     return {"hole_radius": radius, "length": chance.uniform(0.2, 1.6) * radius, "mass": 1.0, "gravity": 9.81}
 
 
+def pulley(chance: Random) -> Question:
+    """Two masses on a string over a disc, of which the moment of inertia is written as a formula."""
+    radius = chance.uniform(0.1, 0.5)
+    disc = {"mass": chance.uniform(1.0, 4.0), "radius": radius, "at": [0.0, 0.0]}
+    return {
+        "gravity": [0.0, -9.81],
+        "let": {"I": f"{disc['mass']}*{radius}^2/2"},
+        "bodies": {
+            "a": {"mass": chance.uniform(1.0, 4.0), "at": [-radius, -1.0]},
+            "b": {"mass": chance.uniform(1.0, 4.0), "at": [radius, -1.0]},
+            "disc": disc | {"inertia": "I"},
+        },
+        "connections": [
+            {"kind": "pin", "a": "disc", "b": [0.0, 0.0]},
+            {"kind": "string", "name": "cord", "through": ["a", "disc", "b"], "sides": {"disc": ["left", "right"]}},
+        ],
+        "outputs": ["accelerations", "forces"],
+    }
+
+
 def motion(chance: Random) -> Question:
     return {"body": triaxial(chance), "angular_velocity": spin(chance), "times": [0.0, 0.5, 1.0]}
 
@@ -119,6 +139,10 @@ FIGURES: list[tuple[str, str, Callable[[Random], Question]]] = [
         for pointer in ("/tension", "/accelerations", "/accelerations/0", "/string_acceleration")
     ),
     ("/v1/scenes/rod-in-hole", "/angular_velocity_at_horizontal", rod),
+    *(
+        ("/v1/scenes", pointer, pulley)
+        for pointer in ("/forces/cord.1.tension/value", "/accelerations/a/linear/1", "/accelerations/disc/angular")
+    ),
     ("/v1/rotation/trajectory", "/angular_velocity", motion),
     ("/v1/rotation/trajectory", "/angular_velocity", lambda chance: motion(chance) | {"body": symmetric(chance)}),
     ("/v1/rotation/trajectory", "/attitude", lambda chance: motion(chance) | {"attitude": [1.0, 0.2, 0.3, 0.4]}),
@@ -183,6 +207,15 @@ def test_every_mistake_is_recognised_and_no_right_answer_is_called_one(index: in
                 assert tags == set()
             else:
                 assert mistake.tag in tags, (mistake.tag, wrong.value, reference.value)
+
+
+def test_a_disc_without_inertia_is_a_massless_pulley() -> None:
+    """Atwood's machine with a massless pulley has one tension on both sides, 2 m_a m_b g/(m_a + m_b)."""
+    index = next(i for i, (_, pointer, _) in enumerate(FIGURES) if pointer == "/forces/cord.1.tension/value")
+    for request, found in drawn(index):
+        a, b = (request["bodies"][name]["mass"] for name in "ab")
+        (wrong,) = [other.value for mistake, other in found.entries if mistake.tag == "inertia-left-out"]
+        assert wrong == pytest.approx(2.0 * a * b * 9.81 / (a + b), rel=1e-12)
 
 
 def test_every_entry_of_the_catalogue_is_met() -> None:

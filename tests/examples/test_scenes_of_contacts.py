@@ -305,6 +305,8 @@ def test_the_upper_ball_leaves_at_twice_the_speed(answer_of):
     """Both arrive at v; the lower one turns, and its three times larger mass gives all of its momentum away."""
     answer = answer_of("scenes/ball-on-ball-dropped")
     assert events(answer) == [("touch", "floor"), ("touch", "pair"), ("lift-off", "pair")]
+    assert [event["energy_loss"] for event in answer["events"]] == [0.0, 0.0, 0.0]
+    assert answer["energy"]["conserved"]
     down = math.sqrt(2 * G)
     late = times(answer)[-1] - down / G
     found = columns(answer)

@@ -252,6 +252,94 @@ async def test_a_misspelt_field_of_a_body_is_recognised_whatever_the_body_is_cal
         assert (fault["pointer"], fault["remedy"]) == (f"/bodies/{name}/velocty", "did you mean velocity?")
 
 
+DISC: dict[str, Any] = {"mass": 1, "inertia": 1, "radius": 1, "at": [0, 2], "places": {"rim": [0, 1]}}
+NAMED: dict[str, Any] = {
+    "gravity": [0, -9.81],
+    "bodies": {"bob": {"mass": 1, "at": [3, -4]}, "disc": DISC},
+    "connections": [{"kind": "rod", "name": "arm", "a": "bob", "b": [0, 0]}],
+    "times": [1],
+}
+
+
+def joined(**changes: Any) -> dict[str, Any]:
+    return {"connections": [{"kind": "pin", "a": "bob", "b": [3, -4]} | changes]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "pointer", "remedy"),
+    [
+        (joined(a="bop"), "/connections/0/a", 'did you mean "bob"? the bodies here are bob, disc'),
+        (joined(a="bop.rim"), "/connections/0/a", 'did you mean "bob"? the bodies here are bob, disc'),
+        (joined(a="rope"), "/connections/0/a", "the bodies here are bob, disc"),
+        (joined(a="disc.rum"), "/connections/0/a", 'did you mean "rim"? the places here are centre, rim'),
+        (joined(kind="spirng"), "/connections/0/kind", 'did you mean "spring"?'),
+        (joined(kind="rope"), "/connections/0/kind", None),
+        (joined(axes=[0, 0, 1]), "/connections/0/axes", 'did you mean "axis"?'),
+        (joined(damping=1), "/connections/0/damping", None),
+        (
+            {"connections": [{"kind": "torsion-spring", "a": "disk", "stiffness": 1}]},
+            "/connections/0/a",
+            'did you mean "disc"? the bodies here are bob, disc',
+        ),
+        (
+            {"connections": [{"kind": "torque", "body": "disk", "torque": 1}]},
+            "/connections/0/body",
+            'did you mean "disc"? the bodies here are bob, disc',
+        ),
+        (
+            {"connections": [{"kind": "gravitation", "a": "bob", "b": "disk"}]},
+            "/connections/0/b",
+            'did you mean "disc"? the bodies here are bob, disc; use inverse-square for a place',
+        ),
+        (
+            {"connections": [{"kind": "rolling", "a": "disk", "b": "bob"}]},
+            "/connections/0/a",
+            'did you mean "disc"? the bodies here are bob, disc',
+        ),
+        (
+            {"connections": [{"kind": "rolling", "a": "disc", "b": {"at": [0, 0], "radius": 1}}]},
+            "/connections/0/b",
+            'for a circle of the ground give "place": the body, and "on": {"at": [0, 0], "radius": 1}, in place of a '
+            "and b; or describe it as a body with a radius that is pinned to the ground",
+        ),
+        ({"gravity": 9.81}, "/gravity", "such as [0, -9.81]"),
+        ({"outputs": ["energie"]}, "/outputs/0", 'did you mean "energy"?'),
+        ({"outputs": [{"wen": {}}]}, "/outputs/0", 'did you mean "when"?'),
+        (
+            {"outputs": [{"when": {"quantity": "bob.position.x", "equal": 0}}]},
+            "/outputs/0/when/equal",
+            'did you mean "equals"?',
+        ),
+        (
+            {"outputs": [{"when": {"quantity": "bop.positon.x", "equals": 0}}]},
+            "/outputs/0/when/quantity",
+            'did you mean "bob.position.x"? take a component of a vector by ".x", its length by ".length"',
+        ),
+        (
+            {"outputs": [{"extremes": "arm.forse"}]},
+            "/outputs/0/extremes",
+            'did you mean "arm.force"? take a component of a vector by ".x", its length by ".length"',
+        ),
+        (
+            {"outputs": [{"thresholds": {"vary": "/bodies/bob/mas", "between": [0, 2]}}]},
+            "/outputs/0/thresholds/vary",
+            'did you mean "/bodies/bob/mass"? name one that is written there, as /connections/0/friction',
+        ),
+    ],
+)  # fmt: skip
+async def test_an_unknown_name_in_a_scene_is_answered_with_the_one_that_was_meant(
+    changes: dict[str, Any], pointer: str, remedy: str | None
+) -> None:
+    response = await asked(NAMED | changes)
+    (fault,) = response.json()["errors"]
+    assert (response.status_code, fault["pointer"], fault.get("remedy")) == (422, pointer, remedy)
+
+
+async def test_a_disc_rolls_on_a_circle_of_the_ground_as_the_remedy_says() -> None:
+    rolling = {"kind": "rolling", "place": "disc", "on": {"at": [0, 0], "radius": 1}}
+    assert (await asked(NAMED | {"connections": [rolling]})).status_code == 200
+
+
 async def test_undetermined_forces_are_null_and_say_with_whom_they_are_shared() -> None:
     """A beam pinned at both ends: half of its weight on each vertically, horizontally whatever they agree on."""
     beam = {"mass": 3, "inertia": 1, "at": [0, 0], "places": {"left": [-1, 0], "right": [1, 0]}}

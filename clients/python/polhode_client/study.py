@@ -53,7 +53,7 @@ class Study:
         Parameters
         ----------
         progress : bool
-            Whether to show a bar; needs tqdm.
+            Whether to show a bar, with the status and how many members are done, from the first look on; needs tqdm.
         every : float
             Time between two looks (s).
         timeout : float, optional
@@ -71,7 +71,10 @@ class Study:
         try:
             while True:
                 if bar is not None:
-                    bar.update(state["done"] - bar.n)
+                    # Drawn at every look: while processes start, nothing is done, and the bar would stand still.
+                    bar.set_description_str(state["status"], refresh=False)
+                    bar.n = state["done"]
+                    bar.refresh()
                 if state["status"] not in UNFINISHED:
                     break
                 if until is not None and time.monotonic() > until:

@@ -9,6 +9,7 @@ from typing import Any
 from core.assessment.mistakes import Figure, Mistake
 
 SHAFTS, ROD, CHAIN = "scenes/unwinding-shafts", "scenes/rod-in-hole", "scenes/chain-on-wedge"
+DESCRIBED = "scenes"
 AT_HORIZONTAL = "angular_velocity_at_horizontal"
 UNIFORM = 1.0 / 12.0
 NO_SPIN = 1e12
@@ -93,7 +94,22 @@ def _no_gravity(figure: Figure) -> Iterator[Any]:
             yield figure.right / gravity
 
 
+def _inertia_left_out(figure: Figure) -> Iterator[Any]:
+    """Yield the figure of a described scene of the plane whose bodies have mass, and no moment of inertia."""
+    bodies = figure.request.get("bodies") if figure.subject == DESCRIBED else None
+    if isinstance(bodies, dict):
+        light = {name: {**body, "inertia": 0} if "inertia" in body else body for name, body in bodies.items()}
+        if light != bodies:
+            yield figure.answered({**figure.request, "bodies": light})
+
+
 OF_SCENES = (
+    Mistake(
+        "inertia-left-out", "A pulley without inertia, or a wheel that slides: all moments of inertia left out.",
+        "What turns has a moment of inertia: a pulley with mass has another tension on either side, and what rolls "
+        "moves more slowly than what slides.",
+        _inertia_left_out,
+    ),
     Mistake(
         "shafts-do-not-turn", "Point masses on an Atwood machine in place of shafts that turn.",
         "The shafts turn as the string unwinds, and part of the pull goes into their rotation.",

@@ -41,6 +41,8 @@ class Pendulum:
             "flip": None,
             "kind": "center",
             "stable": True,
+            "force": {"value": 1.0, "unit": "N", "parts": [1.0]},
+            "mass": {"total": 1.0, "own": 0.5, "parts": [0.5, 0.5]},
             "angle": np.array([cos(rate * t) for t in times]),
             "warnings": (),
         }

@@ -57,6 +57,7 @@ def same(submission: Any, grader: Grader, key: AnswerKey, *, reveal: bool) -> An
         ({"/lengths": {"value": [1.0, 2.001], "unit": "s"}}, 1.0),
         ({"/lengths/0": {"value": 1.0, "unit": "s"}, "/lengths/1": {"value": 3.0, "unit": "s"}}, 0.5),
         ({"/nothing": {"value": 1.0}}, None),
+        ({"/force": {"value": 1.0}}, None),
         ({"/period": {"formula": "2*"}}, None),
         ([], None),
     ],
@@ -77,6 +78,14 @@ def test_whatever_is_submitted(value: float, pointer: str, unit: str | None) -> 
     claim = {pointer: {"value": value} | ({"unit": unit} if unit else {})}
     same(claim, ASKED, KEY, reveal=True)
     same(claim, HIDDEN, HIDDEN_KEY, reveal=False)
+
+
+def test_a_key_names_the_figure_in_an_object() -> None:
+    for pointer, remedy in (("/force", "/force/value"), ("/lengths", None), ("/nothing", None)):
+        found = same({pointer: {"formula": "1"}}, ASKED, KEY, reveal=True)
+        (fault,) = found["format_errors"]
+        assert ("remedy" in fault) == (remedy is not None)
+        assert fault.get("remedy", "").endswith(remedy or "")
 
 
 def test_references_are_written_with_their_bounds() -> None:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from core.assessment.figures import equal_moments, form_of, is_null, name_of, steps_of, value_at
+from core.assessment.figures import equal_moments, form_of, is_null, name_of, single_values, steps_of, value_at
 from core.errors import InvalidParameter
 
 
@@ -108,3 +108,12 @@ def test_names_of_parameters_and_groups_of_moments() -> None:
     assert equal_moments([1.0, 1.0 + 1e-12, 2.0]) == ((0, 1), (2,))
     assert equal_moments([1.0, 1.5, 2.0]) == ((0,), (1,), (2,))
     assert equal_moments(None) == ()
+
+
+def test_the_single_values_of_an_object() -> None:
+    assert single_values(ANSWER, ("rows", 0)) == ["kind", "rate"]
+    assert single_values(ANSWER, ("rows", 1)) == ["kind", "rate"]
+    assert single_values(ANSWER, ("held",)) == ["error"]
+    assert single_values(ANSWER, ("a/b",)) == ["~"]
+    for path in (("rows",), ("vector",), ("held", "error"), ("nothing", "deeper"), ("rows", 7)):
+        assert single_values(ANSWER, path) == []

@@ -9,7 +9,7 @@ import pytest
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import SigFig
 from core.assessment.graded_question import GradedQuestion
-from core.assessment.grader import Grader, JudgedClaim, credited
+from core.assessment.grader import Grader, JudgedClaim, credited, explained
 from tests.core.assessment.pendulum import REQUEST, Pendulum
 from tests.core.assessment.test_graded_question import PERIOD
 
@@ -86,3 +86,28 @@ def test_when_a_motion_can_be_answered_is_not_said_without_reveal() -> None:
     claim = {"/angle": {"value": [1.0], "times": [-1.0]}}
     assert "after the start" in grader().judged(claim).faults[0].rule
     assert "after the start" not in grader(reveal=False).judged(claim).faults[0].rule
+
+
+@pytest.mark.parametrize(
+    ("pointer", "remedy"),
+    [
+        ("/force", "an object stands there; name its figure: /force/value"),
+        ("/mass", "an object stands there; name its figure: /mass/own or /mass/total"),
+        ("/nothing", None),
+        ("/nothing/deeper", None),
+        ("/force/parts/5", None),
+    ],
+)
+def test_a_pointer_that_stops_at_an_object_is_answered_with_the_figures_in_it(pointer: str, remedy: str | None) -> None:
+    found = grader().judged({pointer: {"value": 1.0, "unit": "N"}})
+    assert [fault.remedy for fault in found.faults] == [remedy]
+
+
+def test_mistakes_that_give_the_same_value_are_numbered() -> None:
+    catalogue = {one.tag: one for one in MISTAKES}
+    two, half = catalogue["factor-2"], catalogue["factor-half"]
+    assert explained(()) == ""
+    assert explained((two,)) == "A factor of 2 is too much."
+    assert explained((two, half)) == (
+        "Several mistakes give this value, each by itself. (1) A factor of 2 is too much. (2) A factor of 2 is missing."
+    )

