@@ -93,7 +93,7 @@ def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: f
         raise AccuracyUnreachable(
             accuracy,
             reached,
-            "the motion amplifies rounding, even that of pairs of doubles",
+            "rounding is amplified, by the motion or by what is computed of it in doubles",
             remedy="ask for a shorter time or a larger accuracy"
             if before is None
             else f"ask for times before {before:.6g} s, or for a larger accuracy",

@@ -189,14 +189,25 @@ class DescribedSystem:
     def _own(self, times: Floats, accuracy: float) -> dict[str, Column]:
         """Return the columns of the motion itself, by pairs of doubles where doubles do not reach the accuracy."""
         columns = self._columns(times, finer=False)
-        if worst(columns) > accuracy and (self.numerical or accuracy < FINEST):
+        if worst(columns) > accuracy and self.numerical and accuracy >= FINEST:
             self.finer = True
-            columns = self._columns(times, finer=True, rounding=NEAREST if accuracy < FINEST else FINEST)
+            columns = self._columns(times, finer=True)
+        if worst(columns) > accuracy and (accuracy < FINEST or self._is_known(times, accuracy)):
+            self.finer = True
+            columns = self._columns(times, finer=True, rounding=NEAREST)
         sums = Along(self.whole, times, self.how, finer=self.finer)
         columns |= sums.works() if "work-in-time" in self.outputs else {}
         columns |= sums.paths() if "paths-in-time" in self.outputs else {}
         require_reached(columns, accuracy)
         return columns
+
+    def _is_known(self, times: Floats, accuracy: float) -> bool:
+        """Return whether the motion itself reaches an accuracy, so that only what doubles make of it does not.
+
+        The force of a stiff spring is a small difference of lengths: doubles lose the digits that both share.
+        """
+        states = self.whole.states(times, finer=True)
+        return worst(Columns(self.whole, times, states, self.how).trajectory()) <= max(accuracy, 2 * FINEST)
 
     def _columns(self, times: Floats, *, finer: bool, rounding: float = FINEST) -> dict[str, Column]:
         """Return the columns of the states of the motion itself, with their errors."""

@@ -89,3 +89,19 @@ def test_full_turns_are_counted() -> None:
     }
     angles = column(finest(scene, [10.0, -3.0], ("trajectory",)), "wheel.angle")
     assert angles.values.tolist() == [70.5, -20.5]
+
+
+@pytest.mark.parametrize("accuracy", [1e-9, 1e-15])
+def test_a_stiff_spring_that_hardly_yields_is_known_to_any_accuracy(accuracy: float) -> None:
+    """On a circle of 1 m at 2 m/s the spring of 1e8 N/m pulls with m v^2/r = 4 N, by 4e-8 m, at all times."""
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {"bob": {"mass": 1, "at": [1, 0], "velocity": [0, 2]}},
+        "connections": [
+            {"kind": "spring", "name": "spring", "a": "bob", "b": [0, 0], "stiffness": 1e8, "rest_length": 0.99999996}
+        ],
+    }
+    answer = solve_scene(read(scene), [0.01, 0.02], ("trajectory", "forces-in-time"), accuracy)
+    force = column(answer, "spring.force")
+    assert force.error <= 4 * accuracy
+    assert abs(force.values - 4.0).max() <= force.error
