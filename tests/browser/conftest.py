@@ -66,7 +66,13 @@ def opened(browser: Any, base: str) -> Iterator[Callable[..., Any]]:
     contexts, messages = [], []
 
     def open_page(
-        path: str = "/", *, expected: tuple[str, ...] = (), watch: Any = None, before: Any = None, **options: Any
+        path: str = "/",
+        *,
+        expected: tuple[str, ...] = (),
+        watch: Any = None,
+        before: Any = None,
+        wait: bool = True,
+        **options: Any,
     ) -> Any:
         options = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"} | options
         context = browser.new_context(**options)
@@ -81,8 +87,10 @@ def opened(browser: Any, base: str) -> Iterator[Callable[..., Any]]:
             page.on("response", watch)
         if before is not None:
             before(page)
-        page.goto(base + path)
-        page.wait_for_selector("body[data-ready]", timeout=60_000)
+        # A path alone is one of the service that all tests share.
+        page.goto(base + path if path.startswith("/") else path)
+        if wait:
+            page.wait_for_selector("body[data-ready]", timeout=60_000)
         return page
 
     yield open_page

@@ -27,9 +27,12 @@ ARGUMENTS = (
 
 
 @contextmanager
-def serving() -> Iterator[str]:
-    """Give the address of a service: the one that POLHODE_URL names, else one that runs as long as it is needed."""
-    if "POLHODE_URL" in os.environ:
+def serving(**settings: str) -> Iterator[str]:
+    """Give the address of a service: the one that POLHODE_URL names, else one that runs as long as it is needed.
+
+    One with settings of its own, such as ``POLHODE_KEYS_FILE``, always runs.
+    """
+    if "POLHODE_URL" in os.environ and not settings:
         yield os.environ["POLHODE_URL"].rstrip("/")
         return
     with socket.socket() as free:
@@ -37,7 +40,10 @@ def serving() -> Iterator[str]:
         port = free.getsockname()[1]
     url = f"http://127.0.0.1:{port}"
     command: list[object] = [ROOT / ".venv/bin/python", "-m", "service", "--port", str(port)]
-    with tempfile.TemporaryDirectory() as data, _running(command, os.environ | {"POLHODE_DATA": data}) as process:
+    with (
+        tempfile.TemporaryDirectory() as data,
+        _running(command, os.environ | settings | {"POLHODE_DATA": data}) as process,
+    ):
         while True:
             try:
                 urllib.request.urlopen(f"{url}/readyz")
