@@ -16,10 +16,13 @@ import pytest
 
 from service.app import Service
 from service.http.keys import new_key
+from service.observability.metrics import Metrics
 from service.settings import Settings
 from service.studies.folder import Ownership
 from service.studies.store import Store
+from service.studies.supervisor import Supervisor
 from tests.service.conftest import INLINE, client_of
+from tests.service.observability.test_metrics import read
 from tests.service.studies.conftest import UNIFORM, Desk
 from tests.service.studies.toy_table import TABLE
 from tests.service.toy_routes import GOOD
@@ -34,6 +37,8 @@ GRID: dict[str, Any] = {
     ],
     "quantities": ["/position/2/0", "/position/1/1"],
 }
+
+STUDIES, MISSING = ("polhode_studies", ()), ("polhode_study_members_missing", ())
 
 Desks = Callable[..., Desk]
 
@@ -421,15 +426,31 @@ async def test_archives_and_other_documents_are_no_requests(tmp_path: Path) -> N
 
 
 async def test_old_studies_are_removed(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
-    from service.observability.metrics import Metrics
-    from service.studies.supervisor import Supervisor
-
     async with finished(desk_on, in_process, tmp_path) as (client, place):
         Supervisor(Settings(data=str(tmp_path)), TABLE, Metrics()).clean()
         assert (await client.get(place)).status_code == 200
         Supervisor(Settings(data=str(tmp_path), studies_keep_days=1e-12), TABLE, Metrics()).clean()
         assert (await client.get(place)).status_code == 404
         assert not [*(tmp_path / "studies").iterdir()]
+
+
+async def test_unfinished_studies_are_counted(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    metrics = Metrics()
+
+    async def counted(*expected: float) -> None:
+        watch = asyncio.create_task(Supervisor(Settings(data=str(tmp_path)), TABLE, metrics).watch())
+        try:
+            async with asyncio.timeout(60):
+                while (read(metrics.exposition())[STUDIES], read(metrics.exposition())[MISSING]) != expected:
+                    await asyncio.sleep(0.01)
+        finally:
+            watch.cancel()
+
+    async with client_at(tmp_path) as client:
+        await submitted(client)
+        await counted(1.0, 6.0)
+        await asyncio.to_thread(desk_on(in_process, tmp_path).work)
+        await counted(0.0, 0.0)
 
 
 def test_ids_are_long_and_random(tmp_path: Path) -> None:
