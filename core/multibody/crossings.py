@@ -41,9 +41,10 @@ def is_uniform(model: Modelled) -> bool:
 
 def uniform_motion(table: Table, model: Modelled) -> Expansion:
     """Return a motion with constant accelerations as an exact expansion, its multipliers constant."""
-    start = expansion(table, 2)
     places = [[q, v, a / 2, ZERO, ZERO] for q, v, a in zip(table.q, table.v, model.whole.acceleration, strict=True)]
-    return Expansion(places, [[x[0], ZERO, ZERO] for x in start.multipliers])
+    # What is free has no multipliers to be found.
+    multipliers = expansion(table, 2).multipliers if table.rows else []
+    return Expansion(places, [[x[0], ZERO, ZERO] for x in multipliers])
 
 
 def state_of(motion: Expansion, time: Ball) -> tuple[list[Ball], list[Ball]]:

@@ -309,9 +309,20 @@ class Modes:
             self._known["doubles"] = roots, columns.reshape(-1, len(start))
         return self._known["doubles"]  # type: ignore[no-any-return]
 
+    @property
+    def _fastest(self) -> float:
+        """The largest characteristic root (1/s)."""
+        return max((float(abs(acb(mode.growth, mode.frequency))) for mode in self.modes), default=1.0)
+
+    @property
+    def glanced_until(self) -> float:
+        """Time up to which `glance` answers (s), but for rounding."""
+        fastest = self._fastest
+        return 0.999 * FEW_RADIANS / fastest if fastest > 0.0 else math.inf
+
     def nodes(self, end: float) -> Floats:
         """Return times eight to the shortest period."""
-        fastest = max((float(abs(acb(mode.growth, mode.frequency))) for mode in self.modes), default=1.0)
+        fastest = self._fastest
         count = abs(end) * fastest * 2.0
         if count > MOST_NODES:
             raise BudgetExceeded(

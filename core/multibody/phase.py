@@ -101,7 +101,7 @@ class PhaseMotion:
         The event that ended it.
     impacts : list of (int, str, ball or None)
         Work of every impulse: the number of the phase that begins with it, the measure, and the work (J), None where
-        contacts could share it otherwise.
+        contacts could share it otherwise. A ball about zero is what bounces that are left out may take.
     """
 
     base: Described

@@ -22,6 +22,7 @@ from core.multibody.contact_responses import gap_rate, slip_rate
 from core.multibody.contact_start import assemble_contacts
 from core.multibody.contact_states import Problem, State, change_of, phase_table
 from core.multibody.description import Described, described
+from core.multibody.dynamics import kinetic
 from core.multibody.impacts import Impact, approaching, impact
 from core.multibody.language import Scene
 from core.multibody.measures import COMPONENTS
@@ -171,6 +172,10 @@ class _Run:
                 # What is within that of another contact touches it.
                 near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
                 self.touching = sorted({*self.touching, *near})
+                # What each of them takes of the bounces left out is not known, only that it is not more than all take.
+                left_out = arb(0, kinetic(replace(table, q=q, v=v)).rad())
+                names = [self.unilateral[i].name for i in self.touching]
+                self.motion.impacts.extend((len(self.motion.phases), name, left_out) for name in names)
             outcome = impact(table, unilateral, self.touching, q, v)
             if isinstance(outcome, Problem):
                 self._stop(outcome)

@@ -38,9 +38,11 @@ def pin(state: Reduced) -> bool:
         pinned -= leave
     if not pinned:
         return False
-    lost = set(undetermined(table, pinned, [row.line(table.q) for row in table.rows])) - _moved_with_mass(table)
-    if lost:
-        raise weightless(table, lost, ())
+    massless = pinned - _moved_with_mass(table)
+    if massless:
+        lost = massless.intersection(undetermined(table, pinned, [row.line(table.q) for row in table.rows]))
+        if lost:
+            raise weightless(table, lost, ())
     state.pinned.extend(table.names[i] for i in sorted(pinned))
     state.steps.append(f"nothing ever moves {', '.join(table.names[i] for i in sorted(pinned))}")
     expressions: list[Poly | None] = [None] * len(table.names)

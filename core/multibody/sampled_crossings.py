@@ -9,6 +9,7 @@ import numpy as np
 
 from core.errors import BudgetExceeded
 from core.multibody.expansion import expansion
+from core.multibody.modes import Modes
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats, two_to
 from core.multibody.periods import Periodic
@@ -17,6 +18,7 @@ from core.multibody.polynomials import evaluated, is_zero
 from core.multibody.table import Rates, Table
 from core.multibody.taylor_crossings import ORDER
 from core.multibody.tracks import TOLD
+from core.multibody.turning import Turning
 from core.multibody.watches import Watch
 from core.multibody.whole import Whole, values
 
@@ -120,10 +122,11 @@ class Sampled:
     def first(self, end: float) -> tuple[float, Watch] | None:
         """Return about when and by what the phase ends; a singular place has no watch."""
         near = self._near_start()
-        scale = max(
-            [two_to(m.units.time) for _, m in self.whole.parts if isinstance(m, (Numerical, Periodic))] or [end]
-        )
-        before, reach = 0.0, min(end, 2.0 * scale)
+        motions = [motion for _, motion in self.whole.parts]
+        scales = [2.0 * two_to(motion.units.time) for motion in motions if isinstance(motion, (Numerical, Periodic))]
+        # Later states of what turns are evaluated in balls, which takes a hundred times as long.
+        glanced = [motion.glanced_until for motion in motions if isinstance(motion, (Modes, Turning))]
+        before, reach = 0.0, min(end, max(scales) if scales else min(glanced, default=end))
         while True:
             times, singular = self.grid(reach)
             # A motion followed further has other steps: without the time before, there would be a gap at the seam.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -76,6 +77,11 @@ class Turning:
         if self.turn is not None:
             q[:, self.turn], v[:, self.turn] = float(self.table.q[self.turn]) + rate * times, rate
         return q, v
+
+    @property
+    def glanced_until(self) -> float:
+        """Time up to which `glance` answers (s), but for rounding."""
+        return 0.999 * FEW_RADIANS / abs(float(self.rate)) if float(self.rate) else math.inf
 
     def nodes(self, end: float) -> Floats:
         """Return eight times to a radian."""

@@ -6,6 +6,7 @@ import pytest
 
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from tests.core.multibody.contact_judge import (
+    END,
     KINDS,
     any_scene,
     judged,
@@ -13,6 +14,7 @@ from tests.core.multibody.contact_judge import (
     require_physical,
     require_same,
     solved,
+    told_apart,
 )
 
 ENDS = {"horizon", "simultaneous-impacts", "several-motions", "no-motion", "energy-gain", "no-progress"}
@@ -37,6 +39,22 @@ def test_scenes_in_which_the_judge_found_a_fault_are_physical(seed: int) -> None
     Bounces that are left out make the state wrong in a way that no second track shows, and the forces with it.
     """
     assert judged(any_scene(seed, KINDS[:8])) == "horizon"
+
+
+def test_what_the_last_of_bounces_in_turn_take_is_known_no_better_than_their_energy() -> None:
+    """Two discs bounce to rest in turn on a slope; which contact takes the last 6e-14 J depends on rounding."""
+    assert judged(any_scene(2706)) == "simultaneous-impacts"
+
+
+@pytest.mark.parametrize("seed", [4068, 5739, 6301])
+def test_impacts_in_turn_are_told_apart_down_to_a_millionth(seed: int) -> None:
+    """How many impacts come before two are closer than they are known depends on the units; those before do not."""
+    scene = any_scene(seed)
+    answer, other = solved(scene), solved(mirrored(scene))
+    require_physical(answer, scene)
+    require_same(answer, other)
+    assert told_apart(answer) != told_apart(other)
+    assert min(told_apart(answer), told_apart(other)) < END
 
 
 def test_a_bounce_below_what_is_known_of_the_state_is_not_passed_over() -> None:
