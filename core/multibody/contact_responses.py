@@ -15,12 +15,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from flint import arb_mat
-
 from core.errors import BudgetExceeded
 from core.multibody.contact_states import State
 from core.multibody.dynamics import weightless
-from core.multibody.expansion import saddle
+from core.multibody.expansion import saddle_solved
 from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero
 from core.multibody.rank import independent
@@ -187,7 +185,7 @@ def responses(table: Table, unilateral: Sequence[Unilateral], chosen: Sequence[i
         for j, x in line.items():
             right[j][1 + b] = x
     try:
-        solved = saddle(table, own).solve(arb_mat(right)).tolist()
+        solved = saddle_solved(table, own, right)
     except ZeroDivisionError:
         raise weightless(table, range(count), lines) from None
     start = [solved[i][0] for i in range(count)]

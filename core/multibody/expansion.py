@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from operator import mul
@@ -98,17 +98,58 @@ def slope(series: Sequence[Ball]) -> Series:
 
 def saddle(table: Table, chosen: Sequence[int]) -> arb_mat:
     """Return the matrix [M -(W + X)^T; W 0] of chosen rows at the state of a table."""
-    count = len(table.names)
-    size = count + len(chosen)
+    size = len(table.names) + len(chosen)
     entries = [[ZERO] * size for _ in range(size)]
-    for (i, j), x in table.mass.items():
-        entries[i][j] = entries[j][i] = x
-    for k, r in enumerate(chosen):
-        for j, x in table.rows[r].line(table.q).items():
-            entries[count + k][j] = x
-        for j, x in table.rows[r].pushed(table.q).items():
-            entries[j][count + k] = -x
+    for (i, j), x in _entries(table, chosen).items():
+        entries[i][j] = x
     return arb_mat(entries)
+
+
+def _entries(table: Table, chosen: Sequence[int]) -> dict[tuple[int, int], Ball]:
+    """Return the entries of the saddle matrix that are not zero."""
+    count = len(table.names)
+    found: dict[tuple[int, int], Ball] = {}
+    for (i, j), x in table.mass.items():
+        found[i, j] = found[j, i] = x
+    for k, r in enumerate(chosen):
+        found.update({(count + k, j): x for j, x in table.rows[r].line(table.q).items()})
+        found.update({(j, count + k): -x for j, x in table.rows[r].pushed(table.q).items()})
+    return found
+
+
+def saddle_solved(table: Table, chosen: Sequence[int], right: Sequence[Sequence[Ball]]) -> list[list[Ball]]:
+    """Return the solutions of the saddle's equations for the columns of a right side.
+
+    Parts that no entry ties to one another are solved apart, each for the columns that it sees: what a scene of many
+    bodies costs grows with their number, and not with its cube.
+
+    Raises
+    ------
+    ZeroDivisionError
+        Where the matrix is singular.
+    """
+    entries = _entries(table, chosen)
+    found = [[ZERO] * len(line) for line in right]
+    for part in _parts_apart(len(right), entries):
+        seen = [b for b in range(len(right[0])) if not all(right[i][b].is_zero() for i in part)]
+        matrix = arb_mat([[entries.get((i, j), ZERO) for j in part] for i in part])
+        solved = matrix.solve(arb_mat([[right[i][b] for b in seen] for i in part]))
+        for a, i in enumerate(part):
+            for c, b in enumerate(seen):
+                found[i][b] = solved[a, c]
+    return found
+
+
+def _parts_apart(size: int, entries: Iterable[tuple[int, int]]) -> list[list[int]]:
+    """Return the groups of unknowns that entries tie to one another."""
+    group = [[i] for i in range(size)]
+    for i, j in entries:
+        if group[i] is not group[j]:
+            larger, smaller = sorted((group[i], group[j]), key=len, reverse=True)
+            larger.extend(smaller)
+            for k in smaller:
+                group[k] = larger
+    return [members for i, members in enumerate(group) if members[0] == i]
 
 
 def expansion(start: Table, order: int) -> Expansion:

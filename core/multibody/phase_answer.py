@@ -90,7 +90,8 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
         values = forces_at_start(found.described.measures, multipliers)
         noticed += noticed_of(found, values, multipliers)
-        still = [name for name in at_rest(found) if all(name in at_rest(phase.models[0]) for phase in motion.phases)]
+        resting = [set(at_rest(phase.models[0])) for phase in motion.phases]
+        still = [name for name in at_rest(found) if all(name in names for names in resting)]
         if still:
             last = end if motion.ended is None else motion.ended.time
             noticed.append(f"until {last:g} s nothing moves {', '.join(still)}")

@@ -166,7 +166,8 @@ class SumsInPhases:
         done, size = work_of_potential(work.potential or {}, start, states.q)
         errors = _SMALL * size
         other = states.q.copy()
-        other[..., 0] += states.q_error
+        # The first double of a pair would swallow an error smaller than its rounding.
+        other[..., 1] += states.q_error
         errors = errors + np.abs(work_of_potential(work.potential or {}, start, other)[0] - done)
         # It is a function of the place: nothing is carried over.
         one.carried, one.error = 0.0, 0.0
