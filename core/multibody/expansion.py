@@ -10,7 +10,7 @@ from operator import mul
 from flint import arb_mat
 
 from core.multibody.dynamics import weightless
-from core.multibody.polynomials import ZERO, Ball, Poly, is_zero
+from core.multibody.polynomials import ZERO, Ball, Poly, entry, is_zero
 from core.multibody.rank import independent
 from core.multibody.table import Rates, Row, Table
 
@@ -132,7 +132,7 @@ def saddle_solved(table: Table, chosen: Sequence[int], right: Sequence[Sequence[
     found = [[ZERO] * len(line) for line in right]
     for part in _parts_apart(len(right), entries):
         seen = [b for b in range(len(right[0])) if not all(right[i][b].is_zero() for i in part)]
-        matrix = arb_mat([[entries.get((i, j), ZERO) for j in part] for i in part])
+        matrix = arb_mat([[entry(entries, (i, j)) for j in part] for i in part])
         solved = matrix.solve(arb_mat([[right[i][b] for b in seen] for i in part]))
         for a, i in enumerate(part):
             for c, b in enumerate(seen):
@@ -283,8 +283,8 @@ def _dragging(table: Table, row: Row, places: Sequence[Series], rates: Sequence[
 
 def _joined(first: Mapping[int, _Entry], second: Mapping[int, _Entry]) -> dict[int, _Entry]:
     found = dict(first)
-    for j, entry in second.items():
-        found[j] = _Entry(partial(_sum, found[j], entry)) if j in found else entry
+    for j, more in second.items():
+        found[j] = _Entry(partial(_sum, found[j], more)) if j in found else more
     return found
 
 

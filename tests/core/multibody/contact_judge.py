@@ -2,10 +2,11 @@
 
     python -m tests.core.multibody.contact_judge 1000 0
 
-judges 1000 scenes from seed 0 on, in as many processes as there are processors. Nothing overlaps, nothing gains energy, all works together are the change of kinetic energy, no string is longer than it
-is, no friction is stronger than its cone allows, and the answer of a mirrored scene in other units is the same within
-the stated errors. The figures are written to benchmarks/results/contact_scenes.json: a run from seed 0 on begins them
-anew, and one from the seed that follows theirs extends them.
+judges 1000 scenes from seed 0 on, in as many processes as there are processors. Nothing overlaps, nothing gains energy,
+all works together are the change of kinetic energy, no string is longer than it is, no friction is stronger than its
+cone allows, and the answer of a mirrored scene in other units is the same within the stated errors. The figures are
+written to benchmarks/results/contact_scenes.json: a run from seed 0 on begins them anew, and one from the seed that
+follows theirs extends them.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ END = 2.0
 SLIGHT = 1e-9
 """Share of the largest impulse of a contact below which its bounces, and what follows them, are not compared."""
 APART = 1e-6
-"""Share of the largest impulse of contacts that bounce in turn down to which their impacts are told apart in any units."""
+"""Share of the largest impulse of contacts that bounce in turn down to which impacts are told apart in any units."""
 OFTEN, LAST = 3, 24
 """Impacts of a contact, among so many of the last events, by which it bounces in turn with others."""
 LENGTH = 4.0
@@ -466,8 +467,8 @@ def noticeable(events: Sequence[SceneEvent]) -> list[SceneEvent]:
 def told_apart(answer: SceneAnswer) -> float:
     """Return until when the impacts of contacts that bounce in turn are told apart.
 
-    Infinitely many come before a time that they do not reach. Where two of them are closer than they are known, which of
-    them comes first is undecided: how many there are before depends on the rounding, and so on the units.
+    Infinitely many come before a time that they do not reach. Where two of them are closer than they are known, which
+    comes first is undecided: how many there are before depends on the rounding, and so on the units.
     """
     if answer.ended is None or answer.ended.kind != "simultaneous-impacts":
         return np.inf

@@ -46,6 +46,11 @@ def test_what_the_last_of_bounces_in_turn_take_is_known_no_better_than_their_ene
     assert judged(any_scene(2706)) == "simultaneous-impacts"
 
 
+def test_the_work_of_a_spring_at_rest_is_known_no_better_than_its_length() -> None:
+    """A block sticks on a slope: its start is 1e-144 m off the line, and pairs of doubles know it to 1e-29 m."""
+    assert judged(any_scene(9836)) == "horizon"
+
+
 @pytest.mark.parametrize("seed", [4068, 5739, 6301])
 def test_impacts_in_turn_are_told_apart_down_to_a_millionth(seed: int) -> None:
     """How many impacts come before two are closer than they are known depends on the units; those before do not."""

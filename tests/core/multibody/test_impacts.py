@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import mpmath
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 
 from core.multibody.solve import solve_scene
+from core.multibody.turning import FEW_RADIANS
 from tests.core.multibody.test_contacts import kinds, states
 from tests.core.multibody.worked_examples import column, read
 
@@ -283,3 +286,90 @@ def test_more_events_than_are_followed_end_the_answer_and_lose_nothing() -> None
         height = mpmath.mpf("9.81") * late * (2 * fall - late) / 2
     found = column(answer, "ball.position")
     assert abs(found.values[2, 1] - float(height)) <= found.error
+
+
+def test_an_impact_goes_through_a_row_of_equal_balls() -> None:
+    """Equal balls exchange their velocities: one moves at a time, over one gap after another."""
+    count, gap = 30, 0.0001
+    names = [f"b{i:02}" for i in range(count)]
+    scene = {
+        "bodies": {
+            name: {
+                "mass": 2,
+                "inertia": 1,
+                "radius": 0.01,
+                "at": [f"{i}*(0.02 + {gap})", 0],
+                "velocity": [3 * (i == 0), 0],
+            }
+            for i, name in enumerate(names)
+        },
+        "connections": [
+            {"kind": "contact", "name": f"{a}-{b}", "a": a, "b": b, "restitution": 1} for a, b in pairwise(names)
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 1.0])
+    assert [event.name for event in answer.events] == [f"{a}-{b}" for a, b in pairwise(names)]
+    for i, event in enumerate(answer.events, 1):
+        assert abs(event.time - float(Fraction(i, 30000))) <= event.error + 2**-53 * event.time
+        assert event.impulses["normal"] == 6.0
+    for name in names[:-1]:
+        assert column(answer, f"{name}.velocity").values[-1].tolist() == [0.0, 0.0]
+    assert column(answer, f"{names[-1]}.velocity").values[-1].tolist() == [3.0, 0.0]
+
+
+def test_a_mass_on_a_spring_bounces_off_a_stop_at_equal_times() -> None:
+    """x = a cos(wt) from a = 0.5 m to the stop at -0.2 m, and back: w t = (2n - 1) arccos(-0.4)."""
+    scene = {
+        "bodies": {"m": {"mass": 2, "at": ["0.5", 0]}},
+        "connections": [
+            {"kind": "slider", "a": "m", "b": [0, 0], "slope": 0},
+            {"kind": "spring", "a": "m", "b": [0, 0], "stiffness": 50, "rest_length": 0},
+            {
+                "kind": "contact",
+                "name": "stop",
+                "place": "m",
+                "on": {"at": ["-0.2", 0], "slope": {"degrees": -90}},
+                "restitution": 1,
+            },
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 15.0])
+    assert len(answer.events) == 19
+    with mpmath.workdps(30):
+        half = mpmath.acos(mpmath.mpf(-2) / 5) / 5
+        for n, event in enumerate(answer.events, 1):
+            assert abs(event.time - (2 * n - 1) * half) <= event.error < 1e-14
+
+
+def test_a_rod_lands_after_many_turns() -> None:
+    """Its lower end is at h - 0.3 |sin(40 t)| - g t^2/2: the first zero comes after 127 radians."""
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {
+            "rod": {
+                "mass": 1,
+                "inertia": "0.03",
+                "at": [0, 51],
+                "angle": 0,
+                "angular_velocity": 40,
+                "places": {"left": ["-0.3", 0], "right": ["0.3", 0]},
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": end, "place": f"rod.{end}", "on": {"at": [0, 0]}, "restitution": 0}
+            for end in ("left", "right")
+        ],
+    }
+    answer = solve_scene(read(scene), [3.0])
+    assert not answer.events
+    answer = solve_scene(read(scene), [0.0, 3.2])
+    with mpmath.workdps(30):
+        times = np.linspace(3.0, 3.2, 20001)
+        first = next(t for t in times if 51 - 0.3 * abs(np.sin(40 * t)) < 5 * t * t)
+        end = "left" if np.sin(40 * first) > 0 else "right"
+        sign = 1 if end == "left" else -1
+        root = mpmath.findroot(lambda t: 51 - sign * mpmath.sin(40 * t) * 3 / 10 - 5 * t * t, first)
+        event = answer.events[0]
+        assert event.name == end
+        assert 40 * root > FEW_RADIANS
+        assert abs(event.time - root) <= event.error < 1e-14
