@@ -14,6 +14,7 @@ import numpy as np
 from core.errors import InvalidParameter
 from core.notices import Notice
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, exact, sign
+from core.scenes.equation import SceneEquation
 from core.systems.system import Floats, Model
 from core.systems.trajectory import Column
 from core.work import spend
@@ -117,6 +118,20 @@ class Motion(ABC):
 
         It is called only between the beginning and the end.
         """
+
+    @abstractmethod
+    def equation(self) -> SceneEquation:
+        """Return the equation of the motion, which methods integrate.
+
+        Raises
+        ------
+        NotApplicable
+            If something happens to the motion that an equation does not describe.
+        """
+
+    @abstractmethod
+    def observed(self, states: Floats) -> Mapping[str, Floats]:
+        """Return the columns that follow from states of the equation, shape (n, k)."""
 
     def sample(self, times: Floats) -> Samples:
         """Return the motion at `times`, shape (n,), all between the beginning and the end.

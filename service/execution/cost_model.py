@@ -68,7 +68,7 @@ class CalibratedCost:
     counts : callable
         Refuses what exceeds the budget.
     unmeasured : mapping of str to float, optional
-        Costs of an operation that the table does not have.
+        Costs that the table does not have for the operation.
     """
 
     operation: str
@@ -81,7 +81,7 @@ class CalibratedCost:
         # A body is looked at in the same way for every question, and where it is small that does not stand out.
         points = seconds["mass_properties"]["points"]
         judging = seconds["rotation_trajectory"]["evaluations of dormand-prince-853"]
-        return {"points": points, "judging evaluations": judging, **seconds.get(self.operation, self.unmeasured)}
+        return {"points": points, "judging evaluations": judging, **self.unmeasured, **seconds.get(self.operation, {})}
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""

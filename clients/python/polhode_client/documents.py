@@ -1113,6 +1113,18 @@ class UnwindingShaftsRequest(TypedDict):
     times: NotRequired[Span | Numbers | None]
     round: NotRequired[Literal["meaningful"] | int | None]
     accuracy: NotRequired[float]
+    method: NotRequired[
+        ClosedFormEvaluation
+        | ExplicitEuler
+        | RungeKutta4
+        | ImplicitMidpoint
+        | SymmetricSplitting
+        | DiscreteMoserVeselov
+        | DormandPrince853
+        | Lsoda
+        | Radau
+        | None
+    ]
 
 
 class Friction(TypedDict):
@@ -1128,6 +1140,7 @@ class UnwindingShaftsAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -1218,6 +1231,18 @@ class RodInHoleRequest(TypedDict):
     times: NotRequired[Span | Numbers | None]
     round: NotRequired[Literal["meaningful"] | int | None]
     accuracy: NotRequired[float]
+    method: NotRequired[
+        ClosedFormEvaluation
+        | ExplicitEuler
+        | RungeKutta4
+        | ImplicitMidpoint
+        | SymmetricSplitting
+        | DiscreteMoserVeselov
+        | DormandPrince853
+        | Lsoda
+        | Radau
+        | None
+    ]
 
 
 class RodInHoleAnswer(TypedDict):
@@ -1226,6 +1251,7 @@ class RodInHoleAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -1288,6 +1314,18 @@ class ChainOnWedgeRequest(TypedDict):
     times: NotRequired[Span | Numbers | None]
     round: NotRequired[Literal["meaningful"] | int | None]
     accuracy: NotRequired[float]
+    method: NotRequired[
+        ClosedFormEvaluation
+        | ExplicitEuler
+        | RungeKutta4
+        | ImplicitMidpoint
+        | SymmetricSplitting
+        | DiscreteMoserVeselov
+        | DormandPrince853
+        | Lsoda
+        | Radau
+        | None
+    ]
 
 
 class ChainOnWedgeAnswer(TypedDict):
@@ -1296,6 +1334,7 @@ class ChainOnWedgeAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -1912,6 +1951,7 @@ class CertifiedUnwindingShaftsAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -2009,6 +2049,7 @@ class CertifiedRodInHoleAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -2078,6 +2119,7 @@ class CertifiedChainOnWedgeAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
