@@ -160,6 +160,8 @@ def test_the_architecture_page_lists_every_package_and_its_imports() -> None:
 
 
 TESTED_IN = {
+    "core/assessment/judged_claims.py": "core/assessment/test_grader.py",
+    "core/assessment/question_source.py": "core/assessment/test_graded_question.py",
     "core/assessment/results.py": "core/assessment/test_answer_key.py",
     "core/bodies/uniform.py": "core/bodies/test_solids.py",
     "core/systems/budget.py": "core/systems/methods/test_fixed_step.py",
