@@ -114,26 +114,17 @@ class RequestContext:
             await self._respond(304, b"", [*about, (b"etag", etag), NOSNIFF])
             return
         await self._start(200, [*headers, (b"etag", etag), NOSNIFF])
-        leaving = asyncio.ensure_future(self.gone())
-        gathered: list[bytes | memoryview] = []
-        try:
+        short: list[bytes | memoryview] = []
+
+        async def gathered() -> AsyncIterator[bytes]:
             for piece in pieces:
-                # Servers accept and drop what is sent on a closed connection: the rest would be written in vain.
-                if leaving.done():
-                    raise ClientGone
-                gathered.append(piece)
-                if len(piece) < SHORT:
-                    continue
-                async with asyncio.timeout(patience):
-                    await self._send({"type": "http.response.body", "body": b"".join(gathered), "more_body": True})
-                gathered = []
-                await asyncio.sleep(0)
-        except TimeoutError:
-            raise ClientGone from None
-        finally:
-            leaving.cancel()
-        await self._send({"type": "http.response.body", "body": b"".join(gathered), "more_body": False})
-        self.close(200)
+                short.append(piece)
+                if len(piece) >= SHORT:
+                    yield b"".join(short)
+                    short.clear()
+                    await asyncio.sleep(0)
+
+        await self._each(gathered(), patience, short)
 
     async def document(self, body: bytes, status: int, headers: Iterable[Header] = ()) -> None:
         """Send a JSON document that changes, and is not to be stored by anyone."""
@@ -170,10 +161,17 @@ class RequestContext:
 
         await self._each(each(), patience)
 
-    async def _each(self, pieces: AsyncIterator[bytes], patience: float | None = None) -> None:
+    async def _each(
+        self,
+        pieces: AsyncIterator[bytes],
+        patience: float | None = None,
+        rest: Iterable[bytes | memoryview] = (),
+    ) -> None:
+        """Send pieces one by one, and then what there is of a rest when they have ended."""
         leaving = asyncio.ensure_future(self.gone())
         try:
             async for piece in pieces:
+                # Servers accept and drop what is sent on a closed connection: the rest would be written in vain.
                 if leaving.done():
                     raise ClientGone
                 async with asyncio.timeout(patience):
@@ -182,7 +180,7 @@ class RequestContext:
             raise ClientGone from None
         finally:
             leaving.cancel()
-        await self._send({"type": "http.response.body", "body": b"", "more_body": False})
+        await self._send({"type": "http.response.body", "body": b"".join(rest), "more_body": False})
         self.close(200)
 
     def close(self, status: int) -> None:
