@@ -244,6 +244,10 @@ class ChainMotion(UnbrokenMotion):
         )
         return SceneEquation((position,), self.model)
 
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        """Return x and x'."""
+        return np.stack((columns["position"], columns["velocity"]), axis=1)
+
     def observed(self, states: Floats) -> Mapping[str, Floats]:
         """Return position, velocity and tension."""
         x, v = states.T

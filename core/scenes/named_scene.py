@@ -19,8 +19,7 @@ from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.notices import Notice
 from core.quantities import Tolerance, Unit, check_value
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding
-from core.scenes.equation import SceneEquation
-from core.scenes.figures import MOTION, SceneEvent, SceneExample
+from core.scenes.figures import MOTION, SceneExample
 from core.scenes.motion import Event, Motion
 from core.scenes.sampled_motion import sampled
 from core.systems.budget import Budget
@@ -55,8 +54,6 @@ class SceneAnswer:
         What the reader of the figures must know.
     work : Work
         Samples computed.
-    requested_samples : int
-        Samples requested; `work` counts those that exist.
     """
 
     model: Model
@@ -66,7 +63,6 @@ class SceneAnswer:
     accuracy: Accuracy
     notices: tuple[Notice, ...]
     work: Work
-    requested_samples: int
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
@@ -154,16 +150,10 @@ class NamedScene(ABC):
         assert found is not None
         return found
 
-    def equation(self, horizon: float) -> SceneEquation:
-        """Return the equation of the motion up to `horizon` (s), which methods integrate.
-
-        Raises
-        ------
-        NotApplicable
-            If an event before that interrupts the motion.
-        """
+    def motion_to(self, horizon: float) -> Motion:
+        """Return the motion at least up to `horizon` (s), at the precision that answers in doubles begin with."""
         with precision(BITS):
-            return self.motion(horizon).equation()
+            return self.motion(horizon)
 
     def answer(
         self,
@@ -247,7 +237,7 @@ class NamedScene(ABC):
         found = self.outline(wanted, horizon, lambda time: float(time) <= horizon, rounded)
         trajectory = None
         if found.motion is not None and question is not None and "trajectory" in wanted:
-            events = [SceneEvent(event.kind, float(event.time)) for event in found.events]
+            events = [event.in_doubles() for event in found.events]
             trajectory = sampled(found.motion, question, self.units(), found.ended or HORIZON, events)
         bare = Accuracy(accuracy, 0.0, "closed form") if trajectory is None else trajectory.accuracy
         answer = SceneAnswer(
@@ -258,7 +248,6 @@ class NamedScene(ABC):
             accuracy=replace(bare, error=max(rounded.error, bare.error)),
             notices=(*rounded.notices, *self.notices(wanted)),
             work=Work(0) if trajectory is None else trajectory.work,
-            requested_samples=0 if question is None else question.times.size,
         )
         # A time that is a quotient by what may be zero is decided with more digits.
         decided = found.motion is None or all(event.time.is_finite() for event in found.motion.events())

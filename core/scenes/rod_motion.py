@@ -204,6 +204,10 @@ class RodMotion(UnbrokenMotion):
         angle = AcceleratedCoordinate(2 * angle_of(swing.sine, swing.cosine), swing.rate, sine=-(swing.frequency**2))
         return SceneEquation((angle,), self.model)
 
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        """Return psi and psi'."""
+        return np.stack((columns["angle"], columns["angular_velocity"]), axis=1)
+
     def observed(self, states: Floats) -> Mapping[str, Floats]:
         """Return angle, rate and the wall's forces on A and B."""
         angle, rate = states.T

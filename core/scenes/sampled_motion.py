@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.errors import InvalidParameter, inside_field
-from core.scenes.figures import SceneEvent
+from core.balls import precision
+from core.errors import InvalidParameter, NotApplicable, inside_field
+from core.scenes.enclosure import BITS
+from core.scenes.equation import SceneEquation
 from core.scenes.motion import Motion, finite
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
 from core.systems.question import MotionQuestion
 from core.systems.system import Floats, Integers
-from core.systems.trajectory import Accuracy, Column, How, Trajectory, Work
+from core.systems.trajectory import Accuracy, Column, How, MotionEvent, Trajectory, Work
 
 _NOT_KNOWN = "what the uncertainty of the inputs does is not followed in this scene"
 
@@ -26,7 +28,7 @@ def sampled(
     question: MotionQuestion,
     units: Mapping[str, str],
     ended: str,
-    events: Sequence[SceneEvent[float]],
+    events: Sequence[MotionEvent],
 ) -> Trajectory:
     """Return the samples that exist.
 
@@ -38,7 +40,7 @@ def sampled(
         Of the columns.
     ended : str
         The horizon, or the event that ended the motion before it.
-    events : sequence of SceneEvent
+    events : sequence of MotionEvent
         What happens up to the last of the times.
 
     Raises
@@ -68,6 +70,43 @@ def sampled(
         events=events,
         warnings=samples.notices,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class ComparableEquation(SceneEquation):
+    """The equation of a motion, and the motion itself, to which methods are compared."""
+
+    motion: Motion
+
+    @classmethod
+    def of(cls, motion: Motion) -> ComparableEquation:
+        """Return the equation of a motion; raises `NotApplicable` if something happens that it does not describe."""
+        with precision(BITS):
+            return cls(motion.equation().coordinates, motion.model, motion)
+
+    def reference(self, times: Floats) -> tuple[str, Floats, float]:
+        """Return how the motion is known, its states at times of shape (t,), and their largest error as a norm.
+
+        Raises
+        ------
+        InvalidParameter
+            For times before the beginning.
+        NotApplicable
+            If the motion ends before the last time.
+        """
+        with precision(BITS):
+            if len(_existing(self.motion, times)) < times.size:
+                raise NotApplicable(
+                    "the motion ends before the last of the times",
+                    path=("times",),
+                    remedy="ask for times before the event that ends it",
+                )
+            samples = self.motion.sample(times)
+            errors = {
+                name: np.broadcast_to(samples.errors[name], values.shape) for name, values in samples.values.items()
+            }
+            wrong = np.linalg.norm(self.motion.states(errors), axis=1)
+            return "closed form", self.motion.states(samples.values), float(np.max(wrong, initial=0.0))
 
 
 def _how(question: MotionQuestion) -> How:

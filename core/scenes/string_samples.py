@@ -152,13 +152,18 @@ class ShaftMotion(Motion):
         if others or first.sequence is not None:
             raise NotApplicable(
                 "jerks and changes between slipping and rolling interrupt the motion, and no method steps over them",
-                path=("method",),
+                path=("times",),
                 remedy="leave the method out, or ask for times before the first of the events",
             )
         start, drive = first.start, first.drive
         along = zip(start.positions, start.velocities, drive.positions, strict=True)
         around = zip(start.unwound, start.rates, drive.unwound, strict=True)
         return SceneEquation(tuple(AcceleratedCoordinate(*one) for one in (*along, *around)), self.model)
+
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        """Return positions and lengths unwound, and their rates."""
+        rates = columns["spins"] * np.array(self._radii)
+        return np.hstack((columns["positions"], columns["unwound"], columns["velocities"], rates))
 
     def observed(self, states: Floats) -> Mapping[str, Floats]:
         """Return positions, rates and lengths, and the tension where it is determined."""

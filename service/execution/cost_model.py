@@ -199,21 +199,22 @@ def _whole(number: float) -> float:
 
 def extent(times: Any) -> float:
     """Return how far a method marches, to both sides of the start (s)."""
-    ends = _ends(times)
+    ends = ends_of(times)
     return max(0.0, *ends) - min(0.0, *ends)
 
 
 def farthest(times: Any) -> float:
     """Return the largest distance from the start (s)."""
-    return max(map(abs, _ends(times)))
+    return max(map(abs, ends_of(times)))
 
 
 def extreme(times: Any) -> float:
     """Return the time that is farthest from the start (s)."""
-    return max(_ends(times), key=abs)
+    return max(ends_of(times), key=abs)
 
 
-def _ends(times: Any) -> list[float]:
+def ends_of(times: Any) -> list[float]:
+    """Return times among which are the least and the largest (s)."""
     if isinstance(times, list):
         return times
     # A single time is the start, wherever the stop is.

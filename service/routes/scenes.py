@@ -13,6 +13,7 @@ from core.quantities import Tolerance, members_of
 from core.scenes import Scene
 from core.scenes.figures import SceneEvent
 from core.scenes.named_scene import NamedScene
+from core.scenes.sampled_motion import ComparableEquation
 from core.systems.budget import Budget
 from core.systems.methods import Method, SymmetricSplitting
 from core.systems.system import Model
@@ -161,8 +162,9 @@ def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:
         wanted = None if question.outputs is None else frozenset(question.outputs)
         found = system.answer(times, wanted, question.accuracy, question.round, method=question.method, budget=budget)
         motion = found.trajectory
+        requested = 0 if times is None else times.size
         samples = None if motion is None else {name: motion[name] for name in ("time", *motion.columns)}
-        fields = answer_of(found, accuracy_fields(found.accuracy), found.work, found.requested_samples, samples)
+        fields = answer_of(found, accuracy_fields(found.accuracy), found.work, requested, samples)
         return fields if motion is None or question.method is None else fields | {"method": motion.method}
 
     return answer
@@ -237,7 +239,7 @@ def _probe(scene: type[NamedScene], question: Any, budget: Budget) -> PlanningPr
     if in_closed_form(question.method) or "trajectory" not in own.fields:
         return own
     instants = sample_times(question.times, budget)
-    _system(scene, question).equation(max(0.0, float(instants.max())))
+    ComparableEquation.of(_system(scene, question).motion_to(max(0.0, float(instants.max()))))
     times = own.fields["trajectory"]["time"]
     if not len(times):
         return own

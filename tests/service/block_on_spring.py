@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Generic, Literal
 
+import numpy as np
+
 from core.quantities import Length, Mass, Quantity, Unit, Velocity, check
 from core.scenes.enclosure import Ball, exact
 from core.scenes.equation import AcceleratedCoordinate, SceneEquation
@@ -75,6 +77,9 @@ class Oscillation(UnbrokenMotion):
     def equation(self) -> SceneEquation:
         position = AcceleratedCoordinate(self.position, self.velocity, slope=-(self.rate**2))
         return SceneEquation((position,), self.model)
+
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        return np.stack((columns["position"], columns["velocity"]), axis=1)
 
     def observed(self, states: Floats) -> Mapping[str, Floats]:
         return {"position": states[:, 0], "velocity": states[:, 1]}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,6 +15,7 @@ from core.scenes.chain_on_wedge import ChainOnWedge
 from core.scenes.friction import Friction
 from core.scenes.named_scene import NamedScene
 from core.scenes.rod_in_hole import RodInHole
+from core.scenes.sampled_motion import ComparableEquation
 from core.scenes.unwinding_shafts import UnwindingShafts
 from core.systems.budget import Budget
 from core.systems.methods import (
@@ -81,7 +83,7 @@ def test_every_method_states_the_distance_from_the_motion(name: str, method: Any
     assert found.accuracy.how == "measured against closed form"
     assert found.work.evaluations > 0
     assert found.ended == right.ended
-    assert [vars(event) for event in found.events] == [vars(event) for event in right.events]
+    assert found.events == right.events
     for column, values in found.columns.items():
         apart = float(np.max(np.abs(values.values - right[column])))
         assert apart <= values.error <= apart + right.columns[column].error * (1 + 1e-12)
@@ -135,6 +137,16 @@ def test_solve_runs_methods_and_warns() -> None:
     assert short.accuracy.error >= found.accuracy.error
 
 
+def test_the_time_of_an_event_states_how_near_it_is() -> None:
+    """Solid shafts: T = g (sin a + sin b) M1 M2/(3 (M1 + M2)), and string 2 unwinds at 2 T/M2."""
+    (end,) = trajectory_of(SHAFTS, [1.0], None).events
+    with mp.workdps(40):
+        tension = mp.mpf(9.81) * (mp.sin(mp.mpf(0.5)) + mp.sin(mp.mpf(0.9))) * 2 / 9
+        right = mp.sqrt(2 * mp.mpf(0.8) / (2 * tension))
+        assert abs(mp.mpf(end.time) - right) <= end.error <= mp.mpf(2) ** -53 * right * 2
+    assert (end.kind, end.name, dict(end.impulses)) == ("string-2-unwound", "", {})
+
+
 def test_figures_are_not_the_methods() -> None:
     plain, by_method = CHAIN.answer(np.array([0.5])), CHAIN.answer(np.array([0.5]), method=ExplicitEuler(0.1))
     assert plain.figures == by_method.figures
@@ -158,9 +170,9 @@ def test_no_method_steps_over_an_event(scene: UnwindingShafts) -> None:
     assert events
     with pytest.raises(NotApplicable, match="interrupt") as refusal:
         trajectory_of(scene, [1.0], RungeKutta4(0.01))
-    assert refusal.value.path == ("method",)
+    assert refusal.value.path == ("times",)
     with pytest.raises(NotApplicable):
-        scene.equation(1.0)
+        ComparableEquation.of(scene.motion_to(1.0))
     before = 0.5 * next(event.time for event in events if event.time > 0.0)
     assert trajectory_of(scene, [before], RungeKutta4(0.1 * before)).accuracy.error < 1e-12
 
