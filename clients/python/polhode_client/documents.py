@@ -848,7 +848,7 @@ class EarthFigures(TypedDict):
 
 
 class WorkPrecisionRequest(TypedDict):
-    """A free rotation or a described scene, and the methods to be compared on it."""
+    """A free rotation, a described scene or a named one, and the methods to be compared on it."""
 
     body: NotRequired[
         PrincipalMoments
@@ -872,6 +872,7 @@ class WorkPrecisionRequest(TypedDict):
     ]
     angular_velocity: NotRequired[Numbers | None]
     scene: NotRequired[SceneDescription | None]
+    named_scene: NotRequired[UnwindingShafts | RodInHole | ChainOnWedge | None]
     times: Span | Numbers
     methods: NotRequired[
         Sequence[
@@ -1007,6 +1008,61 @@ class SceneConnection(TypedDict):
     ]
 
 
+class UnwindingShafts(TypedDict):
+    """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound."""
+
+    masses: Numbers
+    radii: Numbers
+    slopes: Numbers
+    gravity: float
+    inertia_factors: NotRequired[Numbers]
+    positions: NotRequired[Numbers | None]
+    velocities: NotRequired[Numbers]
+    spins: NotRequired[Numbers]
+    wound: NotRequired[Numbers | None]
+    slope_lengths: NotRequired[Numbers | None]
+    restitution: NotRequired[float]
+    friction: NotRequired[Friction | None]
+    kind: Literal["unwinding-shafts"]
+
+
+class Friction(TypedDict):
+    """Coulomb friction of two shafts on their slopes."""
+
+    static: Numbers
+    kinetic: Numbers
+
+
+class RodInHole(TypedDict):
+    """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall.
+
+    Angles are those of the line from the axis to the rod's centre, from the downward vertical; positive has end B
+    higher."""
+
+    hole_radius: float
+    length: float
+    mass: float
+    gravity: float
+    angle: NotRequired[float | None]
+    angular_velocity: NotRequired[float]
+    inertia_factor: NotRequired[float]
+    hole: NotRequired[Literal["half-cylinder", "cylinder"]]
+    kind: Literal["rod-in-hole"]
+
+
+class ChainOnWedge(TypedDict):
+    """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
+
+    masses: Numbers
+    slopes: Numbers
+    gravity: float
+    length: float
+    linear_density: float
+    position: float
+    velocity: NotRequired[float]
+    kind: Literal["chain-on-wedge"]
+
+
 class WorkPrecisionAnswer(TypedDict):
     """Error against cost."""
 
@@ -1032,8 +1088,9 @@ class MethodCurve(TypedDict):
 class MethodMeasurement(TypedDict):
     """One method with one setting; errors are relative to the largest norm of the state in the whole motion.
 
-    The state of a scene holds the coordinates that remain of it, and then their rates, in units in which they are of
-    the order of one: SI units times powers of two."""
+    The state of a described scene holds the coordinates that remain of it, and then their rates, in units in which they
+    are of the order of one: SI units times powers of two. That of a named scene holds its coordinates, and then their
+    rates, in SI units."""
 
     method: (
         ClosedFormEvaluation
@@ -1125,13 +1182,6 @@ class UnwindingShaftsRequest(TypedDict):
         | Radau
         | None
     ]
-
-
-class Friction(TypedDict):
-    """Coulomb friction of two shafts on their slopes."""
-
-    static: Numbers
-    kinetic: Numbers
 
 
 class UnwindingShaftsAnswer(TypedDict):
