@@ -100,9 +100,12 @@ class RequestContext:
         await self._respond(problem.type.status, body, headers)
 
     async def stream(
-        self, pieces: Iterable[bytes | memoryview], etag: bytes, patience: float, headers: Sequence[Header]
-    ) -> None:
+        self, pieces: Iterator[bytes | memoryview], etag: bytes, patience: float, headers: Sequence[Header],
+        turns: asyncio.Lock,
+    ) -> None:  # fmt: skip
         """Send an answer piece by piece, short ones with the next, letting other requests run in between.
+
+        Between two other requests, one piece of one stream is made: the streams of a process share `turns`.
 
         Raises
         ------
@@ -114,17 +117,25 @@ class RequestContext:
             await self._respond(304, b"", [*about, (b"etag", etag), NOSNIFF])
             return
         await self._start(200, [*headers, (b"etag", etag), NOSNIFF])
-        short: list[bytes | memoryview] = []
-
-        async def gathered() -> AsyncIterator[bytes]:
-            for piece in pieces:
-                short.append(piece)
-                if len(piece) >= SHORT:
-                    yield b"".join(short)
-                    short.clear()
+        leaving = asyncio.ensure_future(self.gone())
+        more = True
+        try:
+            while more:
+                # Servers accept and drop what is sent on a closed connection: the rest would be written in vain.
+                if leaving.done():
+                    raise ClientGone
+                async with turns:
+                    body, more = _gathered(pieces)
                     await asyncio.sleep(0)
-
-        await self._each(gathered(), patience, short)
+                if more:
+                    async with asyncio.timeout(patience):
+                        await self._send({"type": "http.response.body", "body": body, "more_body": True})
+        except TimeoutError:
+            raise ClientGone from None
+        finally:
+            leaving.cancel()
+        await self._send({"type": "http.response.body", "body": body, "more_body": False})
+        self.close(200)
 
     async def document(self, body: bytes, status: int, headers: Iterable[Header] = ()) -> None:
         """Send a JSON document that changes, and is not to be stored by anyone."""
@@ -161,17 +172,10 @@ class RequestContext:
 
         await self._each(each(), patience)
 
-    async def _each(
-        self,
-        pieces: AsyncIterator[bytes],
-        patience: float | None = None,
-        rest: Iterable[bytes | memoryview] = (),
-    ) -> None:
-        """Send pieces one by one, and then what there is of a rest when they have ended."""
+    async def _each(self, pieces: AsyncIterator[bytes], patience: float | None = None) -> None:
         leaving = asyncio.ensure_future(self.gone())
         try:
             async for piece in pieces:
-                # Servers accept and drop what is sent on a closed connection: the rest would be written in vain.
                 if leaving.done():
                     raise ClientGone
                 async with asyncio.timeout(patience):
@@ -180,7 +184,7 @@ class RequestContext:
             raise ClientGone from None
         finally:
             leaving.cancel()
-        await self._send({"type": "http.response.body", "body": b"".join(rest), "more_body": False})
+        await self._send({"type": "http.response.body", "body": b"", "more_body": False})
         self.close(200)
 
     def close(self, status: int) -> None:
@@ -208,3 +212,13 @@ class RequestContext:
             own.append((b"connection", b"close"))
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": [*headers, *own]})
+
+
+def _gathered(pieces: Iterator[bytes | memoryview]) -> tuple[bytes, bool]:
+    """Return the next pieces up to one that is not short, and whether there may be more."""
+    gathered = []
+    for piece in pieces:
+        gathered.append(piece)
+        if len(piece) >= SHORT:
+            return b"".join(gathered), True
+    return b"".join(gathered), False
