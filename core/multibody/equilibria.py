@@ -173,8 +173,7 @@ def _search(dense: _Dense, start: Floats, freedom: int) -> list[tuple[Floats, Fl
         q, multipliers = _followed(dense, q[known], multipliers[known])
         if not len(q):
             return []
-        step, singular = _newton(dense, q, multipliers)
-        left, measures = _residuals(dense, q, multipliers, dense.jacobian(q))
+        step, singular, left, measures = _newton(dense, q, multipliers)
     # A step alone may be short where the equations are nearly singular and not solved.
     size = 1.0 + np.abs(q).max(axis=1)
     terms = _forces(dense, q)
@@ -205,7 +204,7 @@ def _followed(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[Floats, Fl
     order = np.arange(len(q))
     ended: list[tuple[Floats, Floats, np.ndarray]] = []
     for _ in range(_ROUNDS):
-        (step, singular), left = _newton(dense, q, multipliers), _residuals(dense, q, multipliers, dense.jacobian(q))[0]
+        step, singular, left, _ = _newton(dense, q, multipliers)
         # Where the equations are nearly singular a step may be short though they are not solved.
         solved = ~singular | (np.abs(left).max(axis=1) <= _ENDED * _forces(dense, q))
         q, multipliers = q + step[:, :n], multipliers + step[:, n:]
@@ -248,22 +247,21 @@ def _saddle(w: Floats, first: Floats, second: Floats) -> Floats:
     return solutions(system, np.concatenate([first, second], axis=1))[0]
 
 
-def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[Floats, np.ndarray]:
-    """Return the steps of places and multipliers, and which systems were nearly singular."""
+def _newton(dense: _Dense, q: Floats, multipliers: Floats) -> tuple[Floats, np.ndarray, Floats, Floats]:
+    """Return the steps of places and multipliers, which systems were nearly singular, and what the steps are to end.
+
+    That is the forces left over and the measures that are not held.
+    """
     n, m = q.shape[1], multipliers.shape[1]
     w = dense.jacobian(q)
     system = np.zeros((len(q), n + m, n + m))
     system[:, :n, :n] = (multipliers @ dense.slopes.reshape(m, n * n)).reshape(-1, n, n) - dense.stiffness
     system[:, :n, n:] = np.swapaxes(w, 1, 2)
     system[:, n:, :n] = w
-    # Places without a single solution nearby make no step of their own.
-    return solutions(system, -np.concatenate(_residuals(dense, q, multipliers, w), axis=1))
-
-
-def _residuals(dense: _Dense, q: Floats, multipliers: Floats, w: Floats) -> tuple[Floats, Floats]:
-    """Return the forces left over and the measures that are not held."""
     left = dense.load - q @ dense.stiffness.T + np.matmul(multipliers[:, None, :], w)[:, 0]
-    return left, dense.measures(q)
+    measures = dense.measures(q)
+    # Places without a single solution nearby make no step of their own.
+    return *solutions(system, -np.concatenate([left, measures], axis=1)), left, measures
 
 
 def _described(resting: RestingPlaces, time: int, dense: _Dense, q: Floats, multipliers: Floats) -> Equilibrium:

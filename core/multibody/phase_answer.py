@@ -192,8 +192,7 @@ class PhasedSystem:
         with np.errstate(over="ignore", invalid="ignore"):
             pieces, how = self._pieces(motion, times)
             columns = _merged(pieces, len(times)) | self._sums(times, how)
-            lost = next((float(times[mine[0]]) for mine, own in pieces if worst(own) > question.accuracy), None)
-            require_reached(columns, question.accuracy, before=lost)
+            require_reached(columns, question.accuracy, before=_reached_until(pieces, times, question.accuracy))
             stated = Accuracy(question.accuracy, worst(columns), how)
             if question.input_uncertainty is not None and len(times):
                 end = float(np.max(question.times))
@@ -277,6 +276,16 @@ class PhasedSystem:
             return columns, replace(stated, why="nothing is known of the motion at the latest times")
         with_own = {name: replace(one, inherited=uncertainty * moved[name]) for name, one in own.items()}
         return columns | with_own, replace(stated, inherited=share, why=_NO_HORIZON)
+
+
+def _reached_until(
+    pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], times: Floats, accuracy: float
+) -> float | None:
+    """Return the first of the times of a phase before which an accuracy is reached, None if it is at none or at all."""
+    for k in range(len(pieces)):
+        if worst(_merged(pieces[: k + 1], len(times))) > accuracy:
+            return float(times[pieces[k][0][0]]) if k else None
+    return None
 
 
 def _merged(pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], count: int) -> dict[str, Column]:

@@ -62,6 +62,7 @@ class Dispatcher:
         self._submit, self._starting = submit, starting
         self._compute, self._metrics, self._settings, self._keys = compute, metrics, settings, keys
         self._executor = Executor(answering, compute, metrics, settings)
+        self._turns = asyncio.Lock()
         self._cache = ResponseCache(settings.cached_answers)
         self._records = Records(metrics, settings.log_requests)
         self.bodies = Bodies(
@@ -160,7 +161,7 @@ class Dispatcher:
     ) -> None:
         self._metrics.samples.inc(document.numbers)
         with self._compute.holding(document.memory):
-            await context.stream(document.pieces(), etag, self._settings.stalled_seconds, headers)
+            await context.stream(document.pieces(), etag, self._settings.stalled_seconds, headers, self._turns)
 
     async def _page(self, route: GetRoute, context: RequestContext) -> None:
         reply = route.content()

@@ -100,9 +100,12 @@ class RequestContext:
         await self._respond(problem.type.status, body, headers)
 
     async def stream(
-        self, pieces: Iterable[bytes | memoryview], etag: bytes, patience: float, headers: Sequence[Header]
-    ) -> None:
+        self, pieces: Iterator[bytes | memoryview], etag: bytes, patience: float, headers: Sequence[Header],
+        turns: asyncio.Lock,
+    ) -> None:  # fmt: skip
         """Send an answer piece by piece, short ones with the next, letting other requests run in between.
+
+        Between two other requests, one piece of one stream is made: the streams of a process share `turns`.
 
         Raises
         ------
@@ -115,24 +118,23 @@ class RequestContext:
             return
         await self._start(200, [*headers, (b"etag", etag), NOSNIFF])
         leaving = asyncio.ensure_future(self.gone())
-        gathered: list[bytes | memoryview] = []
+        more = True
         try:
-            for piece in pieces:
+            while more:
                 # Servers accept and drop what is sent on a closed connection: the rest would be written in vain.
                 if leaving.done():
                     raise ClientGone
-                gathered.append(piece)
-                if len(piece) < SHORT:
-                    continue
-                async with asyncio.timeout(patience):
-                    await self._send({"type": "http.response.body", "body": b"".join(gathered), "more_body": True})
-                gathered = []
-                await asyncio.sleep(0)
+                async with turns:
+                    body, more = _gathered(pieces)
+                    await asyncio.sleep(0)
+                if more:
+                    async with asyncio.timeout(patience):
+                        await self._send({"type": "http.response.body", "body": body, "more_body": True})
         except TimeoutError:
             raise ClientGone from None
         finally:
             leaving.cancel()
-        await self._send({"type": "http.response.body", "body": b"".join(gathered), "more_body": False})
+        await self._send({"type": "http.response.body", "body": body, "more_body": False})
         self.close(200)
 
     async def document(self, body: bytes, status: int, headers: Iterable[Header] = ()) -> None:
@@ -210,3 +212,13 @@ class RequestContext:
             own.append((b"connection", b"close"))
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": [*headers, *own]})
+
+
+def _gathered(pieces: Iterator[bytes | memoryview]) -> tuple[bytes, bool]:
+    """Return the next pieces up to one that is not short, and whether there may be more."""
+    gathered = []
+    for piece in pieces:
+        gathered.append(piece)
+        if len(piece) >= SHORT:
+            return b"".join(gathered), True
+    return b"".join(gathered), False

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import anyio
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -121,7 +122,7 @@ class TestHas:
             page, figure, stream = (Wire("GET", if_none_match=known) for _ in range(3))
             await page.exchange.page(body, b"text/html; charset=utf-8", 200)
             await figure.exchange.answer(Representation(body, (b"content-type", b"image/svg+xml"), (VARY,)))
-            await stream.exchange.stream(iter([body]), etag.encode(), 10.0, [JSON, VARY])
+            await stream.exchange.stream(iter([body]), etag.encode(), 10.0, [JSON, VARY], asyncio.Lock())
             for wire in (page, figure, stream):
                 assert (wire.status, wire.body) == (status, body if status == 200 else b"")
                 assert wire.headers["etag"] == etag
@@ -182,7 +183,7 @@ class TestStream:
 
         async def run() -> None:
             given = (memoryview(piece) if i % 2 else piece for i, piece in enumerate(pieces))
-            await wire.exchange.stream(given, b'"x"', 10.0, [JSON])
+            await wire.exchange.stream(given, b'"x"', 10.0, [JSON], asyncio.Lock())
 
         anyio.run(run)
         assert (wire.status, wire.body) == (200, b"".join(pieces))
@@ -200,9 +201,31 @@ class TestStream:
                 await asyncio.sleep(0)
 
         running = asyncio.ensure_future(other())
-        await wire.exchange.stream([b"x" * SHORT] * 5, b'"x"', 10.0, [JSON])
+        await wire.exchange.stream(iter([b"x" * SHORT] * 5), b'"x"', 10.0, [JSON], asyncio.Lock())
         running.cancel()
         assert set(seen) >= {2, 3, 4, 5, 6}
+
+    async def test_streams_take_turns(self) -> None:
+        """However many there are, one piece is made before others run: a health check waits for one, not for each."""
+        turns, made, seen = asyncio.Lock(), [], []
+
+        def pieces() -> Iterator[bytes]:
+            for _ in range(5):
+                made.append(1)
+                yield b"x" * SHORT
+
+        async def other() -> None:
+            while True:
+                seen.append(len(made))
+                await asyncio.sleep(0)
+
+        running = asyncio.ensure_future(other())
+        async with asyncio.TaskGroup() as group:
+            for _ in range(7):
+                group.create_task(Wire().exchange.stream(pieces(), b'"x"', 10.0, [JSON], turns))
+        running.cancel()
+        assert seen[-1] == 35
+        assert max(np.diff(seen)) == 1
 
     async def test_nothing_more_is_made_once_the_client_has_gone(self) -> None:
         wire, made = Wire(), []
@@ -222,7 +245,7 @@ class TestStream:
 
         wire.exchange.receive = receive  # type: ignore[assignment]
         with pytest.raises(ClientGone):
-            await wire.exchange.stream(pieces(), b'"x"', 10.0, [JSON])
+            await wire.exchange.stream(pieces(), b'"x"', 10.0, [JSON], asyncio.Lock())
         assert len(made) < 10
         # Without its end it does not seem whole; who catches the error counts the request.
         assert wire.messages[-1]["more_body"]
@@ -241,7 +264,7 @@ class TestStream:
         pieces = iter([b"x" * SHORT] * 3)
         async with asyncio.timeout(60):
             with pytest.raises(ClientGone):
-                await wire.exchange.stream(pieces, b'"x"', 0.02, [JSON])
+                await wire.exchange.stream(pieces, b'"x"', 0.02, [JSON], asyncio.Lock())
         assert len([*pieces]) == 2
         assert wire.counted() == {}
 
@@ -255,7 +278,7 @@ class TestStream:
             return timeout(seconds)
 
         monkeypatch.setattr("service.http.request_context.asyncio.timeout", noted)
-        await Wire().exchange.stream([b"x" * SHORT, b"short"] * 4, b'"x"', 7.0, [JSON])
+        await Wire().exchange.stream(iter([b"x" * SHORT, b"short"] * 4), b'"x"', 7.0, [JSON], asyncio.Lock())
         assert allowed == [7.0] * 4
 
     async def test_a_failure_in_the_middle_leaves_nobody_waiting(self) -> None:
@@ -267,7 +290,7 @@ class TestStream:
 
         before = asyncio.all_tasks()
         with pytest.raises(RuntimeError, match="in the middle"):
-            await wire.exchange.stream(failing(), b'"x"', 10.0, [JSON])
+            await wire.exchange.stream(failing(), b'"x"', 10.0, [JSON], asyncio.Lock())
         await asyncio.sleep(0)
         await asyncio.sleep(0)
         assert asyncio.all_tasks() == before
@@ -281,7 +304,7 @@ class TestStream:
             raise AssertionError
             yield b""
 
-        await wire.exchange.stream(never(), b'"x"', 10.0, [JSON, VARY])
+        await wire.exchange.stream(never(), b'"x"', 10.0, [JSON, VARY], asyncio.Lock())
         assert (wire.status, wire.headers) == (304, {"vary": "accept", "etag": '"x"'})
 
 
