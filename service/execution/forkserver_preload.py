@@ -3,7 +3,7 @@
 import gc
 from importlib import import_module
 
-# Next to nothing of what is made until the end of this module is ever garbage; to look for it takes a sixth of the time.
+# Next to nothing of what is made until the end of this module is garbage; to look for it takes a sixth of the time.
 gc.disable()
 
 # The server process begins with the methods at the same time. On empty caches, each compiles half and loads the rest.
