@@ -188,11 +188,12 @@ Times = Annotated[Span | Annotated[list[Time], Field(min_length=1)], ObjectOrArr
 """Times from the given state, which holds at t = 0; they may be negative and in any order."""
 
 
-def require_one(question: Any, first: str, second: str) -> None:
-    """Raise `InvalidParameter` unless a question gives exactly one of two fields."""
-    if (getattr(question, first) is None) == (getattr(question, second) is None):
-        remedy = f"give one of {first} and {second}"
-        raise InvalidParameter(first, f"be given, or {second}, and not both", remedy=remedy)
+def require_one(question: Any, first: str, *others: str) -> None:
+    """Raise `InvalidParameter` unless a question gives exactly one of its fields."""
+    if sum(getattr(question, name) is not None for name in (first, *others)) != 1:
+        remedy = f"give one of {', '.join((first, *others[:-1]))} and {others[-1]}"
+        both = "both" if len(others) == 1 else "more than one"
+        raise InvalidParameter(first, f"be given, or {' or '.join(others)}, and not {both}", remedy=remedy)
 
 
 def number_of(times: Any) -> int:

@@ -160,6 +160,8 @@ def test_the_architecture_page_lists_every_package_and_its_imports() -> None:
 
 
 TESTED_IN = {
+    "core/assessment/judged_claims.py": "core/assessment/test_grader.py",
+    "core/assessment/question_source.py": "core/assessment/test_graded_question.py",
     "core/assessment/results.py": "core/assessment/test_answer_key.py",
     "core/bodies/uniform.py": "core/bodies/test_solids.py",
     "core/systems/budget.py": "core/systems/methods/test_fixed_step.py",
@@ -175,7 +177,10 @@ TESTED_IN = {
     "core/rotation/attitude/frame.py": "core/rotation/attitude/test_free_attitude.py",
     "core/rotation/uncertainty/sensitivities.py": "core/rotation/uncertainty/test_input_uncertainty.py",
     "core/rotation/closed_form/condition_bounds.py": "core/rotation/uncertainty/test_input_uncertainty.py",
+    "core/rotation/closed_form/underflow.py": "extremes/test_rotation.py",
+    "core/rotation/regimes.py": "core/rotation/test_free_rotation.py",
     "core/scenes/chain_motion.py": "core/scenes/test_chain_on_wedge.py",
+    "core/scenes/equation.py": "core/scenes/test_sampled_motion.py",
     "core/scenes/figures.py": "core/scenes/test_named_scene.py",
     "core/scenes/motion.py": "core/scenes/test_named_scene.py",
     "core/scenes/pendulum_in_balls.py": "core/certified/test_scenes.py",

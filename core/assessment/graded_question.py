@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache, cached_property
 from random import Random
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from core.assessment.compare import Floats, Form, Reference, distance
 from core.assessment.curves import dense
 from core.assessment.figures import equal_moments, form_of, inside, is_null, name_of, single_values, value_at
 from core.assessment.propagation import Propagation, changed, numbers_of, relative_uncertainties
+from core.assessment.question_source import Source
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
 from core.work import spend
@@ -52,42 +53,6 @@ OF_METHOD = "estimate (rounding of the method that the question names)"
 
 VARIATIONS = 20
 """Changed questions at which a formula has to agree, beside the question itself."""
-
-
-class Source(Protocol):
-    """What answers a question, and what is declared of its fields and its answer's."""
-
-    @property
-    def subject(self) -> str:
-        """Last steps of the endpoint's path: ``"rotation/precession"``."""
-
-    @property
-    def outputs(self) -> frozenset[str]:
-        """What a request may name as its outputs."""
-
-    def answer(self, request: str) -> Mapping[str, Any]:
-        """Return the answer to a request, given as JSON; raises `MechanicsError` for what is refused."""
-
-    def certified(self, request: Any) -> Mapping[str, Any] | None:
-        """Return the answer in proven decimal strings, None where there is none."""
-
-    def errors(self, request: Any) -> tuple[Mapping[str, Any], str] | None:
-        """Return bounds of the errors of the answer's figures and what they rest on, None where there are none."""
-
-    def takes(self, field: str) -> bool:
-        """Return whether a request may have a field."""
-
-    def unit_of_answer(self, path: Path) -> str | None:
-        """Return the declared unit of a figure."""
-
-    def unit_of_request(self, path: Path) -> str | None:
-        """Return the declared unit of a number of the request."""
-
-    def scales(self, answer: Mapping[str, Any], request: Any) -> Mapping[str, float]:
-        """Return, by unit, the largest magnitude of an answer's numbers; of the request's where those are 0."""
-
-    def rotation(self, request: Any) -> TorqueFree | None:
-        """Return the free rotation that a request is about, None for requests about anything else."""
 
 
 class Variation(NamedTuple):

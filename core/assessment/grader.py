@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -13,6 +13,7 @@ from core.assessment.claims import MOST_CLAIMS, Claim
 from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
+from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission, explained
 from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
@@ -42,65 +43,6 @@ MOST_NAMED = 10
 
 UNITLESS = ("1", "rad")
 """Units that may be left out."""
-
-FEEDBACK: Mapping[str, str] = {
-    "correct": "Correct.",
-    "incorrect": "Not correct.",
-    "missing-unit": "The unit is missing.",
-    "wrong-unit": "The unit does not measure this quantity.",
-    "not-gradable": "This cannot be judged: the tolerance is finer than the reference is known.",
-    "unreadable": "This cannot be read.",
-}
-
-
-@dataclass(frozen=True, eq=False)
-class JudgedClaim:
-    """What becomes of one claim.
-
-    Attributes
-    ----------
-    pointer : str
-        Of the figure in the answer.
-    judgement : Judgement
-    reference : Reference
-    mistakes : tuple of Mistake
-        By which the value comes out.
-    feedback : str
-        For who submitted it.
-    samples : tuple of (SampleErrors, Consistent or None), or None
-        Of samples of the angular velocity that are not right.
-    """
-
-    pointer: str
-    judgement: Judgement
-    reference: Reference
-    mistakes: tuple[Mistake, ...]
-    feedback: str
-    samples: tuple[SampleErrors, Consistent | None] | None
-
-    @property
-    def score(self) -> float | None:
-        """Share from 0 to 1, None if the claim cannot be judged."""
-        correct = self.judgement.correct
-        if correct is None:
-            return None
-        return 1.0 if correct else max((one.credit for one in self.mistakes), default=0.0)
-
-
-@dataclass(frozen=True, eq=False)
-class JudgedSubmission:
-    """What becomes of one submission.
-
-    Attributes
-    ----------
-    claims : list of JudgedClaim
-        That can be read.
-    faults : list of InvalidParameter
-        What cannot be read, with paths from the submission.
-    """
-
-    claims: list[JudgedClaim]
-    faults: list[InvalidParameter]
 
 
 class Question(Protocol):
@@ -328,14 +270,6 @@ class Grader:
         if reference.sensitive is not None and judgement.verdict != "correct":
             feedback += f" Compare {reference.sensitive}: the figure itself is so near a constant that it shows little."
         return JudgedClaim(pointer, judgement, reference, mistakes, feedback, samples)
-
-
-def explained(mistakes: Sequence[Mistake]) -> str:
-    """Return the feedback of the mistakes by which one value comes out: of several, a numbered list of what may be."""
-    if len(mistakes) < 2:
-        return "".join(one.feedback for one in mistakes)
-    entries = " ".join(f"({k}) {one.feedback}" for k, one in enumerate(mistakes, 1))
-    return f"Several mistakes give this value, each by itself. {entries}"
 
 
 def credited(catalogue: Sequence[Mistake], credits: Mapping[str, float]) -> tuple[Mistake, ...]:

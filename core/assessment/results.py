@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from core.assessment.compare import Reference
-from core.assessment.grader import FEEDBACK, Grader, JudgedClaim, JudgedSubmission
+from core.assessment.grader import Grader
+from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission
 from core.errors import InvalidParameter, Path, pointer_of
 
 Result = dict[str, Any]

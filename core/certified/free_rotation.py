@@ -17,7 +17,7 @@ from core.certified.exact_start import ExactStart, Regime
 from core.certified.turning_motion import QuaternionBalls, TurningMotion, product
 from core.errors import InvalidParameter
 from core.notices import Notice
-from core.rotation.free_rotation import NAME, steady_model
+from core.rotation.regimes import NAME, steady_model, triaxial_model
 from core.rotation.stability.classification import UNSTABLE_SPINS, unstable_axis
 from core.systems.system import Model
 
@@ -95,7 +95,7 @@ class CertifiedRotation:
         if equal == 2:
             why = "two moments are equal: sine and cosine about the axis of the third"
             return Model(name, "regular precession", why, 1)
-        return triaxial_model(self.start.side)
+        return triaxial_model(self.start.side > 0)
 
     @property
     def instability(self) -> str | None:
@@ -277,14 +277,6 @@ class CertifiedRotation:
         radians = farthest * fastest
         magnitude = radians.numerator.bit_length() - radians.denominator.bit_length() + 2
         return bits_for(digits, magnitude)
-
-
-def triaxial_model(side: int) -> Model:
-    """Return the branch that holds where three moments differ and one extreme axis is circled."""
-    largest = side > 0
-    regime = f"circulation about the axis of {'largest' if largest else 'smallest'} moment"
-    why = f"three moments differ and L^2 {'>' if largest else '<'} 2 E I_middle: Jacobian elliptic functions"
-    return Model(NAME, regime, why, 1)
 
 
 def _of(start: ExactStart) -> TurningMotion:

@@ -20,8 +20,9 @@ from core.certified.directions import floor_of_directions, oriented
 from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_inputs import Number, enclosed, exact, exact_numbers
 from core.certified.exact_start import Balls, PrincipalState, principal_axes
-from core.certified.free_rotation import CertifiedRotation, triaxial_model
+from core.certified.free_rotation import CertifiedRotation
 from core.certified.turning_motion import constants_of
+from core.rotation.regimes import triaxial_model
 from core.rotation.stability.classification import REST, Attitude, Kind, Verdict, classify_equilibrium, drift
 from core.rotation.stability.stability import flip_reason, no_middle_axis
 
@@ -210,4 +211,4 @@ def _flip(inertia: ExactInertia, rate: Fraction, disturbance: tuple[Fraction, ..
         return decimal(constants.half_period, digits), side, tumbles
 
     interval, side, tumbles = until_determined(evaluate, bits_for(digits))
-    return CertifiedFlip(given, interval, flip_reason(True, tumbles, triaxial_model(side).why))
+    return CertifiedFlip(given, interval, flip_reason(True, tumbles, triaxial_model(side > 0).why))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from types import MappingProxyType
+from dataclasses import dataclass
 from typing import Annotated
 
 from core.multibody.undecided import Code
 from core.quantities import Unit
-from core.systems.trajectory import How, Trajectory
+from core.systems.trajectory import How, MotionEvent, Trajectory
 
 Seconds = Annotated[float, Unit("s")]
 OwnUnit = Annotated[float, Unit("as in the field unit")]
@@ -124,34 +123,6 @@ class Energy:
     potential: float
     total: float
     conserved: bool
-
-
-@dataclass(frozen=True)
-class SceneEvent:
-    """Something that ends a phase or a scene.
-
-    Attributes
-    ----------
-    kind : str
-        "touch", "lift-off", "slip", "stick", "roll", "settle" (bounces end), "taut", "slack", "stop", "release",
-        "end-of-chain", "singular", or the code of a problem.
-    name : str
-        The connection; "" where several make a place singular.
-    time : float
-    error : float
-        Of the time (s).
-    impulses : mapping of str to float
-        Of an impact: "normal" and "friction" (N s).
-    energy_loss : float
-        Of an impact, by this connection (J); of several at one time they add up to what is lost.
-    """
-
-    kind: str
-    name: str
-    time: float
-    error: float
-    impulses: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
-    energy_loss: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -329,8 +300,8 @@ class SceneAnswer:
     trajectory: Trajectory | None
     period: float | None
     equilibria: tuple[Equilibrium, ...] | None
-    events: tuple[SceneEvent, ...]
-    ended: SceneEvent | None
+    events: tuple[MotionEvent, ...]
+    ended: MotionEvent | None
     occurrences: tuple[Occurrence, ...] | None = None
     extremes: tuple[SceneExtremes, ...] | None = None
     phases: tuple[MotionPhase, ...] | None = None

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import NotApplicable
-from core.multibody.answer import SceneEvent
 from core.multibody.kepler import Kepler
 from core.multibody.measures import Limit
 from core.multibody.modes import Modes
@@ -18,6 +17,7 @@ from core.multibody.packed import Floats
 from core.multibody.polynomials import is_zero, substituted
 from core.multibody.uniform import Uniform, first_zero
 from core.multibody.whole import Whole, values
+from core.systems.trajectory import MotionEvent
 
 _SECTIONS = 33
 _NOISE = 2.0**-40
@@ -33,7 +33,7 @@ _CLOSER = 4
 """How often the neighbourhood of a lowest value is looked at, each time 66 times as closely."""
 
 
-def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEvent | None:
+def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEvent | None:
     """Return the first event between the start and `end`, which may be negative; None if there is none.
 
     Raises
@@ -41,18 +41,18 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEven
     NotApplicable
         Where a force that is watched leaves the range of doubles before any event.
     """
-    found: list[SceneEvent] = []
+    found: list[MotionEvent] = []
     for indices, motion in whole.parts:
         if isinstance(motion, Numerical):
             reached = motion.reach(end)
             if reached is not None:
-                found.append(SceneEvent("singular", "", reached, 1e-9 * abs(reached)))
+                found.append(MotionEvent("singular", "", reached, 1e-9 * abs(reached)))
                 end = reached
         elif isinstance(motion, Kepler):
             reached = motion.reach(end)
             if reached is not None:
                 name = next((limit.name for limit in watched if _follows(whole, limit, indices)), "")
-                found.append(SceneEvent("singular", name, reached, 2.0**-52 * abs(reached)))
+                found.append(MotionEvent("singular", name, reached, 2.0**-52 * abs(reached)))
                 end = reached
     if not watched or end == 0.0:
         return found[0] if found else None
@@ -64,10 +64,10 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> SceneEven
             root = first_zero(length, table, whole.gains, end < 0.0)
             time = None if root is None else float(root)
             if time is not None and abs(time) <= abs(end):
-                found.append(SceneEvent(limit.event, limit.name, time, 2.0**-52 * abs(time)))
+                found.append(MotionEvent(limit.event, limit.name, time, 2.0**-52 * abs(time)))
         watched = [limit for limit in watched if limit.force is not None]
     watched = [limit for limit in watched if not _safe(whole, limit)]
-    lost: list[SceneEvent] = []
+    lost: list[MotionEvent] = []
     for reach in _reaches(whole, end) if watched else ():
         grid = _grid(whole, reach)
         curves = _curves(whole, watched, grid)[0]
@@ -162,7 +162,7 @@ def _curves(whole: Whole, watched: Sequence[Limit], times: Floats, *, judged: bo
     return found, size
 
 
-def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> SceneEvent | None:
+def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> MotionEvent | None:
     largest = np.maximum.accumulate(np.maximum(np.abs(curve), limit.scale))
     ahead = np.arange(len(curve)) + _NEIGHBOURS
     # Where intervals double, two of them are far enough.
@@ -173,7 +173,7 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Scen
     threshold = -_NOISE * largest[np.minimum(ahead, len(curve) - 1)]
     lost = curve < threshold
     if lost[0]:
-        return SceneEvent(limit.event, limit.name, 0.0, 0.0)
+        return MotionEvent(limit.event, limit.name, 0.0, 0.0)
     low, high = None, None
     dips = _dips(grid, curve)
     for i in range(1, len(curve)):
@@ -200,7 +200,7 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Scen
     slope = (curve[2] - curve[0]) / (around[2] - around[0])
     off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(size))
     error = off / abs(slope) if slope != 0.0 else abs(high)
-    return SceneEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))
+    return MotionEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))
 
 
 def _dips(grid: Floats, curve: Floats) -> NDArray[np.bool_]:

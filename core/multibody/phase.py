@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from core.multibody.accumulation import Accumulation
-from core.multibody.answer import SceneEvent
 from core.multibody.complementarity import Decided
 from core.multibody.contact_start import ContactStart
 from core.multibody.contact_states import PhaseTable, Problem, State, forces_of, phase_table
@@ -21,6 +20,7 @@ from core.multibody.polynomials import ZERO, Ball
 from core.multibody.projection import project
 from core.multibody.tracks import FLOOR, Track, Tracks
 from core.multibody.turning_slip import ENDED, TurningSlip, turning_model
+from core.systems.trajectory import MotionEvent
 
 
 @dataclass
@@ -93,11 +93,11 @@ class PhaseMotion:
         The scene without its unilateral measures.
     unilateral : sequence of Unilateral
     phases : list of Phase
-    events : list of SceneEvent
+    events : list of MotionEvent
     noticed : list of str
     problem : Problem or None
         What ended the motion, where mechanics does not decide.
-    ended : SceneEvent or None
+    ended : MotionEvent or None
         The event that ended it.
     impacts : list of (int, str, ball or None)
         Work of every impulse: the number of the phase that begins with it, the measure, and the work (J), None where
@@ -107,10 +107,10 @@ class PhaseMotion:
     base: Described
     unilateral: Sequence[Unilateral]
     phases: list[Phase] = field(default_factory=list)
-    events: list[SceneEvent] = field(default_factory=list)
+    events: list[MotionEvent] = field(default_factory=list)
     noticed: list[str] = field(default_factory=list)
     problem: Problem | None = None
-    ended: SceneEvent | None = None
+    ended: MotionEvent | None = None
     impacts: list[tuple[int, str, Ball | None]] = field(default_factory=list)
 
 

@@ -16,7 +16,6 @@ from flint import arb
 
 from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter
-from core.multibody.answer import SceneEvent
 from core.multibody.complementarity import LOOKED, Decided, decided
 from core.multibody.contact_responses import gap_rate, slip_rate
 from core.multibody.contact_start import assemble_contacts
@@ -34,6 +33,7 @@ from core.multibody.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, 
 from core.multibody.sampled_crossings import SingularPlace
 from core.multibody.tracks import FLOOR, Track, Tracks
 from core.multibody.turning_slip import turns
+from core.systems.trajectory import MotionEvent
 
 MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
@@ -145,9 +145,9 @@ class _Run:
         self.motion.problem = problem
         self.motion.ended = self._event(problem.code, ", ".join(problem.contacts))
 
-    def _event(self, kind: str, name: str) -> SceneEvent:
+    def _event(self, kind: str, name: str) -> MotionEvent:
         """Add an event at the present time."""
-        event = SceneEvent(kind, name, nearest(self.tracks.time), self.tracks.late())
+        event = MotionEvent(kind, name, nearest(self.tracks.time), self.tracks.late())
         self.motion.events.append(event)
         return event
 
@@ -222,7 +222,7 @@ class _Run:
             work = outcome.works[i]
             known = None if i in outcome.shared else work
             self.motion.impacts.append((len(self.motion.phases), one.name, known))
-            self.motion.events.append(SceneEvent(one.closes, one.name, time, late, impulses, nearest(ZERO - work)))
+            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, nearest(ZERO - work)))
 
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""
@@ -273,7 +273,7 @@ class _Run:
             return False
         except SingularPlace as place:
             phase.end = phase.start + place.time
-            event = SceneEvent("singular", "", float(phase.end), 1e-9 * float(phase.end))
+            event = MotionEvent("singular", "", float(phase.end), 1e-9 * float(phase.end))
             self.motion.events.append(event)
             self.motion.ended = event
             return False

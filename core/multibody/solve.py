@@ -10,7 +10,7 @@ import numpy as np
 
 from core.balls import precision
 from core.errors import InvalidParameter, SlackAtStart
-from core.multibody.answer import SceneAnswer, SceneEvent
+from core.multibody.answer import SceneAnswer
 from core.multibody.chains import has_chain
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equilibria import equilibria_of
@@ -30,6 +30,7 @@ from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
 from core.systems.solve import checked_times
+from core.systems.trajectory import MotionEvent
 
 Output = Literal[
     "accelerations",
@@ -135,7 +136,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
     model = scene_model(found, noticed, multipliers.rank)
     system = DescribedSystem(scene, found, [value.value is not None for value in forces], request.outputs)
     trajectory = request.solved(system)
-    events: Sequence[SceneEvent] = () if trajectory is None else trajectory.events
+    events: Sequence[MotionEvent] = () if trajectory is None else trajectory.events
     if any(event.kind == "slack" and event.time >= 0.0 for event in events) and _has_phases(scene, request):
         # Slack strings become taut again: the scene has further phases.
         return answer_in_phases(scene, request)

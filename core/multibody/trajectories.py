@@ -9,7 +9,7 @@ import numpy as np
 
 from core.errors import AccuracyUnreachable, BudgetExceeded, MechanicsError, NotApplicable, inside_field
 from core.multibody.along import Along, watched_times
-from core.multibody.answer import Occurrence, SceneEvent, SceneExtremes
+from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.column_errors import (
     FINEST,
     apart,
@@ -38,7 +38,7 @@ from core.systems.methods.method import AbstractMethod
 from core.systems.question import MotionQuestion, System
 from core.systems.rounding import Digits
 from core.systems.solve import solve
-from core.systems.trajectory import HORIZON, Accuracy, Column, How, Trajectory, Work
+from core.systems.trajectory import HORIZON, Accuracy, Column, How, MotionEvent, Trajectory, Work
 
 _HOLDS = 1e-8
 """Relative mismatch of a measure above which it is not held."""
@@ -162,9 +162,9 @@ class DescribedSystem:
         """How the errors of the motion itself are known."""
         return "closed form" if self.closed else "measured against pairs"
 
-    def _until(self, times: Floats) -> tuple[Integers, tuple[SceneEvent, ...]]:
+    def _until(self, times: Floats) -> tuple[Integers, tuple[MotionEvent, ...]]:
         """Return the rows of the times that the motion reaches, and the events that end it."""
-        events: list[SceneEvent] = []
+        events: list[MotionEvent] = []
         rows = np.arange(len(times))
         watched = [limit for limit in self.whole.measures.limits if self._watches(limit)]
         for end in {max(float(np.max(times)), 0.0), min(float(np.min(times)), 0.0)} - {0.0}:

@@ -16,7 +16,6 @@ from core.errors import AccuracyUnreachable, InvalidParameter
 from core.rotation.closed_form.circulation import (
     PERIODIC,
     REST,
-    SEPARATRIX,
     STEADY,
     UNDECIDED,
     UNREACHABLE,
@@ -28,13 +27,14 @@ from core.rotation.closed_form.circulation import (
 from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
 from core.rotation.closed_form.principal_frame import PrincipalFrame, Resolved
 from core.rotation.closed_form.sampling import largest_magnitude, sample_components, turn_into_body
+from core.rotation.closed_form.underflow import UNDERFLOW, UNMOVED, underflow_of, unmoved_until
 from core.rotation.precession.middle_axis import MiddleAxisTilt, middle_axis_tilt
+from core.rotation.regimes import model_of
 from core.rotation.stability.classification import unstable_spin
 from core.rotation.uncertainty.input_uncertainty import InputUncertainty, lost_after
-from core.rotation.uncertainty.sensitivities import Sensitivities
+from core.rotation.uncertainty.sensitivities import COMPONENTS, Sensitivities, tensors_of_moments
 from core.systems.system import Floats, Model
 
-NAME = "torque-free rigid body"
 UNIT_ROUNDOFF = 2.0**-53
 
 EVALUATION_ERROR = 6.0 * UNIT_ROUNDOFF
@@ -50,17 +50,6 @@ TURNED_AXES_ERROR = 3.0 * UNIT_ROUNDOFF
 
 SET_UP_ROUNDING = 2.0**-103
 """Relative rounding of the constants of motion formed from exact inputs."""
-
-UNDERFLOW = 2.0**-1070
-"""What samples, and the tails of moments and components, lose in all where they are below the normal doubles."""
-
-UNMOVED = 2.0**-60
-"""A relative change of the angular velocity that is less than its rounding."""
-
-_BASIS = np.zeros((6, 3, 3))
-for _n, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
-    _BASIS[_n, _i, _j] = _BASIS[_n, _j, _i] = 1.0
-_BASIS.setflags(write=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +115,7 @@ class FreeRotation:
     def model(self) -> Model:
         """The branch of the solution that holds, and why."""
         line = not self.inertia.moments[0] > 0.0
-        return _model(self.motion, self.inertia.apart, line, self.instability)
+        return model_of(self.motion, self.inertia.apart, line, self.instability)
 
     @property
     def period(self) -> float | None:
@@ -242,35 +231,15 @@ class FreeRotation:
             computed += self.derivation.angular_velocity(self.derived_rounding, horizon)
         return computed if computed < 1.0 else math.inf
 
-    @property
+    @cached_property
     def _unmoved_until(self) -> float:
-        """Time up to which the angular velocity moves by no more than `UNMOVED` of its norm (s).
-
-        By Euler's equations no faster than by its square times the largest of their coefficients.
-        """
-        a, b, c = self.resolved.moments.tolist()
-        steepest = max((c - b) / a, (c - a) / b, (b - a) / c) * self.largest_norm
-        return UNMOVED / steepest if steepest > 0.0 else math.inf
+        """Time up to which the angular velocity moves by no more than `UNMOVED` of its norm (s)."""
+        return unmoved_until(self.resolved.moments, self.largest_norm)
 
     @cached_property
     def _underflow(self) -> float:
         """What a sample may be wrong by, relative, because a factor of it is below the normal doubles."""
-        m = self.motion
-        if m.regime == SEPARATRIX:
-            return UNDERFLOW / self.largest_norm
-        # Near the separatrix some constants are as small as k', and what they are multiplied by as large as 1/k'. What
-        # one of them loses is at most the spacing of subnormal doubles.
-        k, spacing = m.weights, 2.0**-1074
-        products = (
-            (m.A_c, k.c_even),
-            (m.A_c, k.c_odd),
-            (m.A_b, k.b_even),
-            (m.A_b, k.b_odd),
-            (m.A_d, k.d_even),
-            (m.A_d, k.d_odd),
-        )
-        most = max(abs(amplitude) / max(spacing, abs(constant)) for amplitude, constant in products)
-        return UNDERFLOW * max(1.0, most) / self.largest_norm
+        return underflow_of(self.motion, self.largest_norm)
 
     def inherited(self, times: Floats, uncertainty: float = UNIT_ROUNDOFF) -> float:
         """Return a bound of the change of the samples by a relative `uncertainty` of every input.
@@ -312,20 +281,14 @@ class FreeRotation:
             return None
         if exact_zeros:
             # Equal moments are so exactly, and move as one; the start is exact.
-            return self._uncertain(self._each_moment(), np.zeros(3))
+            moments = np.ldexp(self.resolved.moments, -self._exponent)
+            each = tensors_of_moments(self.inertia.axes, moments, self.inertia.apart)
+            return self._uncertain(each, np.zeros(3))
         if self.resolved.moments[0] == 0.0:
             # A line of matter stays one: nothing that rounds gives it a moment about itself.
             return self._uncertain(None, self.angular_velocity)
         largest = math.ldexp(float(self.resolved.moments[2]), -self._exponent)
-        return self._uncertain(largest * _BASIS, np.full(3, math.hypot(*self.angular_velocity.tolist())))
-
-    def _each_moment(self) -> Floats:
-        """Return the tensors, in body axes, that each moment by itself stands for; equal moments stand together."""
-        first, second = self.inertia.apart
-        groups = np.cumsum([0, first, second])
-        moments = np.ldexp(self.resolved.moments, -self._exponent)
-        axes = self.inertia.axes
-        return np.array([(axes * np.where(groups == g, moments, 0.0)) @ axes.T for g in range(groups[2] + 1)])
+        return self._uncertain(largest * COMPONENTS, np.full(3, math.hypot(*self.angular_velocity.tolist())))
 
     @property
     def certainly_steady(self) -> bool:
@@ -382,50 +345,3 @@ class FreeRotation:
         if m.regime != PERIODIC:
             return most
         return min(most, math.log2(LARGEST_QUARTER / m.rate) - math.log2(m.time_scale) - 1e-9)
-
-
-def steady_model(symmetric: bool, spherical: bool, unstable: str | None) -> Model:
-    """Return the model of a constant angular velocity.
-
-    Parameters
-    ----------
-    symmetric, spherical : bool
-        Whether at least two moments are equal, and whether all are.
-    unstable : str or None
-        Why the spin is unstable, if it is.
-    """
-    if unstable is not None:
-        return Model(NAME, "unstable steady rotation", unstable, 0)
-    if spherical:
-        why = "the three moments are equal, so every axis is principal"
-    else:
-        why = f"the spin lies along {'the axis of symmetry' if symmetric else 'a principal axis'}"
-    return Model(NAME, "steady rotation", f"{why}: nothing accelerates", 0)
-
-
-def _model(motion: Motion, apart: tuple[bool, bool], line: bool, unstable: str | None) -> Model:
-    name = NAME
-    equal = [not differ for differ in apart]
-    if motion.regime == REST:
-        return Model(name, "rest", "the angular velocity is zero", 0)
-    if motion.regime == STEADY:
-        return steady_model(any(equal) and not line, all(equal), unstable)
-    axis = "largest" if motion.circled == 2 else "smallest"
-    if motion.regime == SEPARATRIX:
-        return Model(
-            name,
-            "separatrix",
-            "L^2 = 2 E I_middle exactly: the motion tends to the middle axis, by hyperbolic functions",
-            1,
-        )
-    if any(equal):
-        return Model(
-            name, "regular precession", "two moments are equal: sine and cosine about the axis of the third", 1
-        )
-    return Model(
-        name,
-        f"circulation about the axis of {axis} moment",
-        f"three moments differ and L^2 {'>' if motion.circled == 2 else '<'} 2 E I_middle: Jacobian elliptic "
-        f"functions, {f'parameter m = {motion.m:.6g}' if motion.m1 > 1e-3 else f'1 - m = {motion.m1:.3g}'}",
-        1,
-    )

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, sign, square_root
+from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
 from core.scenes.quadratics import real_roots
 from core.systems.system import Floats, Model
@@ -201,14 +202,9 @@ class ChainMotion(UnbrokenMotion):
             x, v, dx, dv = _evaluated(slide, times)
             # A difference from the length would lose the short side of a chain that nearly lies on the other.
             y, _, dy, _ = _evaluated(slide.mirrored(), times)
-            # Masses are shares of the greatest there may be on a side, so that no product but the last leaves the range
-            # of doubles unless the tension does.
-            (a, b), (m1, m2) = slide.slope_accelerations, slide.masses
+            greatest, left, right = self._loads(x, y)
             chain, length = slide.density * slide.length, float(slide.length)
-            most = (a + b) * (m1 + chain) * (m2 + chain) / slide.mass
-            greatest, thick, thin = float(most), _share(chain, m1 + chain), _share(chain, m2 + chain)
-            left = _share(m1, m1 + chain) + thick * (x / length)
-            right = _share(m2, m2 + chain) + thin * (y / length)
+            thick, thin = (_share(chain, mass + chain) for mass in slide.masses)
             tension = greatest * (left * right)
             # What the products lose below the normal range; a side without mass is exactly without tension.
             loses = (left != 0.0) & (right != 0.0)
@@ -225,6 +221,38 @@ class ChainMotion(UnbrokenMotion):
             for name, ball in zip(NAMES, given, strict=True)
         }
         return Samples(values, errors, scales).without_underflow({"apex_tension": given[2]})
+
+    def _loads(self, x: Floats, y: Floats) -> tuple[float, Floats, Floats]:
+        """Return the largest tension there may be, and what lengths x and y on the faces make of it on either side.
+
+        Masses are shares of the greatest there may be on a side, so that no product but the last leaves the range of
+        doubles unless the tension does.
+        """
+        slide = self.slide
+        (a, b), (m1, m2) = slide.slope_accelerations, slide.masses
+        chain, length = slide.density * slide.length, float(slide.length)
+        most = (a + b) * (m1 + chain) * (m2 + chain) / slide.mass
+        left = _share(m1, m1 + chain) + _share(chain, m1 + chain) * (x / length)
+        right = _share(m2, m2 + chain) + _share(chain, m2 + chain) * (y / length)
+        return float(most), left, right
+
+    def equation(self) -> SceneEquation:
+        """Return x'' = a_0 + k^2 (x - x_0)."""
+        slide = self.slide
+        position = AcceleratedCoordinate(
+            slide.position, slide.velocity, slide.acceleration, slide.square, slide.position
+        )
+        return SceneEquation((position,), self.model)
+
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        """Return x and x'."""
+        return np.stack((columns["position"], columns["velocity"]), axis=1)
+
+    def observed(self, states: Floats) -> Mapping[str, Floats]:
+        """Return position, velocity and tension."""
+        x, v = states.T
+        greatest, left, right = self._loads(x, float(self.slide.length) - x)
+        return {"position": x, "velocity": v, "apex_tension": greatest * (left * right)}
 
 
 def _evaluated(slide: Slide, times: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -14,8 +14,9 @@ import numpy as np
 from core.errors import InvalidParameter
 from core.notices import Notice
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, exact, sign
+from core.scenes.equation import SceneEquation
 from core.systems.system import Floats, Model
-from core.systems.trajectory import Column
+from core.systems.trajectory import Column, MotionEvent
 from core.work import spend
 
 SMALLEST_SAMPLE = 1e-290
@@ -38,6 +39,12 @@ class Event:
 
     kind: str
     time: Ball
+
+    def in_doubles(self) -> MotionEvent:
+        """Return the event at the double nearest to its time, and how far that may be from it."""
+        time = float(self.time)
+        error = float(abs(self.time - exact(time)).upper())
+        return MotionEvent(self.kind, "", time, error and math.nextafter(error, math.inf))
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +124,24 @@ class Motion(ABC):
 
         It is called only between the beginning and the end.
         """
+
+    @abstractmethod
+    def equation(self) -> SceneEquation:
+        """Return the equation of the motion, which methods integrate.
+
+        Raises
+        ------
+        NotApplicable
+            If something happens to the motion that an equation does not describe.
+        """
+
+    @abstractmethod
+    def observed(self, states: Floats) -> Mapping[str, Floats]:
+        """Return the columns that follow from states of the equation, shape (n, k)."""
+
+    @abstractmethod
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        """Return the states of the equation, shape (n, k), to which columns belong."""
 
     def sample(self, times: Floats) -> Samples:
         """Return the motion at `times`, shape (n,), all between the beginning and the end.

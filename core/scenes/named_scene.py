@@ -19,20 +19,20 @@ from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.notices import Notice
 from core.quantities import Tolerance, Unit, check_value
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding
-from core.scenes.figures import MOTION, SceneEvent, SceneExample
+from core.scenes.figures import MOTION, SceneExample
 from core.scenes.motion import Event, Motion
+from core.scenes.sampled_motion import sampled
 from core.systems.budget import Budget
-from core.systems.methods.closed_form import ClosedFormEvaluation
+from core.systems.methods.method import AbstractMethod
 from core.systems.question import MotionQuestion
-from core.systems.rounding import Digits, shortened
-from core.systems.solve import checked_times
+from core.systems.rounding import Digits
+from core.systems.solve import as_requested, checked_times
 from core.systems.system import Floats, Model
 from core.systems.trajectory import HORIZON, Accuracy, Trajectory, Work
 from core.work import spend
 
 WORK_OF_A_SCENE = 100
 """Units of work (`core.work`): the set-up of a scene and of its motion in balls, at one precision."""
-_NOT_KNOWN = "what the uncertainty of the inputs does is not followed in this scene"
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +54,6 @@ class SceneAnswer:
         What the reader of the figures must know.
     work : Work
         Samples computed.
-    requested_samples : int
-        Samples requested; `work` counts those that exist.
     """
 
     model: Model
@@ -65,7 +63,6 @@ class SceneAnswer:
     accuracy: Accuracy
     notices: tuple[Notice, ...]
     work: Work
-    requested_samples: int
 
     @property
     def warnings(self) -> tuple[Notice, ...]:
@@ -147,17 +144,16 @@ class NamedScene(ABC):
         Raises
         ------
         NotApplicable
-            For a method that steps.
+            For a method that steps, where an event interrupts the motion.
         """
-        if question.integrator is not None:
-            raise NotApplicable(
-                "a named scene is answered in closed form, and no method steps it",
-                path=("method",),
-                remedy="leave the method out, or describe the scene to POST /v1/scenes",
-            )
         found = self._answered(question, frozenset({"trajectory"}), question.accuracy).trajectory
         assert found is not None
         return found
+
+    def motion_to(self, horizon: float) -> Motion:
+        """Return the motion at least up to `horizon` (s), at the precision that answers in doubles begin with."""
+        with precision(BITS):
+            return self.motion(horizon)
 
     def answer(
         self,
@@ -165,6 +161,9 @@ class NamedScene(ABC):
         outputs: frozenset[str] | None = None,
         accuracy: float = 1e-9,
         digits: Digits | None = None,
+        *,
+        method: AbstractMethod | None = None,
+        budget: Budget | None = None,
     ) -> SceneAnswer:
         """Compute what is requested and nothing else.
 
@@ -178,22 +177,36 @@ class NamedScene(ABC):
             Largest error that is tolerated.
         digits : int or "meaningful", optional
             Of the samples.
+        method : AbstractMethod, optional
+            Computes the samples in place of the closed form, from which their errors are measured; they are answered
+            whatever those are, with a warning where they are larger than the accuracy. Events are those of the motion
+            itself.
+        budget : Budget, optional
+            Samples, and evaluations that the method may spend.
 
         Raises
         ------
         InvalidParameter
-            For an unknown output, a trajectory without times, times that are not finite or before the beginning.
+            For an unknown output, a trajectory without times, times that are not finite or before the beginning, a
+            method that fails with its setting.
         AccuracyUnreachable
             If the bound of the error is larger than `accuracy`.
+        BudgetExceeded
+            For more samples or evaluations than are allowed.
+        NotApplicable
+            If the method needs what the scene does not have, or an event interrupts the motion.
         """
         check_value("accuracy", Tolerance, accuracy)
         wanted = self.wanted(outputs, timed=times is not None)
-        question = None if times is None else MotionQuestion(checked_times(times, Budget()), accuracy)
+        budget = budget or Budget()
+        question = None
+        if times is not None:
+            question = MotionQuestion(checked_times(times, budget), accuracy, method, budget=budget)
         found = self._answered(question, wanted, accuracy)
-        if digits is None or found.trajectory is None:
+        if question is None or found.trajectory is None:
             return found
-        short = shortened(replace(found.trajectory, accuracy=found.accuracy), digits)
-        return replace(found, trajectory=short, accuracy=short.accuracy)
+        samples = as_requested(replace(found.trajectory, accuracy=found.accuracy), question, digits)
+        return replace(found, trajectory=samples, accuracy=samples.accuracy)
 
     def _answered(self, question: MotionQuestion | None, wanted: frozenset[str], accuracy: float) -> SceneAnswer:
         with precision(BITS):
@@ -202,7 +215,10 @@ class NamedScene(ABC):
             # What was computed so far is cached with the object, so a new one starts again.
             with precision(MORE_BITS):
                 found, _ = replace(self)._computed(question, wanted, accuracy)
-        if found.accuracy.error > accuracy:
+        # What a method makes of the samples is answered whatever its error; the figures are not its.
+        samples = found.trajectory
+        accepted = 0.0 if samples is None or samples.accuracy.how == "closed form" else samples.accuracy.error
+        if found.accuracy.error > max(accuracy, accepted):
             raise AccuracyUnreachable(
                 accuracy,
                 found.accuracy.error,
@@ -221,18 +237,17 @@ class NamedScene(ABC):
         found = self.outline(wanted, horizon, lambda time: float(time) <= horizon, rounded)
         trajectory = None
         if found.motion is not None and question is not None and "trajectory" in wanted:
-            trajectory = self._sampled(found, question)
+            events = [event.in_doubles() for event in found.events]
+            trajectory = sampled(found.motion, question, self.units(), found.ended or HORIZON, events)
+        bare = Accuracy(accuracy, 0.0, "closed form") if trajectory is None else trajectory.accuracy
         answer = SceneAnswer(
             model=found.model,
             figures=found.figures,
             trajectory=trajectory,
             ended=found.ended,
-            accuracy=Accuracy(
-                accuracy, max(rounded.error, trajectory.accuracy.error if trajectory else 0.0), "closed form"
-            ),
+            accuracy=replace(bare, error=max(rounded.error, bare.error)),
             notices=(*rounded.notices, *self.notices(wanted)),
-            work=Work(0 if trajectory is None else trajectory.time.size),
-            requested_samples=0 if question is None else question.times.size,
+            work=Work(0) if trajectory is None else trajectory.work,
         )
         # A time that is a quotient by what may be zero is decided with more digits.
         decided = found.motion is None or all(event.time.is_finite() for event in found.motion.events())
@@ -264,29 +279,6 @@ class NamedScene(ABC):
         figures = {name: written(table[name](), (name,)) for name in self.outputs if name in wanted and name in table}
         return Outline(self.static_model() if motion is None else motion.model, figures, motion, ended, events)
 
-    def _sampled(self, found: Outline, question: MotionQuestion) -> Trajectory:
-        """Return the samples that exist."""
-        motion = found.motion
-        assert motion is not None
-        rows = _existing(motion, question.times)
-        times = question.times[rows]
-        samples = motion.sample(times)
-        columns = samples.columns(self.units())
-        error = max((_relative(column.error, column.scale or 0.0) for column in columns.values()), default=0.0)
-        why = None if question.input_uncertainty is None else _NOT_KNOWN
-        return Trajectory(
-            times,
-            columns,
-            Accuracy(question.accuracy, error, "closed form", why=why),
-            motion.model,
-            ClosedFormEvaluation().kind,
-            Work(times.size),
-            ended=found.ended or HORIZON,
-            rows=rows,
-            events=[SceneEvent(event.kind, float(event.time)) for event in found.events],
-            warnings=samples.notices,
-        )
-
     def wanted(self, outputs: frozenset[str] | None, *, timed: bool) -> frozenset[str]:
         """Return the outputs that a question is about.
 
@@ -316,18 +308,3 @@ def _marks(hint: Any) -> tuple[Any, ...]:
     """Return the marks of an annotation, at any depth."""
     inner = tuple(mark for part in getattr(hint, "__args__", ()) for mark in _marks(part))
     return (*getattr(hint, "__metadata__", ()), *inner)
-
-
-def _relative(error: float, scale: float) -> float:
-    return error / scale if scale > 0.0 else 0.0 if error == 0.0 else math.inf
-
-
-def _existing(motion: Motion, instants: Floats) -> Any:
-    """Return the rows of the instants at which there is a motion; samples past its end are not invented."""
-    if float(np.min(instants, initial=0.0)) < motion.valid_from:
-        raise InvalidParameter(
-            "times",
-            f"be at least {motion.valid_from:.17g} s",
-            remedy="the model does not hold earlier; start from an earlier state",
-        )
-    return np.flatnonzero(instants <= (math.inf if motion.end is None else float(motion.end.time)))

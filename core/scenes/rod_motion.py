@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, angle_of, exact, sign
+from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
 from core.scenes.pendulum import Pendulum
 from core.scenes.pendulum_in_balls import pendulum_in_balls
@@ -168,14 +169,8 @@ class RodMotion(UnbrokenMotion):
         """Evaluate angle, rate and the wall's forces on A and B."""
         s, c, rate, angle = self.pendulum.sample(times)
         c1, _, c3 = (float(ball) for ball in self.rod.coefficients)
-        speed = 2 * self.pendulum.frequency
-        # c2 psi'^2 as a product that leaves the range of doubles only where the force itself does.
-        unit = float(self.rod.coefficients[1] * speed**2)
         with np.errstate(over="ignore", invalid="ignore", under="ignore"):
-            quick = rate / float(speed)
-            level, spin = c1 * (c - s) * (c + s), unit * quick * quick
-            total, difference = level + spin, 2.0 * c3 * s * c
-            forces = 0.5 * np.stack((total + difference, total - difference), axis=1)
+            forces, spin = self._forces(s, c, rate)
             values = finite({"angle": angle, "angular_velocity": rate, "forces": forces})
         few = 32.0 * UNIT_ROUNDOFF
         size = np.abs(c1) * (c * c + s * s) + np.abs(spin) + np.abs(c3 * s * c)
@@ -192,3 +187,29 @@ class RodMotion(UnbrokenMotion):
         scales = {name: max(float(np.max(np.abs(column), initial=0.0)), given[name]) for name, column in values.items()}
         weight = self.rod.mass * self.rod.gravity
         return Samples(values, errors, scales).without_underflow({"forces": weight})
+
+    def _forces(self, s: Floats, c: Floats, rate: Floats) -> tuple[Floats, Floats]:
+        """Return the wall's forces, shape (n, 2), by sine and cosine of half the angle, and the share of the rate."""
+        c1, _, c3 = (float(ball) for ball in self.rod.coefficients)
+        speed = 2 * self.pendulum.frequency
+        # c2 psi'^2 as a product that leaves the range of doubles only where the force itself does.
+        unit, quick = float(self.rod.coefficients[1] * speed**2), rate / float(speed)
+        level, spin = c1 * (c - s) * (c + s), unit * quick * quick
+        total, difference = level + spin, 2.0 * c3 * s * c
+        return 0.5 * np.stack((total + difference, total - difference), axis=1), spin
+
+    def equation(self) -> SceneEquation:
+        """Return psi'' = -w0^2 sin psi."""
+        swing = self.pendulum
+        angle = AcceleratedCoordinate(2 * angle_of(swing.sine, swing.cosine), swing.rate, sine=-(swing.frequency**2))
+        return SceneEquation((angle,), self.model)
+
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        """Return psi and psi'."""
+        return np.stack((columns["angle"], columns["angular_velocity"]), axis=1)
+
+    def observed(self, states: Floats) -> Mapping[str, Floats]:
+        """Return angle, rate and the wall's forces on A and B."""
+        angle, rate = states.T
+        forces, _ = self._forces(np.sin(0.5 * angle), np.cos(0.5 * angle), rate)
+        return {"angle": angle, "angular_velocity": rate, "forces": forces}

@@ -10,9 +10,11 @@ import numpy as np
 from flint import arb
 
 from core.balls import Undetermined
+from core.errors import NotApplicable
 from core.notices import Notice
 from core.scenes.bounces import Sequence
 from core.scenes.enclosure import ONE, UNIT_ROUNDOFF, ZERO, Ball, as_pair, exact_pair
+from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Motion, Samples, finite
 from core.scenes.string_phases import Phase, Phases
 from core.scenes.string_state import State
@@ -143,6 +145,36 @@ class ShaftMotion(Motion):
             for phase in phases:
                 columns = columns.without_underflow({"tension": phase.drive.tension or ZERO})
         return columns
+
+    def equation(self) -> SceneEquation:
+        """Return the constant accelerations of the positions and of the lengths unwound, of a motion in one phase."""
+        first, *others = self.phases.phases
+        if others or first.sequence is not None:
+            raise NotApplicable(
+                "jerks and changes between slipping and rolling interrupt the motion, and no method steps over them",
+                path=("times",),
+                remedy="leave the method out, or ask for times before the first of the events",
+            )
+        start, drive = first.start, first.drive
+        along = zip(start.positions, start.velocities, drive.positions, strict=True)
+        around = zip(start.unwound, start.rates, drive.unwound, strict=True)
+        return SceneEquation(tuple(AcceleratedCoordinate(*one) for one in (*along, *around)), self.model)
+
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        """Return positions and lengths unwound, and their rates."""
+        rates = columns["spins"] * np.array(self._radii)
+        return np.hstack((columns["positions"], columns["unwound"], columns["velocities"], rates))
+
+    def observed(self, states: Floats) -> Mapping[str, Floats]:
+        """Return positions, rates and lengths, and the tension where it is determined."""
+        values = {
+            "positions": states[:, 0:2],
+            "velocities": states[:, 4:6],
+            "spins": states[:, 6:8] / np.array(self._radii),
+            "unwound": states[:, 2:4],
+        }
+        tension = self.phases.phases[0].drive.tension
+        return values if tension is None else {**values, "tension": np.full(len(states), float(tension))}
 
 
 def _within(phase: Phase, elapsed: Ball) -> State:

@@ -68,11 +68,15 @@ def solve(
     if input_uncertainty is not None:
         check_value("input_uncertainty", Uncertainty, input_uncertainty)
     question = MotionQuestion(checked_times(times, budget), accuracy, method, input_uncertainty, budget)
-    found = system.trajectory(question)
-    if method is not None and found.accuracy.error > accuracy:
+    return as_requested(system.trajectory(question), question, digits)
+
+
+def as_requested(found: Trajectory, question: MotionQuestion, digits: Digits | None) -> Trajectory:
+    """Return a trajectory with the digits requested, and with a warning if a named method missed the accuracy."""
+    if question.method is not None and found.accuracy.error > question.accuracy:
         detail = (
-            f"the error of {found.method} with this setting is {found.accuracy.error:.3g}, where {accuracy:.3g} was "
-            "asked for; leave out the method to have the motion to that accuracy"
+            f"the error of {found.method} with this setting is {found.accuracy.error:.3g}, where "
+            f"{question.accuracy:.3g} was asked for; leave out the method to have the motion to that accuracy"
         )
         found = replace(found, warnings=(Notice("accuracy-not-reached", detail, ("method",)), *found.warnings))
     return found if digits is None else shortened(found, digits)

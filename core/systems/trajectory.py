@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from types import MappingProxyType
+from typing import Literal
 
 import numpy as np
 
@@ -132,6 +133,35 @@ class Work:
     step: Duration | None = None
 
 
+@dataclass(frozen=True)
+class MotionEvent:
+    """Something that happens in a motion.
+
+    Attributes
+    ----------
+    kind : str
+        Of a described scene "touch", "lift-off", "slip", "stick", "roll", "settle" (bounces end), "taut", "slack",
+        "stop", "release", "end-of-chain", "singular", or the code of a problem; of a named scene as it declares.
+    name : str
+        Of the connection to which it happens; "" where several make a place singular, and where the kind says it.
+    time : float
+        From the start (s).
+    error : float
+        Of the time (s).
+    impulses : mapping of str to float
+        Of an impact: "normal" and "friction" (N s).
+    energy_loss : float
+        Of an impact, by this connection (J); of several at one time they add up to what is lost.
+    """
+
+    kind: str
+    name: str
+    time: float
+    error: float
+    impulses: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    energy_loss: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """Samples of a motion.
@@ -153,8 +183,8 @@ class Trajectory:
         `HORIZON`, or the event that ended the motion before it.
     rows : ndarray of int, shape (n,), or None
         Which of the times of the question these are; None for all.
-    events : sequence
-        What happens in the motion, each with its `kind` and its `time`.
+    events : sequence of MotionEvent
+        What happens in the motion up to the last of the times.
     warnings : tuple of Notice
         What the reader of the samples should know.
     """
@@ -168,7 +198,7 @@ class Trajectory:
     period: float | None = None
     ended: str = HORIZON
     rows: Integers | None = None
-    events: Sequence[Any] = ()
+    events: Sequence[MotionEvent] = ()
     warnings: tuple[Notice, ...] = ()
 
     def __getitem__(self, name: str) -> Floats:

@@ -68,7 +68,7 @@ class CalibratedCost:
     counts : callable
         Refuses what exceeds the budget.
     unmeasured : mapping of str to float, optional
-        Costs of an operation that the table does not have.
+        Costs that the table does not have for the operation.
     """
 
     operation: str
@@ -81,7 +81,7 @@ class CalibratedCost:
         # A body is looked at in the same way for every question, and where it is small that does not stand out.
         points = seconds["mass_properties"]["points"]
         judging = seconds["rotation_trajectory"]["evaluations of dormand-prince-853"]
-        return {"points": points, "judging evaluations": judging, **seconds.get(self.operation, self.unmeasured)}
+        return {"points": points, "judging evaluations": judging, **self.unmeasured, **seconds.get(self.operation, {})}
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
@@ -199,21 +199,22 @@ def _whole(number: float) -> float:
 
 def extent(times: Any) -> float:
     """Return how far a method marches, to both sides of the start (s)."""
-    ends = _ends(times)
+    ends = ends_of(times)
     return max(0.0, *ends) - min(0.0, *ends)
 
 
 def farthest(times: Any) -> float:
     """Return the largest distance from the start (s)."""
-    return max(map(abs, _ends(times)))
+    return max(map(abs, ends_of(times)))
 
 
 def extreme(times: Any) -> float:
     """Return the time that is farthest from the start (s)."""
-    return max(_ends(times), key=abs)
+    return max(ends_of(times), key=abs)
 
 
-def _ends(times: Any) -> list[float]:
+def ends_of(times: Any) -> list[float]:
+    """Return times among which are the least and the largest (s)."""
     if isinstance(times, list):
         return times
     # A single time is the start, wherever the stop is.

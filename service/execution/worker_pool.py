@@ -8,10 +8,7 @@ for the fork server, so that is done in threads; all else happens in the event l
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import multiprocessing
-import os
-import signal
 import socket
 from collections import deque
 from collections.abc import Callable, Hashable, Sequence
@@ -20,14 +17,13 @@ from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerProcess
 from threading import Lock, Thread
 from time import perf_counter
-from typing import Any, cast
-
-import numpy as np
+from typing import Any
 
 from service.execution.daemon_thread import call_soon_if_open, run_in_daemon_thread
 from service.execution.fair_queue import FairQueue
 from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
-from service.execution.messages import LENGTH, Buffer
+from service.execution.messages import Buffer
+from service.execution.worker_process import Process
 from service.observability.logs import LOG
 
 BEGIN_SECONDS = 0.5
@@ -41,61 +37,6 @@ LONGEST_PAUSE = 30.0
 
 _EXIT_CODES = Lock()
 """Starting a process polls all others; of two threads that read an exit code at the same time one would find none."""
-
-
-class Process(asyncio.BufferedProtocol):
-    """One process, seen from the event loop.
-
-    Messages are received where they stay: a large one is never copied.
-    """
-
-    def __init__(self, pool: Processes, handle: ForkServerProcess) -> None:
-        self._pool, self.handle = pool, handle
-        self._transport: asyncio.WriteTransport | None = None
-        self._length = memoryview(bytearray(LENGTH))
-        self._target, self._filled = self._length, 0
-        self.ready = self.killed = False
-        self.job: Job | None = None
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Keep the connection."""
-        self._transport = cast(asyncio.WriteTransport, transport)
-
-    def give(self, job: Job) -> None:
-        """Send a request."""
-        assert self._transport is not None
-        self.job = job
-        self._transport.writelines(job.request)
-
-    def get_buffer(self, sizehint: int) -> memoryview:
-        """Return where the next bytes belong."""
-        return self._target[self._filled :]
-
-    def buffer_updated(self, count: int) -> None:
-        """Take in messages: nothing for "ready" and then for "begun", something for a reply."""
-        self._filled += count
-        if self._filled < len(self._target):
-            return
-        received, self._target, self._filled = self._target, self._length, 0
-        if received is not self._length:
-            self._pool.heard(self, received)
-        elif length := int.from_bytes(received, "little"):
-            # Memory that is not written before the message fills it.
-            self._target = np.empty(length, np.uint8).data
-        else:
-            self._pool.heard(self, None)
-
-    def connection_lost(self, error: Exception | None) -> None:
-        """The process has ended."""
-        self._pool.ended(self)
-
-    def kill(self) -> None:
-        """End it at once, whatever it does."""
-        self.killed = True
-        # Its handle learns of its end from the fork server alone, and would take it for dead once that has ended. It
-        # lives as long as its connection does.
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(self.handle.pid or 0, signal.SIGKILL)
 
 
 class Processes:

@@ -103,7 +103,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
     if motion is not None and question.method is not None:
         answer |= {"method": motion.method, "work": motion.work}
     answer["period"] = found.period
-    answer["ended"] = None if motion is None else "horizon" if found.ended is None else found.ended.kind
+    answer["ended"] = None if motion is None else motion.ended
     answer["events"] = [fields_of(event) for event in found.events]
     if found.phases is not None:
         answer["phases"] = [fields_of(phase) for phase in found.phases]

@@ -21,7 +21,7 @@ from service.requests.request_reader import Limits, Reader
 from service.requests.suggestions import nearest_path
 from service.responses.json_rows import written
 from service.routes.described_answer import ScenePart
-from service.routes.planning_probes import OF_FEW_STEPS
+from service.routes.planning_probes import OF_FEW_STEPS, in_closed_form
 from service.routing import Answer, PlanningProbe, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, Request, View
 from service.schemas import Fault as FaultView
@@ -188,9 +188,11 @@ def _evaluations(route: PostRoute, request: Any, budget: Budget) -> int | None:
     if not isinstance(route.price, CalibratedCost):
         return 0
     counted = route.price.counts(request, budget)
-    # How many steps ladders take, and described scenes that choose them, is only known by running them.
-    fixed = hasattr(getattr(request, "method", None), "step")
-    if "ladders" in counted or ("connections" in counted and not fixed):
+    # How many steps ladders take, and methods that choose them in scenes, is only known by running them.
+    method = getattr(request, "method", None)
+    fixed = hasattr(method, "step")
+    scene = "connections" in counted or ("motions" in counted and not in_closed_form(method))
+    if "ladders" in counted or (scene and not fixed):
         return None
     count = round(min(UNCOUNTABLE, sum(n for name, n in counted.items() if name.startswith("evaluations of "))))
     if fixed and count > budget.evaluations:

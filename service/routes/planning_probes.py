@@ -69,7 +69,7 @@ def probe_in_samples(
     growth = {"time": share, "attitude": share, "angular_velocity": share * members, "members": members}
     if in_closed_form(method):
         return PlanningProbe(handle(question.model_copy(update={"times": times.tolist()}), budget), growth)
-    near = _in_few_steps(method, times, speed)
+    near = in_few_steps(method, times, speed)
     growth["time"] *= len(written(times)) / len(written(near))
     error = error_of(method, question.times, speed)
     changes: dict[str, Any] = {"times": near.tolist()}
@@ -83,7 +83,7 @@ def probe_in_samples(
     return PlanningProbe(fields, growth, error, exact)
 
 
-def _in_few_steps(method: Any, times: Floats, speed: float) -> Floats:
+def in_few_steps(method: Any, times: Floats, speed: float) -> Floats:
     """Return times, shape (n,), drawn towards the start so that a method takes few steps: rows are as long there."""
     reach = FEW_STEPS * method.step if hasattr(method, "step") else FEW_RADIANS / speed if speed else inf
     farthest = float(np.abs(times).max())

@@ -13,14 +13,16 @@ from core.quantities import Tolerance, members_of
 from core.scenes import Scene
 from core.scenes.figures import SceneEvent
 from core.scenes.named_scene import NamedScene
+from core.scenes.sampled_motion import ComparableEquation
 from core.systems.budget import Budget
+from core.systems.methods import Method, SymmetricSplitting
 from core.systems.system import Model
 from core.systems.trajectory import HORIZON, Work
-from service.execution.cost_model import CalibratedCost, calibration, numbers
+from service.execution.cost_model import CalibratedCost, calibration, effort, numbers
 from service.responses.svg import SVG
 from service.routes.bodies import few_times
 from service.routes.motion_figures import scene_drawing
-from service.routes.planning_probes import FEW, few_of
+from service.routes.planning_probes import FEW, few_of, in_closed_form, in_few_steps
 from service.routes.rotation.trajectory import Accuracy, accuracy_fields
 from service.routing import Answer, Example, PlanningProbe, PostRoute
 from service.schemas import (
@@ -39,6 +41,15 @@ from service.schemas import (
 TIMES: Any = Field(default=None, description="Measured from the given state, of either sign, in any order.")
 SAMPLE_IN_BALLS = 1e-4
 """Time of a sample that is evaluated in balls and not in doubles, as those of a new scene are at first (s)."""
+METHOD: Any = Field(
+    default=None,
+    description="Computes the samples in place of the closed form, from which their error is measured, and is answered "
+    "whatever that is. Events are those of the motion itself, and none but the last may interrupt it.",
+)
+QUICK = 10.0
+"""How fast (rad/s) a scene is taken to move, where a method chooses its steps."""
+RUNS = ("runs", "samples", "evaluations")
+"""What is counted of a method."""
 OUTPUTS: Any = Field(default=None, min_length=1, description="What to compute; by default everything.")
 
 
@@ -46,6 +57,7 @@ class SceneAnswer(Envelope, Generic[N]):
     """The requested outputs of a scene; each figure is there if it is one of them."""
 
     model: Model
+    method: str | None = Field(default=None, description="Kind of the method that was named, if one was.")
     work: Work
     requested_samples: int = Field(description="Number of requested times; work.samples counts the samples that exist.")
     ended: str | None = Field(description="horizon, or the event that ended the motion; null without times.")
@@ -133,21 +145,27 @@ def request_of(scene: type[NamedScene]) -> type[Request]:
     own["times"] = (Times | None, TIMES)
     own["round"] = (Rounding | None, ROUND)
     own["accuracy"] = (Tolerance, Field(default=1e-9, description="Largest tolerated relative error."))
+    own["method"] = (Method | None, METHOD)
     return request_model(scene, "", **own)
+
+
+def _system(scene: type[NamedScene], question: Any) -> NamedScene:
+    return scene(**{entry.name: getattr(question, entry.name) for entry in fields(scene)})
 
 
 def answering(scene: type[NamedScene]) -> Callable[[Any, Budget], Answer]:
     """Return what answers a question about a scene."""
-    names = tuple(entry.name for entry in fields(scene))
 
     def answer(question: Any, budget: Budget) -> Answer:
-        system = scene(**{name: getattr(question, name) for name in names})
+        system = _system(scene, question)
         times = None if question.times is None else sample_times(question.times, budget)
         wanted = None if question.outputs is None else frozenset(question.outputs)
-        found = system.answer(times, wanted, question.accuracy, question.round)
+        found = system.answer(times, wanted, question.accuracy, question.round, method=question.method, budget=budget)
         motion = found.trajectory
+        requested = 0 if times is None else times.size
         samples = None if motion is None else {name: motion[name] for name in ("time", *motion.columns)}
-        return answer_of(found, accuracy_fields(found.accuracy), found.work, found.requested_samples, samples)
+        fields = answer_of(found, accuracy_fields(found.accuracy), found.work, requested, samples)
+        return fields if motion is None or question.method is None else fields | {"method": motion.method}
 
     return answer
 
@@ -178,7 +196,18 @@ def scene_counts(question: Any, budget: Budget) -> dict[str, float]:
         "motions": float(samples > 0),
         "times": samples,
         **numbers(samples, question.round),
+        **_effort(question, samples),
     }
+
+
+def _effort(question: Any, samples: int) -> dict[str, float]:
+    """Return what is counted of the method that is named."""
+    if question.times is None:
+        return {}
+    found = effort(question.method, question.times, QUICK, samples)
+    splitting = f"evaluations of {SymmetricSplitting.kind}"
+    # A free body is split into three parts, a scene into two.
+    return found | {splitting: found[splitting] * 3.0 / 5.0} if splitting in found else found
 
 
 def scene_probe(
@@ -204,14 +233,34 @@ def scene_probe(
     return PlanningProbe(handle(question.model_copy(update={"times": few}), budget), growth)
 
 
+def _probe(scene: type[NamedScene], question: Any, budget: Budget) -> PlanningProbe:
+    """Answer a question about a scene in doubles at few of its times; a method in few steps, whose rows are as long."""
+    own = scene_probe(answering(scene), sample_times, FEW, question.model_copy(update={"method": None}), budget)
+    if in_closed_form(question.method) or "trajectory" not in own.fields:
+        return own
+    instants = sample_times(question.times, budget)
+    ComparableEquation.of(_system(scene, question).motion_to(max(0.0, float(instants.max()))))
+    times = own.fields["trajectory"]["time"]
+    if not len(times):
+        return own
+    near = in_few_steps(question.method, times, QUICK).tolist()
+    found = answering(scene)(question.model_copy(update={"times": near}), budget)
+    # The error of a method is only known by running it.
+    fields = {name: value for name, value in own.fields.items() if name != "accuracy"}
+    fields |= {name: found[name] for name in ("method", "work")}
+    return PlanningProbe(fields | {"trajectory": found["trajectory"] | {"time": times}}, own.growth)
+
+
 def price_of(scene: type[NamedScene]) -> CalibratedCost:
     """Return the price of questions about a scene; as long as it is not measured, that of the costliest that is."""
     operation, measured = operation_of(scene), calibration().seconds
+    # A method takes about as long on every equation as small as that of a free rotation.
+    methods = {name: cost for name, cost in measured["rotation_trajectory"].items() if name.split(" of ")[0] in RUNS}
     if operation in measured:
-        return CalibratedCost(operation, scene_counts)
+        return CalibratedCost(operation, scene_counts, methods)
     known = [costs for name, costs in measured.items() if name.startswith("scene_")]
     highest = {name: max(costs.get(name, 0.0) for costs in known) for costs in known for name in costs}
-    return CalibratedCost(operation, scene_counts, highest | {"times": SAMPLE_IN_BALLS})
+    return CalibratedCost(operation, scene_counts, methods | highest | {"times": SAMPLE_IN_BALLS})
 
 
 @cache
@@ -231,8 +280,8 @@ def _route(scene: type[NamedScene]) -> PostRoute:
         answer,
         answering(scene),
         price_of(scene),
-        lambda question: question.times is None or few_times(question.times),
-        partial(scene_probe, answering(scene), sample_times, FEW),
+        lambda question: question.times is None or (few_times(question.times) and in_closed_form(question.method)),
+        partial(_probe, scene),
         examples={name: Example(one.summary, one.question) for name, one in scene.examples.items()},
         warming=scene.warming,
         representations={SVG: scene_drawing(answer)},

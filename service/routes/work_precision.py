@@ -16,6 +16,8 @@ from core.multibody.modelling import system_of
 from core.notices import Notice
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree
+from core.scenes import Scene as NamedScene
+from core.scenes.sampled_motion import ComparableEquation
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation, DormandPrince853, Lsoda, Method, Radau
 from core.systems.system import InitialValueProblem
@@ -28,7 +30,16 @@ from core.work_precision import (
     check_distinct,
     work_precision,
 )
-from service.execution.cost_model import CalibratedCost, calibration, effort, evaluations, extent, extreme, speed_of
+from service.execution.cost_model import (
+    CalibratedCost,
+    calibration,
+    effort,
+    ends_of,
+    evaluations,
+    extent,
+    extreme,
+    speed_of,
+)
 from service.requests.described_scene import SceneDescription
 from service.responses.svg import SVG, Curve, Level, log_log
 from service.routes.bodies import counts, properties_of, speed_to_follow
@@ -55,11 +66,12 @@ SCIPY_KINDS = (Lsoda.kind, Radau.kind)
 
 
 class WorkPrecisionRequest(Request):
-    """A free rotation or a described scene, and the methods to be compared on it."""
+    """A free rotation, a described scene or a named one, and the methods to be compared on it."""
 
     body: Body | None = Field(default=None, description="That turns freely; this with its angular velocity, or scene.")
     angular_velocity: AngularVelocity | None = Field(default=None, description="At t = 0, in body axes.")
     scene: SceneDescription | None = Field(default=None, description="As to POST /v1/scenes.")
+    named_scene: NamedScene | None = Field(default=None, description="As to POST /v1/scenes/{kind}.")
     times: Times = TIMES
     methods: Annotated[list[Method], Field(min_length=1, max_length=100)] | None = Field(
         default=None, description="With their settings, a method as often as wanted; default: a ladder of every method."
@@ -77,7 +89,7 @@ class WorkPrecisionRequest(Request):
 
     def rotation(self) -> tuple[Any, AngularVelocity]:
         """Return the body that turns and how, or raise `InvalidParameter`."""
-        require_one(self, "body", "scene")
+        require_one(self, "body", "scene", "named_scene")
         if self.body is None or self.angular_velocity is None:
             raise InvalidParameter("angular_velocity", "be given with the body", remedy="or give a scene alone")
         return self.body, self.angular_velocity
@@ -86,8 +98,9 @@ class WorkPrecisionRequest(Request):
 class MethodMeasurement(View):
     """One method with one setting; errors are relative to the largest norm of the state in the whole motion.
 
-    The state of a scene holds the coordinates that remain of it, and then their rates, in units in which they are of
-    the order of one: SI units times powers of two.
+    The state of a described scene holds the coordinates that remain of it, and then their rates, in units in which they
+    are of the order of one: SI units times powers of two. That of a named scene holds its coordinates, and then their
+    rates, in SI units.
     """
 
     method: Method = Field(description="With its setting.")
@@ -136,9 +149,14 @@ def answer_work_precision(question: WorkPrecisionRequest, budget: Budget) -> Ans
     """Answer with every method's errors and work."""
     warnings: Sequence[Notice] = ()
     if question.scene is not None:
-        require_one(question, "body", "scene")
+        require_one(question, "body", "scene", "named_scene")
         with inside_field("scene"):
             system: InitialValueProblem = system_of(question.scene.scene())
+    elif question.named_scene is not None:
+        require_one(question, "body", "scene", "named_scene")
+        with inside_field("named_scene"):
+            motion = question.named_scene.motion_to(max(0.0, *ends_of(question.times)))
+        system = ComparableEquation.of(motion)
     else:
         body, rates = question.rotation()
         system = turning = TorqueFree(properties_of(body), np.array(rates))
@@ -166,7 +184,11 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     samples, repeats = sample_count(question.times, budget), 1 + question.repeats
     runs = _runs(question)
     if question.scene is not None:
-        return _counts_of_scene(question.scene, question, budget)
+        bodies, connections = float(len(question.scene.bodies)), float(len(question.scene.connections))
+        weight = weight_of(round(min(1e4, 3.0 * bodies + connections)))
+        return _counts_of_scene(bodies + connections, weight, question, budget)
+    if question.named_scene is not None:
+        return _counts_of_scene(1.0, 1, question, budget)
     body, rates = question.rotation()
     found = counts(question, budget) | {"measured": runs, "measured samples": runs * samples}
     if question.methods is None:
@@ -182,11 +204,17 @@ def work_precision_counts(question: WorkPrecisionRequest, budget: Budget) -> dic
     return found
 
 
-def _counts_of_scene(scene: SceneDescription, question: WorkPrecisionRequest, budget: Budget) -> dict[str, float]:
-    """Return what is counted of a comparison on a described scene; the motion that it is measured against included."""
+def _counts_of_scene(size: float, weight: int, question: WorkPrecisionRequest, budget: Budget) -> dict[str, float]:
+    """Return what is counted of a comparison on a scene; the motion that it is measured against included.
+
+    Parameters
+    ----------
+    size : float
+        Bodies and connections.
+    weight : int
+        Of an evaluation.
+    """
     repeats, samples = 1 + question.repeats, sample_count(question.times, budget)
-    bodies, connections = float(len(scene.bodies)), float(len(scene.connections))
-    weight = weight_of(round(min(1e4, 3.0 * bodies + connections)))
     if question.methods is None:
         share = budget.evaluations // (repeats * DEFAULT_RUNS * weight)
         spent = _long_ladder(QUICK * extent(question.times), share, repeats)
@@ -197,8 +225,8 @@ def _counts_of_scene(scene: SceneDescription, question: WorkPrecisionRequest, bu
             spent[name] = spent.get(name, 0.0) + repeats * evaluations(method, question.times, QUICK)
     runs = _runs(question)
     return spent | {
-        "measured": runs * (1.0 + bodies + connections),
-        "measured samples": runs * samples * (bodies + connections),
+        "measured": runs * (1.0 + size),
+        "measured samples": runs * samples * size,
         "evaluations by their weight": weight * sum(spent.values()),
         "evaluations by SciPy": sum(spent.get(f"evaluations of {kind}", 0.0) for kind in SCIPY_KINDS),
     }
@@ -226,7 +254,7 @@ def work_precision_probe(question: WorkPrecisionRequest, budget: Budget) -> Plan
     """Answer the question about the closed form at the farthest time alone; about a scene, by few steps."""
     if question.methods is not None:
         check_distinct(question.methods)
-    if question.scene is not None:
+    if question.scene is not None or question.named_scene is not None:
         changes = {"times": [NEAR], "methods": [DormandPrince853(1e-6)], "repeats": 0}
         near = answer_work_precision(question.model_copy(update=changes), budget)
         return PlanningProbe(near, {"curves": float(_runs(question))})

@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Generic, Literal
 
+import numpy as np
+
 from core.quantities import Length, Mass, Quantity, Unit, Velocity, check
 from core.scenes.enclosure import Ball, exact
+from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.figures import MechanicalEnergy, N, SceneExample, outputs_of
 from core.scenes.motion import UnbrokenMotion
 from core.scenes.named_scene import NamedScene
-from core.systems.system import Model
+from core.systems.system import Floats, Model
 from service.routes import questions
 from service.routes.scenes import members
 from service.routing import PostRoute
@@ -70,6 +73,16 @@ class Oscillation(UnbrokenMotion):
             "position": self.position * cosine + self.velocity / self.rate * sine,
             "velocity": self.velocity * cosine - self.position * self.rate * sine,
         }
+
+    def equation(self) -> SceneEquation:
+        position = AcceleratedCoordinate(self.position, self.velocity, slope=-(self.rate**2))
+        return SceneEquation((position,), self.model)
+
+    def states(self, columns: Mapping[str, Floats]) -> Floats:
+        return np.stack((columns["position"], columns["velocity"]), axis=1)
+
+    def observed(self, states: Floats) -> Mapping[str, Floats]:
+        return {"position": states[:, 0], "velocity": states[:, 1]}
 
 
 @dataclass(frozen=True)

@@ -362,7 +362,8 @@ def questions_of(outputs: Mapping[str, tuple[str, ...]]) -> dict[str, Callable[[
     def scene(name: str) -> Callable[[Random], Question]:
         def draw(random: Random) -> Question:
             found = of_scene(random, scenes[name](random), outputs[name], 3000)
-            return found | ({"round": random.choice(["meaningful", 4])} if random.random() < 0.3 else {})
+            found |= {"round": random.choice(["meaningful", 4])} if random.random() < 0.3 else {}
+            return found | ({"method": method(random, 50.0)} if random.random() < 0.3 else {})
 
         return draw
 

@@ -139,3 +139,50 @@ class TestDescribedScenes:
         response = await asked({"scene": self.SCENE, "times": [1.0]} | change)
         assert response.status_code == 422
         assert [fault["pointer"] for fault in response.json()["errors"]] == [pointer]
+
+
+class TestNamedScenes:
+    ROD: ClassVar[dict[str, Any]] = {
+        "named_scene": {"kind": "rod-in-hole", "hole_radius": 1.0, "length": 1.0, "mass": 1.0, "gravity": 9.81},
+        "times": {"start": 0.0, "stop": 2.0, "count": 5},
+    }
+
+    async def test_every_method_is_measured_against_the_closed_form(self) -> None:
+        answer = (await asked(self.ROD)).json()
+        assert answer["reference"] == "closed form"
+        assert answer["reference_error"] < 1e-14
+        curves = {curve["kind"]: curve for curve in answer["curves"]}
+        fixed = {"explicit-euler": 1, "symmetric-splitting": 2, "implicit-midpoint": 2, "runge-kutta-4": 4}
+        assert set(curves) == {*fixed, "dormand-prince-853", "lsoda", "radau"}
+        for kind, order in fixed.items():
+            assert curves[kind]["fitted_order"] == pytest.approx(order, abs=0.35)
+
+    async def test_what_interrupts_the_motion_is_refused_where_it_stands(self) -> None:
+        shafts = {
+            "kind": "unwinding-shafts",
+            "masses": [2, 1],
+            "radii": [0.1, 0.2],
+            "slopes": [0.5, 0.9],
+            "gravity": 9.81,
+        }
+        for changes, pointer in (
+            ({}, "/named_scene/positions"),
+            ({"positions": [1.0, 1.5], "spins": [5.0, 0.0]}, "/times"),
+            ({"positions": [1.0, 1.5], "wound": [0.5, 0.8]}, "/times"),
+        ):
+            response = await asked({"named_scene": shafts | changes, "times": [1.0]})
+            assert response.status_code == 422
+            assert [fault["pointer"] for fault in response.json()["errors"]] == [pointer]
+
+    async def test_one_motion_is_compared(self) -> None:
+        response = await asked(QUESTION | self.ROD)
+        assert response.status_code == 422
+        assert response.json()["errors"][0]["detail"] == "must be given, or scene or named_scene, and not more than one"
+
+    async def test_it_is_planned_and_drawn(self) -> None:
+        async with client_of(SERVICE) as client:
+            plan = (await client.post("/v1/plan", json={"path": PATH, "request": self.ROD})).json()
+        assert plan["answerable"]
+        assert plan["cost"]["milliseconds"] > 1.0
+        figure = await asked(self.ROD, accept=SVG)
+        assert "runge-kutta-4, order 4" in figure.text or "runge-kutta-4, order 3.9" in figure.text

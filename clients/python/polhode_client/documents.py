@@ -848,7 +848,7 @@ class EarthFigures(TypedDict):
 
 
 class WorkPrecisionRequest(TypedDict):
-    """A free rotation or a described scene, and the methods to be compared on it."""
+    """A free rotation, a described scene or a named one, and the methods to be compared on it."""
 
     body: NotRequired[
         PrincipalMoments
@@ -872,6 +872,7 @@ class WorkPrecisionRequest(TypedDict):
     ]
     angular_velocity: NotRequired[Numbers | None]
     scene: NotRequired[SceneDescription | None]
+    named_scene: NotRequired[UnwindingShafts | RodInHole | ChainOnWedge | None]
     times: Span | Numbers
     methods: NotRequired[
         Sequence[
@@ -1007,6 +1008,61 @@ class SceneConnection(TypedDict):
     ]
 
 
+class UnwindingShafts(TypedDict):
+    """Two shafts on a fixed wedge, on whose ends a massless, inextensible string over the smooth apex is wound."""
+
+    masses: Numbers
+    radii: Numbers
+    slopes: Numbers
+    gravity: float
+    inertia_factors: NotRequired[Numbers]
+    positions: NotRequired[Numbers | None]
+    velocities: NotRequired[Numbers]
+    spins: NotRequired[Numbers]
+    wound: NotRequired[Numbers | None]
+    slope_lengths: NotRequired[Numbers | None]
+    restitution: NotRequired[float]
+    friction: NotRequired[Friction | None]
+    kind: Literal["unwinding-shafts"]
+
+
+class Friction(TypedDict):
+    """Coulomb friction of two shafts on their slopes."""
+
+    static: Numbers
+    kinetic: Numbers
+
+
+class RodInHole(TypedDict):
+    """A rod in the plane across the axis of a smooth cylindrical hole, its ends A and B on the wall.
+
+    Angles are those of the line from the axis to the rod's centre, from the downward vertical; positive has end B
+    higher."""
+
+    hole_radius: float
+    length: float
+    mass: float
+    gravity: float
+    angle: NotRequired[float | None]
+    angular_velocity: NotRequired[float]
+    inertia_factor: NotRequired[float]
+    hole: NotRequired[Literal["half-cylinder", "cylinder"]]
+    kind: Literal["rod-in-hole"]
+
+
+class ChainOnWedge(TypedDict):
+    """An inextensible heavy chain over the smooth apex of a fixed wedge, with a mass at each end."""
+
+    masses: Numbers
+    slopes: Numbers
+    gravity: float
+    length: float
+    linear_density: float
+    position: float
+    velocity: NotRequired[float]
+    kind: Literal["chain-on-wedge"]
+
+
 class WorkPrecisionAnswer(TypedDict):
     """Error against cost."""
 
@@ -1032,8 +1088,9 @@ class MethodCurve(TypedDict):
 class MethodMeasurement(TypedDict):
     """One method with one setting; errors are relative to the largest norm of the state in the whole motion.
 
-    The state of a scene holds the coordinates that remain of it, and then their rates, in units in which they are of
-    the order of one: SI units times powers of two."""
+    The state of a described scene holds the coordinates that remain of it, and then their rates, in units in which they
+    are of the order of one: SI units times powers of two. That of a named scene holds its coordinates, and then their
+    rates, in SI units."""
 
     method: (
         ClosedFormEvaluation
@@ -1113,13 +1170,18 @@ class UnwindingShaftsRequest(TypedDict):
     times: NotRequired[Span | Numbers | None]
     round: NotRequired[Literal["meaningful"] | int | None]
     accuracy: NotRequired[float]
-
-
-class Friction(TypedDict):
-    """Coulomb friction of two shafts on their slopes."""
-
-    static: Numbers
-    kinetic: Numbers
+    method: NotRequired[
+        ClosedFormEvaluation
+        | ExplicitEuler
+        | RungeKutta4
+        | ImplicitMidpoint
+        | SymmetricSplitting
+        | DiscreteMoserVeselov
+        | DormandPrince853
+        | Lsoda
+        | Radau
+        | None
+    ]
 
 
 class UnwindingShaftsAnswer(TypedDict):
@@ -1128,6 +1190,7 @@ class UnwindingShaftsAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -1218,6 +1281,18 @@ class RodInHoleRequest(TypedDict):
     times: NotRequired[Span | Numbers | None]
     round: NotRequired[Literal["meaningful"] | int | None]
     accuracy: NotRequired[float]
+    method: NotRequired[
+        ClosedFormEvaluation
+        | ExplicitEuler
+        | RungeKutta4
+        | ImplicitMidpoint
+        | SymmetricSplitting
+        | DiscreteMoserVeselov
+        | DormandPrince853
+        | Lsoda
+        | Radau
+        | None
+    ]
 
 
 class RodInHoleAnswer(TypedDict):
@@ -1226,6 +1301,7 @@ class RodInHoleAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -1288,6 +1364,18 @@ class ChainOnWedgeRequest(TypedDict):
     times: NotRequired[Span | Numbers | None]
     round: NotRequired[Literal["meaningful"] | int | None]
     accuracy: NotRequired[float]
+    method: NotRequired[
+        ClosedFormEvaluation
+        | ExplicitEuler
+        | RungeKutta4
+        | ImplicitMidpoint
+        | SymmetricSplitting
+        | DiscreteMoserVeselov
+        | DormandPrince853
+        | Lsoda
+        | Radau
+        | None
+    ]
 
 
 class ChainOnWedgeAnswer(TypedDict):
@@ -1296,6 +1384,7 @@ class ChainOnWedgeAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -1912,6 +2001,7 @@ class CertifiedUnwindingShaftsAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -2009,6 +2099,7 @@ class CertifiedRodInHoleAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None
@@ -2078,6 +2169,7 @@ class CertifiedChainOnWedgeAnswer(TypedDict):
     signature: Signature
     warnings: list[Notice]
     model: Model
+    method: NotRequired[str | None]
     work: Work
     requested_samples: int
     ended: str | None

@@ -28,6 +28,28 @@ _LEAST = 2.0**-1074
 _THINNEST = 2.0**-1000
 _PLANES = ((0, 1), (1, 2), (2, 0))
 
+COMPONENTS = np.zeros((6, 3, 3))
+"""The changes of a symmetric tensor by each of its six components."""
+for _n, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+    COMPONENTS[_n, _i, _j] = COMPONENTS[_n, _j, _i] = 1.0
+COMPONENTS.setflags(write=False)
+
+
+def tensors_of_moments(axes: Floats, moments: Floats, apart: tuple[bool, bool]) -> Floats:
+    """Return the tensors, shape (n, 3, 3), that each moment by itself stands for; equal moments stand together.
+
+    Parameters
+    ----------
+    axes : ndarray, shape (3, 3)
+        Principal axes as columns.
+    moments : ndarray, shape (3,)
+        Ascending.
+    apart : pair of bool
+        Whether each of the first two differs from the next.
+    """
+    groups = np.cumsum([0, *apart])
+    return np.array([(axes * np.where(groups == g, moments, 0.0)) @ axes.T for g in range(groups[2] + 1)])
+
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities:

@@ -9,7 +9,8 @@ import pytest
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import SigFig
 from core.assessment.graded_question import GradedQuestion
-from core.assessment.grader import Grader, JudgedClaim, credited, explained
+from core.assessment.grader import Grader, credited
+from core.assessment.judged_claims import JudgedClaim, explained
 from tests.core.assessment.pendulum import REQUEST, Pendulum
 from tests.core.assessment.test_graded_question import PERIOD
 

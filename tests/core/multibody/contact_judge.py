@@ -20,8 +20,9 @@ from typing import Any
 import numpy as np
 
 from core.errors import MechanicsError
-from core.multibody.answer import SceneAnswer, SceneEvent
+from core.multibody.answer import SceneAnswer
 from core.multibody.solve import solve_scene
+from core.systems.trajectory import MotionEvent
 from tests.core.multibody.random_scenes import decimal
 from tests.core.multibody.worked_examples import read
 
@@ -444,7 +445,7 @@ def mirrored(scene: Scene) -> Scene:
     return found
 
 
-def noticeable(events: Sequence[SceneEvent]) -> list[SceneEvent]:
+def noticeable(events: Sequence[MotionEvent]) -> list[MotionEvent]:
     """Return the events before contacts that bounce in turn come to rest below what is known of them."""
     largest: dict[str, float] = {}
     found = []

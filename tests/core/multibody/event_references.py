@@ -23,9 +23,9 @@ from typing import Any
 import mpmath
 from mpmath import mpf
 
-from core.multibody.answer import SceneEvent
 from core.multibody.reading import scene_from
 from core.multibody.solve import solve_scene
+from core.systems.trajectory import MotionEvent
 
 SCENES = Path(__file__).parents[3] / "examples" / "scenes"
 DIGITS = 40
@@ -242,13 +242,13 @@ class Compared:
         8 times the conditioning in units of rounding, and 2e-15 of the time (s).
     """
 
-    event: SceneEvent
+    event: MotionEvent
     off: float
     conditioning: float
     allowed: float
 
 
-def events_of(scene: str) -> tuple[SceneEvent, ...]:
+def events_of(scene: str) -> tuple[MotionEvent, ...]:
     """Return the events of a worked scene up to its horizon."""
     document = json.loads((SCENES / f"{scene}.json").read_text(encoding="utf-8"), parse_float=str)
     times = document.pop("times")

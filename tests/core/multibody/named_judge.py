@@ -17,12 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from core.multibody.answer import SceneAnswer, SceneEvent
+from core.multibody.answer import SceneAnswer
 from core.multibody.solve import solve_scene
 from core.scenes.chain_on_wedge import ChainOnWedge
 from core.scenes.friction import Friction
 from core.scenes.rod_in_hole import RodInHole
 from core.scenes.unwinding_shafts import UnwindingShafts
+from core.systems.trajectory import MotionEvent
 from tests.core.multibody.random_scenes import decimal
 from tests.core.multibody.worked_examples import column, read
 
@@ -136,7 +137,7 @@ def _require_same_events(named: UnwindingShafts, figures: Any, answer: SceneAnsw
     def seen(time: float) -> bool:
         return not any(low <= time <= high for low, high in faint)
 
-    def find(time: float, among: list[SceneEvent]) -> None:
+    def find(time: float, among: list[MotionEvent]) -> None:
         near = min(among, key=lambda event: abs(event.time - time), default=None)
         assert near is not None, ("not described", time)
         assert abs(near.time - time) <= near.error + 1e-14 * time, ("another time", near, time)
@@ -165,7 +166,7 @@ def _require_same_events(named: UnwindingShafts, figures: Any, answer: SceneAnsw
         assert np.abs(slack).max() <= 1e-13 * np.abs(samples["positions"]).max(), ("slack", float(np.abs(slack).max()))
 
 
-def _faint(jerks: list[SceneEvent], settles: list[SceneEvent], largest: float) -> list[tuple[float, float]]:
+def _faint(jerks: list[MotionEvent], settles: list[MotionEvent], largest: float) -> list[tuple[float, float]]:
     """Return the times of jerks that are faint, each up to the next jerk or the end of infinitely many."""
     found = []
     for event, after in zip(jerks, [*jerks, None][1:], strict=True):
@@ -181,8 +182,8 @@ def _faint(jerks: list[SceneEvent], settles: list[SceneEvent], largest: float) -
 def _require_same_impulses(
     named: UnwindingShafts,
     phases: list[Any],
-    jerks: list[SceneEvent],
-    settles: list[SceneEvent],
+    jerks: list[MotionEvent],
+    settles: list[MotionEvent],
     largest: float,
     seen: Callable[[float], bool],
 ) -> None:

@@ -23,7 +23,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from service.execution.job import DeadlineExceeded, Job, QueueTimeout, Stopped, WorkerDied
-from service.execution.worker_pool import Process, Processes
+from service.execution.worker_pool import Processes
+from service.execution.worker_process import Process
 from tests.service.toy_processes import framed, main
 
 pytestmark = pytest.mark.anyio

@@ -1,0 +1,80 @@
+"""One compute process, seen from the event loop: a connection that takes a request and hears its answer."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+from multiprocessing.context import ForkServerProcess
+from typing import Protocol, cast
+
+import numpy as np
+
+from service.execution.job import Job
+from service.execution.messages import LENGTH
+
+
+class Listener(Protocol):
+    """Receives what comes from a process."""
+
+    def heard(self, process: Process, message: memoryview | None) -> None:
+        """Take a message, None for that it is ready or has begun."""
+
+    def ended(self, process: Process) -> None:
+        """Take that it has ended."""
+
+
+class Process(asyncio.BufferedProtocol):
+    """One process, seen from the event loop.
+
+    Messages are received where they stay: a large one is never copied.
+    """
+
+    def __init__(self, listener: Listener, handle: ForkServerProcess) -> None:
+        self._listener, self.handle = listener, handle
+        self._transport: asyncio.WriteTransport | None = None
+        self._length = memoryview(bytearray(LENGTH))
+        self._target, self._filled = self._length, 0
+        self.ready = self.killed = False
+        self.job: Job | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Keep the connection."""
+        self._transport = cast(asyncio.WriteTransport, transport)
+
+    def give(self, job: Job) -> None:
+        """Send a request."""
+        assert self._transport is not None
+        self.job = job
+        self._transport.writelines(job.request)
+
+    def get_buffer(self, sizehint: int) -> memoryview:
+        """Return where the next bytes belong."""
+        return self._target[self._filled :]
+
+    def buffer_updated(self, count: int) -> None:
+        """Take in messages: nothing for "ready" and then for "begun", something for a reply."""
+        self._filled += count
+        if self._filled < len(self._target):
+            return
+        received, self._target, self._filled = self._target, self._length, 0
+        if received is not self._length:
+            self._listener.heard(self, received)
+        elif length := int.from_bytes(received, "little"):
+            # Memory that is not written before the message fills it.
+            self._target = np.empty(length, np.uint8).data
+        else:
+            self._listener.heard(self, None)
+
+    def connection_lost(self, error: Exception | None) -> None:
+        """The process has ended."""
+        self._listener.ended(self)
+
+    def kill(self) -> None:
+        """End it at once, whatever it does."""
+        self.killed = True
+        # Its handle learns of its end from the fork server alone, and would take it for dead once that has ended. It
+        # lives as long as its connection does.
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(self.handle.pid or 0, signal.SIGKILL)
