@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import errno
+import gc
 import os
 import signal
 import socket
@@ -98,6 +99,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         # It imports as much as this process does, at the same time.
         forkserver.set_forkserver_preload([PRELOAD])
         forkserver.ensure_running()
+        # Until the application is ready; next to nothing of what is made before is ever garbage.
+        gc.disable()
     from core.compiled import has_compiled_code
 
     LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: a minute or two, once")

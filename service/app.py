@@ -158,8 +158,8 @@ class Service(FastAPI):
             LOG.exception("the service could not get ready")
             raise
         # What has been built until now stays for good: the collector of garbage need not walk through it ever again.
-        gc.collect()
         gc.freeze()
+        gc.enable()
         self.warm, self._starting = True, False
         at = f" at {self.address}" if self.address else ""
         LOG.info("ready%s", at, extra={"compute_processes": self.compute.size})

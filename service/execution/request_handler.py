@@ -42,9 +42,13 @@ class RequestHandler:
         Of two processes that start at the same time on empty caches, one goes backwards: each compiles half of the
         kernels and loads the other half.
         """
-        for route in reversed(self._routes) if backwards else self._routes:
-            for question in (*(example.question for example in route.examples.values()), *route.warming):
-                self.answer(route, self.read(route, orjson.dumps(question)))
+        asked = [
+            (route, question)
+            for route in self._routes
+            for question in (*(example.question for example in route.examples.values()), *route.warming)
+        ]
+        for route, question in reversed(asked) if backwards else asked:
+            self.answer(route, self.read(route, orjson.dumps(question)))
         # Its first use would otherwise import it, and hold up the event loop.
         import_module("scipy.integrate")
 

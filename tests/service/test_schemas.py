@@ -22,6 +22,7 @@ from service.schemas import (
     Matrix,
     QuaternionRow,
     Request,
+    Rounding,
     Signature,
     Span,
     Times,
@@ -165,6 +166,19 @@ class TestTimes:
         assert READ_TIMES.validate_json('{"start": 0, "stop": 1, "count": 3}') == Span(start=0.0, stop=1.0, count=3)
         with pytest.raises(ValidationError):
             READ_TIMES.validate_json('"0.1"')
+
+
+class TestRounding:
+    read: TypeAdapter[Any] = TypeAdapter(Rounding)
+
+    @pytest.mark.parametrize("sent", ["meaningful", 1, 17])
+    def test_digits_are_a_whole_number_or_those_with_a_meaning(self, sent: Any) -> None:
+        assert self.read.validate_python(sent) == sent
+
+    @pytest.mark.parametrize("sent", [0, 18, "3", 3.0, True, "all", None])
+    def test_nothing_is_taken_for_a_number_of_digits(self, sent: Any) -> None:
+        with pytest.raises(ValidationError, match="must be 'meaningful' or an integer from 1 to 17"):
+            self.read.validate_python(sent)
 
 
 @dataclass(frozen=True)

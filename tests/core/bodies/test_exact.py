@@ -100,3 +100,14 @@ def test_exact_sums_of_value_and_tail() -> None:
     assert exact.exact_vector(value, tail)[0] == 1 + Fraction(1e-20)
     assert exact.exact_vector(value, None) == [1, 2, 3]
     assert exact.exact_matrix(np.diag(value), np.diag(tail))[1][1] == 2 - Fraction(1e-300)
+
+
+def test_a_mass_has_53_bits_down_to_the_least_normal_double() -> None:
+    least = Fraction(np.finfo(float).smallest_normal)
+    assert exact.size_pair(least) == (least, 0.0)
+    assert exact.size_pair(Fraction(0)) == (0.0, 0.0)
+    for less in (least / 2, -least / 2, least * Fraction(1023, 1024)):
+        with pytest.raises(InvalidParameter):
+            exact.size_pair(less)
+    # A component of a vector may be subnormal.
+    assert exact.pair(least / 2) == (least / 2, 0.0)

@@ -42,9 +42,10 @@ def test_more_bits_distinguish_a_tie_from_a_difference() -> None:
         assert float(oriented((arb("0.5 +/- 1e-30"), arb("-0.6 +/- 1e-30"), arb(0)))[1]) == pytest.approx(0.6)
 
 
-def test_a_sign_in_doubt_is_left_open() -> None:
+@pytest.mark.parametrize("radius", [1, 0.1])
+def test_a_sign_in_doubt_is_left_open(radius: float) -> None:
     with precision(TIE_BITS), pytest.raises(Undetermined):
-        oriented((arb("0 +/- 1"), arb(0), arb(0)))
+        oriented((arb(0, radius), arb(0), arb(0)))
 
 
 def test_the_floor_of_a_unit_vector_is_a_multiple_of_the_digits() -> None:

@@ -86,3 +86,21 @@ def test_body_axes_that_are_principal_are_only_sorted():
         assert [float(x) for x in state.moments] == [1, 2, 3]
         assert list(axes @ [float(x) for x in state.rates]) == [5, 7, 11]
         assert all(x.is_exact() for x in (*state.rates, *state.moments, *state.gaps))
+
+
+@pytest.mark.parametrize("tensor", [OBLIQUE, [[14, 0, 0], [0, 21, 0], [0, 0, 24]]], ids=["irrational", "rational"])
+def test_the_middle_axis_comes_within_45_degrees_where_energy_and_momentum_say_so(tensor):
+    """Where it comes nearest, the other axis that the momentum does not circle has no rate: two equations in two."""
+    inertia, found = ExactInertia.of_tensor(tensor), set()
+    moments, axes = np.linalg.eigh(np.array(tensor, dtype=float))
+    for rates in [(i, j, k) for i in (-9, 1, 4) for j in (-2, 0, 5) for k in (-4, 1, 3)]:
+        motion = start(inertia, rates)
+        if motion.regime != "periodic":
+            continue
+        momentum = moments * (axes.T @ rates)
+        about, across = moments[1], moments[2 if motion.side > 0 else 0]
+        squares = np.linalg.solve([[1, 1], [1 / about, 1 / across]], [momentum @ momentum, momentum**2 @ (1 / moments)])
+        tilts = squares[0] / squares.sum() > 0.5
+        assert motion.tilts_below_45_degrees() == tilts
+        found.add((motion.side, bool(tilts)))
+    assert len(found) == 4

@@ -139,7 +139,7 @@ class TestWarm:
         assert len(seen) == 4
         answering(one, two).warm(backwards=True)
         assert seen[4].times == seen[3].times
-        assert [question.times for question in seen[5:]] == [[0.0], [1.0], [2.0]]
+        assert [question.times for question in seen[5:]] == [[2.0], [1.0], [0.0]]
 
     @pytest.mark.parametrize("example", [{}, GOOD | {"behaviour": "fail"}])
     def test_an_example_that_is_not_answered_stops_the_start(self, example: dict[str, Any]) -> None:

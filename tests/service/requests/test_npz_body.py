@@ -12,7 +12,7 @@ import pytest
 
 from core.bodies.measured import PointMasses
 from service.problems import Refusal
-from service.requests.npz_body import MOST_MEMBERS, unpacked
+from service.requests.npz_body import MOST_MEMBERS, taking_arrays, unpacked
 from service.requests.request_reader import Limits, Reader
 from service.routes.bodies import MassPropertiesRequest
 from service.routes.rotation.ensemble import EnsembleRequest
@@ -59,6 +59,11 @@ def test_numpy_packs_what_is_read() -> None:
     with zipfile.ZipFile(text, "a") as more:
         more.writestr("metadata.json", json.dumps({"body": BODY | {"positions": {"array": "positions"}}}))
     np.testing.assert_array_equal(READER.read(text.getvalue(), npz=True).body.positions, POINTS)
+
+
+def test_what_may_be_anything_takes_arrays_only_where_it_says_so() -> None:
+    assert taking_arrays({"type": "any"}, 10) == {"type": "any"}
+    assert taking_arrays({"type": "any", "metadata": {"arrays_within": True}}, 10)["type"] == "function-plain"
 
 
 def test_every_list_may_be_an_array() -> None:
