@@ -37,9 +37,6 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # What it starts has the same priority.
     os.nice(NICE)
-    if sys.platform == "linux":
-        # It gives up its core at once to whoever wants one; a process that is only nice finishes its slice first.
-        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
     folder = data_folder(settings)
     ownership = Ownership(folder)
     if not ownership.acquire():

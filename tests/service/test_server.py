@@ -221,8 +221,14 @@ def test_several_server_processes_give_the_same_bytes_and_shared_counters_and_st
     server.wait_until_ready()
     answers: set[bytes] = set()
     tags: set[Any] = set()
+    early = 0
     for _ in range(24):
-        status, headers, content = post(server, hostile.text())
+        # A connection may reach the process that is not ready yet.
+        while (found := post(server, hostile.text()))[0] == 503:
+            early += 1
+            assert early < 600
+            time.sleep(0.1)
+        status, headers, content = found
         assert status == 200
         answers.add(content)
         tags.add(headers["etag"])
@@ -236,7 +242,7 @@ def test_several_server_processes_give_the_same_bytes_and_shared_counters_and_st
     assert 200 in statuses
     until_metrics_have(server, f"polhode_job_seconds_count {statuses.count(200)}.0", "polhode_backlog_seconds 0.0")
     lines = stopped_cleanly(server, scratch, signal.SIGINT)
-    assert sum(line.get("operation") == "rotation_trajectory" for line in lines) == 30
+    assert sum(line.get("operation") == "rotation_trajectory" for line in lines) == 30 + early
 
 
 def server_processes(server: Server) -> list[int]:

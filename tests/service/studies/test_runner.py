@@ -52,9 +52,6 @@ async def test_a_killed_server_costs_what_was_being_computed(desk_on: Desks, in_
     environment = {**os.environ, "POLHODE_DATA": str(folder), "POLHODE_STUDY_WORKERS": "1"}
     server = subprocess.Popen([sys.executable, "-c", SERVER], cwd=ROOT, env=environment)
     until(lambda: desk.study(identity).done)
-    started = Path(f"/proc/{server.pid}/task/{server.pid}/children").read_text().split()
-    # What answers requests goes first.
-    assert {os.sched_getscheduler(int(process)) for process in started} == {os.SCHED_IDLE}
     server.send_signal(signal.SIGKILL)
     server.wait()
     # The process that it started sees its end, and lets the folder go.
