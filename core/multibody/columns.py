@@ -23,7 +23,7 @@ _SMALL = 2.0**-50
 NEAREST = 2.0**-53 * (1 + 2.0**-20)
 """The same for coordinates and rates that are the doubles nearest to pairs."""
 _SOLVED = 2.0**-100
-"""Share of the largest multiplier to which all of them are known, with the state."""
+"""Share of the largest multiplier, coordinate or rate to which all of them are known."""
 _TELL = 1.02
 """Margin for the judge's own error, which is some 2^-14 of what it judges."""
 
@@ -162,10 +162,11 @@ class Columns:
             pairs.append(self.states.reference)
         curves = [self._energies(*entry) for entry in pairs]
         moved = self._moved(2, lambda q, v: np.array([both[0][:, None] for both in self._energies(q, v)]))
+        floors = self._energies_of_rounding()
         found: dict[str, Column] = {}
         for number, name in enumerate(("energy.kinetic", "energy.potential")):
             values, size = curves[0][number]
-            error = _SMALL * float(np.max(size, initial=0.0)) + float(moved[number])
+            error = _SMALL * float(np.max(size, initial=0.0)) + floors[number] + float(moved[number])
             if len(curves) > 1:
                 error += 4.0 * float(np.max(np.abs(values - curves[1][number][0]), initial=0.0))
             found[name] = Column(values, "J", error, self.how)
@@ -188,6 +189,16 @@ class Columns:
             term = 0.5 * float(value) * q[:, i, 0] * q[:, j, 0]
             potential, sizes[1] = potential + term, sizes[1] + np.abs(term)
         return (kinetic, sizes[0]), (potential, sizes[1])
+
+    def _energies_of_rounding(self) -> tuple[float, float]:
+        """Return to what the energies are known where a coordinate or rate should be zero, and is not quite."""
+        table = self.whole.measures.table
+        place, rate = (float(np.max(np.abs(x[..., 0]), initial=0.0)) for x in (self.states.q, self.states.v))
+        mass, load, stiffness = (
+            sum(abs(float(value)) for value in entries.values())
+            for entries in (table.mass, table.load, table.stiffness)
+        )
+        return _SOLVED * mass * rate * rate, _SOLVED * (load + stiffness * place) * place
 
     def _vector(self, indices: Sequence[int], unit: str, *, rates: bool) -> Column:
         where = list(indices)

@@ -57,6 +57,11 @@ def test_the_work_of_a_spring_at_rest_is_known_no_better_than_its_length() -> No
     assert judged(any_scene(9836)) == "horizon"
 
 
+def test_an_energy_that_should_be_zero_is_known_no_better_than_the_places() -> None:
+    """A block on a level plank: rounding leaves its height, and with it the potential, at some 1e-150 or at zero."""
+    assert judged(any_scene(3109)) == "horizon"
+
+
 @pytest.mark.parametrize("seed", [4068, 5739, 6301])
 def test_impacts_in_turn_are_told_apart_down_to_a_millionth(seed: int) -> None:
     """How many impacts come before two are closer than they are known depends on the units; those before do not."""
