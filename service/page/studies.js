@@ -4,7 +4,7 @@ import { $, color, make, onTheme, written } from "./dom.js";
 
 const STUDIES = "/v1/studies";
 const LARGEST_MAP = 250000;
-const TYPES = [["JSON", "application/json"], ["npz", "application/x-npz"], ["Parquet", "application/vnd.apache.parquet"], ["Zarr", "application/vnd.zarr+zip"]];
+const NAMES = { "application/json": ["JSON", "json"], "application/x-npz": ["npz", "npz"], "application/vnd.apache.parquet": ["Parquet", "parquet"], "application/vnd.zarr+zip": ["Zarr", "zarr.zip"], "image/svg+xml": ["SVG", "svg"] };
 const START = {
   question: { path: "/v1/rotation/precession", request: { body: { kind: "principal-moments", moments: [0.5, 0.8, 1.0] }, angular_velocity: [0.01, 1.0, 0.01] } },
   vary: [{ pointer: "/body/moments/0", min: 0.35, max: 0.65, count: 80 }, { pointer: "/body/moments/1", min: 0.68, max: 0.98, count: 80 }],
@@ -73,17 +73,19 @@ async function results(state) {
   $("shown").hidden = false;
   $("shown-title").textContent = `${state.path}, ${state.count} members`;
   $("figure").replaceChildren(...state.figures.map((f) => make("option", { value: f.pointer, textContent: f.pointer })));
-  $("links").replaceChildren(...TYPES.flatMap(([name, type]) => [link(name, type, path, state), " "]));
+  const offered = state.links.filter((one) => one.rel === "results");
+  $("links").replaceChildren(...offered.flatMap((one) => [link(one, state.jobID), " "]));
   draw();
 }
 
-function link(name, type, path, state) {
+function link({ href, type }, id) {
+  const [name, extension] = NAMES[type] ?? [type, "bin"];
   const button = make("button", { type: "button", textContent: name });
   button.addEventListener("click", async () => {
-    const response = await fetched(path, { headers: { accept: type } });
+    const response = await fetched(href, { headers: { accept: type } });
     if (!response.ok) return tell(new Error((await response.json()).detail));
     const place = URL.createObjectURL(await response.blob());
-    make("a", { href: place, download: `${state.jobID}.${name.toLowerCase()}${name === "Zarr" ? ".zip" : ""}` }).click();
+    make("a", { href: place, download: `${id}.${extension}` }).click();
     URL.revokeObjectURL(place);
   });
   return button;

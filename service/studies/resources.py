@@ -25,7 +25,7 @@ from service.studies import grids, tables
 from service.studies.chunk_files import CorruptedChunk
 from service.studies.figures import figure
 from service.studies.results import Results
-from service.studies.states import JSON_TYPE, signed, state_of
+from service.studies.states import JSON_TYPE, REPRESENTATIONS, signed, state_of
 from service.studies.store import DISMISSED, SUCCESSFUL, Study, storage_unavailable
 from service.studies.supervisor import Supervisor
 
@@ -177,7 +177,7 @@ class Studies:
             detail = f"the study is {study.status}"
             raise Refusal("results-not-ready", detail, retry_after=1.0 if study.unfinished else None)
         accept = context.headers.get(b"accept", b"*/*")
-        media = negotiated(accept, (JSON_TYPE, archive.MEDIA_TYPE, tables.MEDIA_TYPE, grids.MEDIA_TYPE, SVG))
+        media = negotiated(accept, tuple(REPRESENTATIONS))
         try:
             found = await self._in_thread(lambda: Results(study, self._store, self._supervisor.files()))
             if media == JSON_TYPE:

@@ -4,13 +4,28 @@ from __future__ import annotations
 
 import time
 from datetime import UTC, datetime
+from importlib.util import find_spec
 from typing import Any
 
+from service.responses import npz
+from service.responses.svg import SVG
 from service.routes.studies import PATH
 from service.schemas import SIGNATURE
+from service.studies import grids, tables
 from service.studies.store import SUCCESSFUL, Study
 
 JSON_TYPE = "application/json"
+
+REPRESENTATIONS: dict[str, str | None] = {
+    JSON_TYPE: None,
+    npz.MEDIA_TYPE: None,
+    tables.MEDIA_TYPE: "pyarrow",
+    grids.MEDIA_TYPE: "zarr",
+    SVG: None,
+}
+"""Media types of results, each with the optional package that writes it."""
+
+_WRITTEN_HERE = tuple(kind for kind, package in REPRESENTATIONS.items() if package is None or find_spec(package))
 
 
 def state_of(study: Study) -> dict[str, Any]:
@@ -18,7 +33,7 @@ def state_of(study: Study) -> dict[str, Any]:
     now, address = time.time(), f"{PATH}/{study.id}"
     links = [("self", address, JSON_TYPE), ("events", f"{address}/events", "text/event-stream")]
     if study.status == SUCCESSFUL:
-        links.append(("results", f"{address}/results", JSON_TYPE))
+        links.extend(("results", f"{address}/results", kind) for kind in _WRITTEN_HERE)
     return {
         "jobID": study.id,
         "type": "process",

@@ -79,6 +79,10 @@ async def test_a_study_from_submission_to_results(desk_on: Desks, in_process: st
         assert (state["count"], state["shape"], state["predicted_end"]) == (6, [3, 2], None)
         assert state["inputs"][0] == {"pointer": "/angular_velocity/0", "unit": "rad s^-1", "levels": 3}
         assert {link["rel"] for link in state["links"]} == {"self", "events", "results"}
+        for link in state["links"]:
+            if link["rel"] == "results":
+                answer = await client.get(link["href"], headers={"accept": link["type"]})
+                assert (answer.status_code, answer.headers["content-type"]) == (200, link["type"])
         found = (await client.get(f"{place}/results")).json()
         assert found["inputs"] == {
             "/angular_velocity/0": [0.0, 0.0, 0.5, 0.5, 1.0, 1.0],
