@@ -9,9 +9,11 @@ figures are written to benchmarks/results/named_scenes.json.
 from __future__ import annotations
 
 import json
+import multiprocessing
 import sys
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -359,19 +361,24 @@ JUDGES: dict[str, Callable[[int], SceneAnswer]] = {
 }
 
 
+def judged_seed(kind: str, seed: int) -> Counter[str]:
+    """Return whether the scene of a seed differs, and how many events it has."""
+    try:
+        events = JUDGES[kind](seed).events
+    except Exception as fault:
+        sys.stdout.write(f"{kind} {seed} {type(fault).__name__}: {str(fault)[:300]}\n")
+        sys.stdout.flush()
+        return Counter({"differ": 1})
+    return Counter({"with events" if events else "without": 1, "events": len(events)})
+
+
 def main(count: int, *kinds: str) -> None:
     """Judge random scenes of every kind, or of some, print what differs, and write how many agree."""
     results = json.loads(TARGET.read_text(encoding="utf-8")) if TARGET.exists() else {}
     for kind in kinds or JUDGES:
-        found: Counter[str] = Counter()
-        for seed in range(count):
-            try:
-                events = JUDGES[kind](seed).events
-                found["with events" if events else "without"] += 1
-                found["events"] += len(events)
-            except Exception as fault:
-                found["differ"] += 1
-                sys.stdout.write(f"{kind} {seed} {type(fault).__name__}: {str(fault)[:300]}\n")
+        with multiprocessing.Pool() as pool:
+            each = pool.map(partial(judged_seed, kind), range(count), chunksize=5)
+        found = sum(each, Counter[str]())
         sys.stdout.write(f"{kind}: {dict(found)}\n")
         results[kind] = {"seeds": f"0 to {count - 1}", "differ": 0, **found}
         if count >= 1000:
