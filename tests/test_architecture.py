@@ -198,7 +198,9 @@ TESTED_IN |= {
     f"core/multibody/{name}.py": f"core/multibody/test_{through}.py"
     for through, names in {
         "impacts": "accumulation impulses recurring_bounces",
-        "description": "coordinates inertia laws measures rolling strings",
+        "description": (
+            "connection_effects coordinates directions frames inertia laws measures rolling spatial_orientation strings"
+        ),
         "columns": "column_errors",
         "language": "connections reading",
         "passes": "pinning reduction",

@@ -9,9 +9,9 @@ from math import copysign
 import numpy as np
 
 from core.errors import BudgetExceeded
-from core.multibody.coordinates import Frame
+from core.multibody.connection_effects import Work
+from core.multibody.frames import Frame
 from core.multibody.integrals import Integrand, integrated
-from core.multibody.measures import Work
 from core.multibody.momenta import work_of_potential
 from core.multibody.packed import Floats
 from core.multibody.whole import Whole, values

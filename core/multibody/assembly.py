@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from flint import arb, arb_mat
 
 from core.errors import InvalidParameter, NotApplicable, Path
-from core.multibody.coordinates import Given
+from core.multibody.frames import Given
 from core.multibody.measures import CLOSE
 from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.rank import Elimination, Line, independent

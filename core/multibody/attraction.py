@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.coordinates import Point
-from core.multibody.measures import Force, Measures, Work
+from core.multibody.connection_effects import Force, Work
+from core.multibody.frames import Point
+from core.multibody.measures import Measures
 from core.multibody.polynomials import Ball, entry, is_zero
 from core.near_names import near_and_all
 

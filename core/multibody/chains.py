@@ -18,9 +18,11 @@ from math import inf
 from typing import Any
 
 from core.errors import InvalidParameter, NotApplicable, Path
-from core.multibody.coordinates import Point
+from core.multibody.connection_effects import Force, Limit
+from core.multibody.directions import unit
+from core.multibody.frames import Point
 from core.multibody.language import Scene
-from core.multibody.measures import Force, Limit, Measures, unit
+from core.multibody.measures import Measures
 from core.multibody.momenta import StateFunction
 from core.multibody.polynomials import (
     ONE,

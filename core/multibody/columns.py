@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from core.multibody.attitudes import quaternions
-from core.multibody.measures import Force
+from core.multibody.connection_effects import Force
 from core.multibody.momenta import StateFunction, momenta
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats

@@ -17,11 +17,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_forces import Balance, balanced
 from core.multibody.contact_responses import Responses, gap_rate, require_few, responses, slip_rate
 from core.multibody.contact_states import Problem, State, disc, grips, phase_table, sticks_more
 from core.multibody.expansion import expansion, leading_sign
-from core.multibody.measures import Unilateral
 from core.multibody.polynomials import Ball, is_zero
 from core.multibody.slip_directions import Direction, along_slip, directions, turned
 from core.multibody.table import Table

@@ -14,9 +14,9 @@ from itertools import combinations
 from flint import arb_mat
 
 from core.errors import BudgetExceeded
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_responses import NO_DIRECTIONS, Forces, Responses, rate_along
 from core.multibody.contact_states import Problem, State
-from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ONE, ZERO, Ball, entry, is_zero
 from core.multibody.rank import Elimination
 from core.multibody.shares_in_space import shared_in_space

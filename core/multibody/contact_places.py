@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.coordinates import Frame, Point
+from core.multibody.frames import Frame, Point
 from core.multibody.measures import Measures
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
 

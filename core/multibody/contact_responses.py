@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from core.errors import BudgetExceeded
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_states import State
 from core.multibody.dynamics import weightless
 from core.multibody.expansion import saddle_solved
-from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ONE, ZERO, Ball, evaluated, is_zero
 from core.multibody.rank import independent
 from core.multibody.table import Row, Table

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from core.multibody.connection_effects import Force, Unilateral
 from core.multibody.expansion import product
-from core.multibody.measures import COMPONENTS, Force, Unilateral
+from core.multibody.measures import COMPONENTS
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, is_zero
 from core.multibody.table import Rates, Row, Table
 from core.multibody.undecided import Code

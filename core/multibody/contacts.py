@@ -11,11 +11,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from core.errors import InvalidParameter, Path
+from core.multibody.connection_effects import Unilateral
 from core.multibody.connections import GROUND
 from core.multibody.contact_places import gap_of_rims, is_on, place_on, refuse_limits, two_rims
 from core.multibody.contacts_in_space import contact_in_space
-from core.multibody.coordinates import Frame, Point, Rate
-from core.multibody.measures import Measures, Unilateral
+from core.multibody.frames import Frame, Point, Rate
+from core.multibody.measures import Measures
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
 from core.multibody.rolling import rate_of, sum_of_rates
 

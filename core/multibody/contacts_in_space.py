@@ -12,8 +12,9 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.contact_places import Rim, gap_of_rims, is_on, place_on, refuse_limits, two_rims
-from core.multibody.coordinates import Rate
-from core.multibody.measures import Measures, perpendicular, unit
+from core.multibody.directions import perpendicular, unit
+from core.multibody.frames import Rate
+from core.multibody.measures import Measures
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
 from core.multibody.rolling import rate_of, sum_of_rates
 

@@ -9,11 +9,13 @@ from typing import Any
 from core.errors import InvalidParameter, Path
 from core.multibody import attraction, laws
 from core.multibody.chains import chain
+from core.multibody.connection_effects import Work
 from core.multibody.connections import GROUND
 from core.multibody.contacts import contact
 from core.multibody.coordinates import Coordinates, dimension_of
+from core.multibody.directions import perpendicular
 from core.multibody.language import Scene
-from core.multibody.measures import Measures, Work, perpendicular
+from core.multibody.measures import Measures
 from core.multibody.numerals import Numerals
 from core.multibody.polynomials import ONE, Poly, constant, difference, evaluated, is_zero
 from core.multibody.rolling import rolling

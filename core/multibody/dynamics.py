@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from flint import arb_mat
 
 from core.errors import InvalidParameter
-from core.multibody.measures import Force, Measures
+from core.multibody.connection_effects import Force
+from core.multibody.measures import Measures
 from core.multibody.polynomials import ONE, ZERO, Ball, entry, evaluated, is_zero, variables
 from core.multibody.rank import Elimination, independent
 from core.multibody.table import Row, Table

@@ -12,9 +12,9 @@ import numpy as np
 
 from core.errors import BudgetExceeded, NotApplicable
 from core.multibody.answer import Equilibrium
-from core.multibody.coordinates import Frame
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
+from core.multibody.frames import Frame
 from core.multibody.packed import Floats, Packed, Units, packed, state, two_to, units_of
 from core.multibody.passes import reduced
 from core.multibody.reduction import Reduced

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import NotApplicable
+from core.multibody.connection_effects import Limit
 from core.multibody.kepler import Kepler
-from core.multibody.measures import Limit
 from core.multibody.modes import Modes
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats

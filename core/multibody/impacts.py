@@ -16,6 +16,7 @@ from itertools import permutations
 
 from flint import arb, arb_mat
 
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_responses import (
     Forces,
     Responses,
@@ -28,7 +29,6 @@ from core.multibody.contact_responses import (
 from core.multibody.contact_states import Problem, phase_table
 from core.multibody.dynamics import kinetic
 from core.multibody.impulses import LIMIT, Rates, alike, impulses_at_once, likest, rates_after
-from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ZERO, Ball, is_zero
 from core.multibody.slip_directions import along_slip
 from core.multibody.table import Table

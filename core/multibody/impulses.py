@@ -16,9 +16,9 @@ from itertools import product
 
 from flint import arb_mat
 
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_responses import Forces, Responses
 from core.multibody.contact_states import Problem, State, grips, sticks_more
-from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ZERO, Ball, is_zero
 from core.multibody.slip_directions import Direction, directions
 

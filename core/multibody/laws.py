@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from core.errors import InvalidParameter, Path
+from core.multibody.connection_effects import Force, Work
 from core.multibody.connections import GROUND
-from core.multibody.coordinates import Point
-from core.multibody.measures import Force, Measures, Work
+from core.multibody.frames import Point
+from core.multibody.measures import Measures
 from core.multibody.polynomials import (
     ONE,
     ZERO,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.multibody.coordinates import Frame
+from core.multibody.frames import Frame
 from core.multibody.packed import Floats
 from core.multibody.polynomials import Poly, entry
 from core.multibody.table import Table

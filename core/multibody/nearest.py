@@ -17,9 +17,9 @@ from flint import arb, arb_mat
 
 from core.multibody.attitudes import angular_velocity, quaternion
 from core.multibody.columns import NEAREST, Columns
+from core.multibody.connection_effects import Force
 from core.multibody.dynamics import kinetic, potential
 from core.multibody.expansion import saddle
-from core.multibody.measures import Force
 from core.multibody.polynomials import ZERO, Ball, evaluated
 from core.multibody.table import Table
 from core.systems.trajectory import Column

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 from core.multibody.accumulation import Accumulation
 from core.multibody.complementarity import Decided
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_start import ContactStart
 from core.multibody.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.crossings import is_uniform
 from core.multibody.description import Described
-from core.multibody.measures import Unilateral
 from core.multibody.modelling import Modelled, Piece, models_of
 from core.multibody.motion import Motion
 from core.multibody.numerical import Numerical

@@ -22,9 +22,9 @@ from core.certified.exact_inputs import enclosed
 from core.errors import NotApplicable
 from core.multibody.answer import Energy, PartModel, SceneModel
 from core.multibody.attitudes import angular_velocity, dot, quaternion
-from core.multibody.coordinates import Frame
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.events import first_event
+from core.multibody.frames import Frame
 from core.multibody.language import Scene
 from core.multibody.modelling import Modelled, Piece, modelled
 from core.multibody.modes import Modes

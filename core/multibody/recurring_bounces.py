@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from flint import arb
 
 from core.multibody.accumulation import Accumulation
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_responses import (
     Responses,
     across_rate,
@@ -22,7 +23,6 @@ from core.multibody.contact_responses import (
 )
 from core.multibody.contact_states import State, grips
 from core.multibody.crossings import is_uniform
-from core.multibody.measures import Unilateral
 from core.multibody.phase import Phase
 from core.multibody.polynomials import ZERO, Ball, evaluated, is_zero
 from core.multibody.slip_directions import along_slip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.coordinates import Point, Rate
+from core.multibody.frames import Point, Rate
 from core.multibody.measures import Measures
 from core.multibody.polynomials import ONE, Ball, Poly, combined, constant, coordinate, difference, dot, evaluated
 from core.multibody.table import Row

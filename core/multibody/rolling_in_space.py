@@ -11,9 +11,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.coordinates import Point, Rate
+from core.multibody.connection_effects import Work
+from core.multibody.directions import perpendicular, unit
+from core.multibody.frames import Point, Rate
 from core.multibody.laws import clock
-from core.multibody.measures import COMPONENTS, Measures, Work, perpendicular, unit
+from core.multibody.measures import COMPONENTS, Measures
 from core.multibody.polynomials import (
     ONE,
     ZERO,

@@ -13,8 +13,8 @@ import numpy as np
 from flint import arb
 from scipy.optimize import linprog
 
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_states import State
-from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ZERO, Ball
 from core.multibody.rank import Elimination
 

@@ -13,8 +13,8 @@ from math import cos, pi, sin
 
 from flint import arb, ctx
 
+from core.multibody.connection_effects import Unilateral
 from core.multibody.contact_responses import across_rate, slip_rate
-from core.multibody.measures import Unilateral
 from core.multibody.polynomials import ONE, ZERO, Ball, combined, is_zero
 from core.multibody.table import Rates
 

@@ -13,9 +13,10 @@ from itertools import pairwise, product
 from typing import Any
 
 from core.errors import InvalidParameter, Path, SlackAtStart
+from core.multibody.connection_effects import Limit, Unilateral
 from core.multibody.contacts import bounciness
-from core.multibody.coordinates import Point, Rate
-from core.multibody.measures import CLOSE, Limit, Measures, Unilateral
+from core.multibody.frames import Point, Rate
+from core.multibody.measures import CLOSE, Measures
 from core.multibody.numerals import member
 from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, coordinate, difference, dot, evaluated
 from core.multibody.rolling import rate_of, sum_of_rates

@@ -15,10 +15,10 @@ from flint import arb
 
 from core.errors import NotApplicable
 from core.multibody.along import State, path_speeds, power_of, watched_times
+from core.multibody.connection_effects import Unilateral, Work
 from core.multibody.contact_states import force_names
 from core.multibody.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.integrals import integrated
-from core.multibody.measures import Unilateral, Work
 from core.multibody.momenta import work_of_potential
 from core.multibody.packed import Floats, Integers, pair
 from core.multibody.phase import Phase, PhaseMotion

@@ -20,11 +20,11 @@ from core.multibody.column_errors import (
     worst,
 )
 from core.multibody.columns import COLUMNS_OF_STATES, NEAREST, Columns
+from core.multibody.connection_effects import Limit
 from core.multibody.events import first_event
 from core.multibody.generic_equation import SceneSystem
 from core.multibody.inherited import changes, horizon, looks
 from core.multibody.language import Scene
-from core.multibody.measures import Limit
 from core.multibody.modelling import Modelled
 from core.multibody.nearest import Nearest
 from core.multibody.numerical import Numerical

@@ -16,11 +16,12 @@ from flint import arb, arb_mat
 
 from core.balls import precision
 from core.errors import BudgetExceeded
+from core.multibody.connection_effects import Force, Unilateral
 from core.multibody.contact_start import ContactStart
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
 from core.multibody.expansion import Expansion, expansion, saddle, slope, value
-from core.multibody.measures import COMPONENTS, Force, Unilateral
+from core.multibody.measures import COMPONENTS
 from core.multibody.modelling import Modelled, Piece
 from core.multibody.motion import States
 from core.multibody.packed import Floats, exponent, pair

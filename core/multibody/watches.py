@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from core.multibody.connection_effects import Force, Unilateral
 from core.multibody.contact_states import PhaseTable, State, disc
 from core.multibody.expansion import Expansion, Series
-from core.multibody.measures import Force, Unilateral
 from core.multibody.polynomials import ONE, ZERO, constant
 
 

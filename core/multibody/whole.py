@@ -11,7 +11,8 @@ import numpy as np
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
-from core.multibody.measures import Force, Measures
+from core.multibody.connection_effects import Force
+from core.multibody.measures import Measures
 from core.multibody.motion import Glanced, Motion
 from core.multibody.numerical import Numerical
 from core.multibody.packed import Floats, Packed, Units, packed, pair, two_to, units_of
