@@ -10,14 +10,16 @@ from math import ceil, floor, log10
 import numpy as np
 from numpy.typing import NDArray
 
-from service.responses.svg import COLOURS, Tick, framed, heading, page
+from service.responses.svg import COLOURS, Tick, framed, heading, page, stroke
 
 Floats = NDArray[np.float64]
 
 LEFT, TOP, WIDTH, HEIGHT = 80.0, 50.0, 520.0, 260.0
 SQUARE = 520.0
 """Height of a panel in which both axes have one scale."""
-GAP, PAGE = 70.0, 840.0
+GAP, PAGE = 70.0, 870.0
+SAMPLE = 34.0
+"""Length of the piece of a curve that stands before its label, in pixels."""
 MOST_LABELS = 16
 MOST_POINTS = 4000
 """Points of one curve; of more, every second, third ... is drawn."""
@@ -121,12 +123,15 @@ def _drawn(panel: Panel, top: float) -> Iterator[str]:
             f"{px:.1f},{py:.1f}"
             for px, py in zip(x.at(line.x[every]).tolist(), y.at(line.y[every]).tolist(), strict=True)
         )
-        yield f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.2" stroke-linejoin="round"/>'
+        yield f'<polyline points="{points}" fill="none" {stroke(k)} stroke-width="1.2" stroke-linejoin="round"/>'
         if len(line.x) == 1:
             yield f'<circle cx="{points.partition(",")[0]}" cy="{points.partition(",")[2]}" r="3" fill="{colour}"/>'
         if k < MOST_LABELS:
-            height = top + 14 + 18 * k
-            yield f'<text x="{LEFT + WIDTH + 14:g}" y="{height:g}" fill="{colour}">{escape(line.label)}</text>'
+            height, start = top + 14 + 18 * k, LEFT + WIDTH + 10
+            if line.label:
+                sample = f'x1="{start:g}" y1="{height - 4:g}" x2="{start + SAMPLE:g}" y2="{height - 4:g}"'
+                yield f'<line {sample} {stroke(k)} stroke-width="1.2"/>'
+            yield f'<text x="{start + SAMPLE + 6:g}" y="{height:g}" fill="{colour}">{escape(line.label)}</text>'
 
 
 def _alike(x: Axis, y: Axis) -> tuple[Axis, Axis]:

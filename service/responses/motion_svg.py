@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from core.errors import InvalidParameter
 from service.responses.linear_svg import Line, Panel
+from service.responses.unit_text import unit_text
 
 Floats = NDArray[np.float64]
 
@@ -54,7 +55,7 @@ def over_time(time: Any, columns: Iterable[Column]) -> list[Panel]:
     order = np.argsort(instants, kind="stable")
     by_unit: dict[str, list[Line]] = {}
     for column in columns:
-        by_unit.setdefault(column.unit, []).extend(_lines(column, instants[order], column.values[order]))
+        by_unit.setdefault(unit_text(column.unit), []).extend(_lines(column, instants[order], column.values[order]))
     return [Panel("time (s)", unit, lines) for unit, lines in by_unit.items()]
 
 

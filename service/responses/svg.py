@@ -10,7 +10,12 @@ from math import ceil, floor, log10
 SVG = "image/svg+xml"
 """Media type."""
 
-COLOURS = ("#c1440e", "#1f4e8c", "#2a6f4e", "#7a1fa2", "#b8860b", "#008b8b", "#8b2252", "#555555")
+COLOURS = ("#1f4e79", "#a8440f", "#6b3fa0", "#1f7a3d", "#96640a", "#59616d", "#008b8b", "#8b2252")
+"""Of curves. The first six are those of the charts of the pages, in their order: x, y and z have one colour each."""
+
+DASHES = ("", "9 3", "3 3", "9 3 3 3", "16 4")
+"""Of curves; no two of 40 have the same colour and the same dashes, and neighbours differ in both."""
+
 LEFT, TOP, WIDTH, HEIGHT = 70.0, 40.0, 560.0, 400.0
 MOST_TICKS = 9
 
@@ -128,6 +133,12 @@ def framed(
     yield f'<text x="{left + width / 2:g}" y="{bottom + below:g}" text-anchor="middle">{escape(across)}</text>'
     turned = f'transform="rotate(-90 18 {middle:g})"'
     yield f'<text x="18" y="{middle:g}" {turned} text-anchor="middle">{escape(up)}</text>'
+
+
+def stroke(k: int) -> str:
+    """Return the colour and the dashes of a curve, by its number, as attributes."""
+    dashes = DASHES[k % len(DASHES)]
+    return f'stroke="{COLOURS[k % len(COLOURS)]}"' + (f' stroke-dasharray="{dashes}"' if dashes else "")
 
 
 def page(width: float, height: float, parts: Iterable[str]) -> str:

@@ -42,7 +42,7 @@ def draw_ensemble(answer: Answer) -> bytes:
     shown = [
         Panel(
             "time (s)",
-            f"angular_velocity.{axis} (rad s^-1)",
+            f"angular_velocity.{axis} (rad/s)",
             [Line(f"member {i}", time, own[:, k]) for i, own in enumerate(rates)],
         )
         for k, axis in enumerate("xyz")

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.responses.linear_svg import Line, Panel, panels
+from service.responses.unit_text import unit_text
 from service.studies.grids import names
 from service.studies.results import Results
 
 Floats = NDArray[np.float64]
 
 MOST_CURVES = 9
-"""Curves of a panel; of more levels of the second number, as many are drawn, evenly chosen."""
+"""Curves of a panel; of more levels of the second number, as many are drawn, evenly chosen, and the title says so."""
 
 
 def figure(results: Results) -> Iterator[bytes]:
@@ -27,22 +28,23 @@ def figure(results: Results) -> Iterator[bytes]:
     inner = names([axis["pointer"] for axis in about["axes"]])
     axes = [_titled(name, axis) for name, axis in zip(inner, about["axes"], strict=True)]
     figures = names([column["pointer"] for column in about["columns"]])
-    shown = []
+    shown, drawn = [], ""
     for k, (name, column) in enumerate(zip(figures, about["columns"], strict=True)):
-        title, values = _titled(name, column), columns[:, k]
+        up, values = _titled(name, column), columns[:, k]
         if any(axis["values"] is not None and not _numbers(axis["values"]) for axis in about["axes"]):
-            shown.append(_distribution(title, values))
+            shown.append(_distribution(up, values))
         elif len(axes) == 1 and about["request"].get("design", "product") in ("product", "zip"):
-            shown.append(Panel(axes[0], title, [_curve("", _given(about["axes"][0], inputs[:, 0]), values)]))
+            shown.append(Panel(axes[0], up, [_curve("", _given(about["axes"][0], inputs[:, 0]), values)]))
         elif len(axes) == len(shape) == 2:
             first, second = (_given(axis, inputs[:, j]).reshape(shape) for j, axis in enumerate(about["axes"]))
             levels = np.unique(np.linspace(0, shape[1] - 1, min(MOST_CURVES, shape[1])).round().astype(int))
             rows = values.reshape(shape)
             lines = [_curve(f"{inner[1]} {second[0, j]:.6g}", first[:, j], rows[:, j]) for j in levels]
-            shown.append(Panel(axes[0], title, lines))
+            shown.append(Panel(axes[0], up, lines))
+            drawn = f"; curves for {len(levels)} of {shape[1]} values of {inner[1]}"
         else:
-            shown.append(_distribution(title, values))
-    yield panels(f"Study of {results.study.count} members", shown).encode()
+            shown.append(_distribution(up, values))
+    yield panels(f"Study of {results.study.count} members{drawn}", shown).encode()
 
 
 def _distribution(title: str, values: Floats) -> Panel:
@@ -67,4 +69,4 @@ def _numbers(listed: Any) -> bool:
 
 
 def _titled(name: str, entry: Any) -> str:
-    return name if entry.get("unit") is None else f"{name} ({entry['unit']})"
+    return name if entry.get("unit") is None else f"{name} ({unit_text(entry['unit'])})"

@@ -118,7 +118,7 @@ def test_labels_name_components_and_units() -> None:
             Column("attitude", "1", np.ones((2, 4))),
         ],
     )
-    assert [panel.up for panel in panels] == ["rad s^-1", "1"]
+    assert [panel.up for panel in panels] == ["rad/s", "1"]
     assert [line.label for panel in panels for line in panel.lines] == [
         "spins.1",
         "spins.2",

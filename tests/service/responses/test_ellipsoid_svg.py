@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from service.responses.ellipsoid_svg import CENTER, HALF, View, ellipsoid_figure
+from service.responses.svg import COLOURS
 from tests.service.conftest import client_of, inline_service
 
 SERVICE = inline_service()
@@ -40,7 +41,7 @@ def texts(found: ElementTree.Element) -> str:
 
 async def test_polhodes_of_either_side_and_the_separatrix_are_distinguished() -> None:
     found = await figure({"body": SOURCE, "energy": 1.0, "polhodes": {"count": 9, "seed": 1}, "separatrix": True})
-    assert {"black", "#c1440e", "#1f4e8c"} < colours(found)
+    assert {"black", *COLOURS[:2]} < colours(found)
     told = texts(found)
     for words in ("largest moment", "middle moment", "smallest moment", "separatrix", "E = 1 J", "ω x", "ω z"):
         assert words in told, words

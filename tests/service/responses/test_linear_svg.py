@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import re
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
@@ -9,6 +13,9 @@ import numpy as np
 import pytest
 
 from service.responses.linear_svg import LEFT, MOST_POINTS, WIDTH, Line, Panel, panels
+from service.responses.svg import COLOURS, DASHES
+
+PAGES = Path(__file__).parent.parent.parent.parent / "service" / "page"
 
 
 def drawn(*shown: Panel) -> Any:
@@ -54,3 +61,25 @@ def test_a_single_time_is_a_point_and_many_are_thinned() -> None:
 
 def test_no_lines_at_all() -> None:
     assert points_of(drawn(Panel("x", "y", []))) == []
+
+
+def test_components_have_the_colours_of_the_pages() -> None:
+    # The page of scenes has the longest list; that of rotations has its first three, for the three components.
+    lists = [re.search(r"colors = (\[[^]]+\])", (PAGES / name).read_text()) for name in ("scenes.js", "rotation.js")]
+    scenes, rotation = (json.loads(found[1]) for found in lists if found)
+    light = dict(re.findall(r"--(\w+): (#[0-9a-f]{6});", (PAGES / "theme.css").read_text().partition("@media")[0]))
+    assert tuple(light[name] for name in scenes) == COLOURS[: len(scenes)]
+    assert rotation == scenes[:3]
+    t = np.linspace(0, 1, 5)
+    figure = drawn(Panel("time (s)", "rad/s", [Line(f"angular_velocity.{x}", t, t**k) for k, x in enumerate("xyz")]))
+    drawn_in = [e.attrib["stroke"] for e in figure.iter() if e.tag.endswith("polyline")]
+    assert drawn_in == [light[name] for name in rotation]
+
+
+def test_forty_curves_can_be_told_apart_and_neighbours_in_print() -> None:
+    t = np.linspace(0, 1, 3)
+    figure = drawn(Panel("x", "y", [Line(str(k), t, k * t) for k in range(len(COLOURS) * len(DASHES))]))
+    curves = [e.attrib for e in figure.iter() if e.tag.endswith("polyline")]
+    looks = [(one["stroke"], one.get("stroke-dasharray", "")) for one in curves]
+    assert len(set(looks)) == 40
+    assert all(one[1] != other[1] for one, other in pairwise(looks))

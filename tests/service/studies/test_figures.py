@@ -13,13 +13,16 @@ import pytest
 from service.studies.figures import MOST_CURVES, figure
 
 SPACE = {"svg": "http://www.w3.org/2000/svg"}
+POLYLINE, SAMPLE = (f"{{{SPACE['svg']}}}{tag}" for tag in ("polyline", "line"))
 
 
 def drawn(vary: list[dict[str, Any]], shape: tuple[int, ...], inputs: Any, figures: Any, **request: Any) -> Any:
     """Return the document for a study of one figure, its inputs of shape (n, axes) and values of shape (n,)."""
     about = {
         "request": {"vary": vary, **request},
-        "axes": [{"pointer": one["pointer"], "unit": "m", "values": one.get("values")} for one in vary],
+        "axes": [
+            {"pointer": one["pointer"], "unit": one.get("unit", "m"), "values": one.get("values")} for one in vary
+        ],
         "columns": [{"pointer": "/period", "unit": "s"}],
     }
     chunk = SimpleNamespace(inputs=np.array(inputs, float), figures=np.array(figures, float)[:, None])
@@ -63,6 +66,17 @@ def test_two_numbers_give_a_curve_for_each_of_few_levels(levels: int) -> None:
     assert len(found) == min(levels, MOST_CURVES)
     assert all(len(one) == 5 for one in found)
     assert "b 0" in words(document)
+    assert f"Study of {5 * levels} members; curves for {len(found)} of {levels} values of b" in words(document)
+    looks = [(one.attrib["stroke"], one.attrib.get("stroke-dasharray")) for one in document.iter(POLYLINE)]
+    assert len(set(looks)) == len(found), "every curve can be told from the others"
+    assert len({colour for colour, _ in looks}) >= min(levels, 8)
+    labels = [(one.attrib["stroke"], one.attrib.get("stroke-dasharray")) for one in document.iter(SAMPLE)]
+    assert labels[-len(found) :] == looks, "the labels show how their curves look"
+
+
+def test_units_are_written_with_a_bar() -> None:
+    document = drawn([{"pointer": "/rate", "unit": "rad s^-1"}], (2,), [[0], [1]], [0.0, 1.0])
+    assert "rate (rad/s)" in words(document)
 
 
 @pytest.mark.parametrize(
