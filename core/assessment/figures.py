@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import is_dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from core.assessment.compare import Form
 from core.errors import InvalidParameter, Path
+from core.formulas import is_name
 
 EQUAL = 1e-9
 """Difference of moments, of the largest, up to which they count as equal."""
@@ -121,10 +123,37 @@ def form_of(path: Path, value: Any, unit: str) -> Form:
     return "vector" if value.ndim == 1 else "matrix"
 
 
-def name_of(path: Path) -> str:
-    """Return the default name of a parameter: its field, and its place among several, counted from 1."""
-    fields = [step for step in path if isinstance(step, str)]
-    return "_".join([fields[-1], *(str(step + 1) for step in path if isinstance(step, int))])
+def names_of(paths: Iterable[Path]) -> dict[str, Path]:
+    """Return the default names of parameters.
+
+    A number is named by its field, one of several with its place among them, counted from 1: gravity, masses_1. Where
+    several numbers have one name so, each has the names of the fields around it before its own: light_mass, heavy_mass.
+    """
+    depths = dict.fromkeys(paths, 1)
+    while True:
+        places: dict[str, list[Path]] = {}
+        for path, depth in depths.items():
+            places.setdefault(_name_of(path, depth), []).append(path)
+        unclear = [
+            path
+            for name, alike in places.items()
+            for path in alike
+            if (len(alike) > 1 or (depths[path] > 1 and not is_name(name))) and depths[path] < len(_fields(path))
+        ]
+        if not unclear:
+            return {name: alike[-1] for name, alike in places.items()}
+        for path in unclear:
+            depths[path] += 1
+
+
+def _name_of(path: Path, depth: int) -> str:
+    """Return the last fields of a path, and its places in lists, as a word of a formula."""
+    steps = [*_fields(path)[-depth:], *(str(step + 1) for step in path if isinstance(step, int))]
+    return re.sub(r"\W", "_", "_".join(steps), flags=re.ASCII)
+
+
+def _fields(path: Path) -> list[str]:
+    return [step for step in path if isinstance(step, str)]
 
 
 def equal_moments(moments: Sequence[float] | None) -> tuple[tuple[int, ...], ...]:

@@ -6,15 +6,17 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache, cached_property
-from random import Random
-from typing import Any, NamedTuple
+from itertools import count
+from typing import Any
 
 import numpy as np
 
 from core.assessment.compare import Floats, Form, Reference, distance
 from core.assessment.curves import dense
-from core.assessment.figures import equal_moments, form_of, inside, is_null, name_of, single_values, value_at
-from core.assessment.propagation import Propagation, changed, numbers_of, relative_uncertainties
+from core.assessment.figures import equal_moments, form_of, inside, is_null, names_of, single_values, value_at
+from core.assessment.formula_variations import VARIATIONS, Parameters, Variation, Varied, drawn, tied_numbers
+from core.assessment.judged_formulas import ENOUGH
+from core.assessment.propagation import Propagation, numbers_of, relative_uncertainties
 from core.assessment.question_source import Source
 from core.errors import InvalidParameter, MechanicsError, Path
 from core.rotation.torque_free import TorqueFree
@@ -50,23 +52,6 @@ CERTIFIED = "ball arithmetic"
 BETWEEN_POINTS = "measured (curve through its points)"
 ESTIMATE = "estimate (conditioning)"
 OF_METHOD = "estimate (rounding of the method that the question names)"
-
-VARIATIONS = 20
-"""Changed questions at which a formula has to agree, beside the question itself."""
-
-
-class Variation(NamedTuple):
-    """Parameters by name, and the figure that belongs to them."""
-
-    parameters: Mapping[str, float]
-    figure: float
-
-
-Parameters = Mapping[str, tuple[Path, float, str]]
-"""Path, value and unit of numbers of a request, by name."""
-
-Varied = tuple[dict[str, float], Callable[[Path], Any]]
-"""Parameters by name, and what finds figures of the answer to the question with these."""
 
 
 class GradedQuestion:
@@ -146,44 +131,40 @@ class GradedQuestion:
         Parameters
         ----------
         names : mapping of str to path, or None
-            By default a number is named by its field, one of several with its number: gravity, masses_1.
+            By default those of `core.assessment.figures.names_of`.
         """
         numbers = dict(numbers_of(self.request, zeros=True))
-        chosen = names if names is not None else {name_of(path): path for path in numbers}
+        chosen = names if names is not None else names_of(numbers)
         return {name: (path, numbers[path], self._source.unit_of_request(path) or "1") for name, path in chosen.items()}
 
     def variations(self, path: Path, parameters: Parameters) -> list[Variation]:
         """Return the question's parameters and the figure at a path, and those of seeded variations of it."""
+        found = self._varied(path, parameters, ())
+        if len(found) > ENOUGH:
+            return found
+        tied = tied_numbers(self.request, path, self.evaluate)
+        return [*found, *self._varied(path, parameters, tied)[1:]][: 1 + VARIATIONS] if tied else found
+
+    def _varied(self, path: Path, parameters: Parameters, tied: tuple[Path, ...]) -> list[Variation]:
+        """Return variations that have a figure at a path; they are drawn once for all figures."""
+        key = tuple(parameters.items()), tied
+        if key not in self._variations:
+            self._variations[key] = [], drawn(self.request, parameters, tied, self.evaluate)
+        known, further = self._variations[key]
         found = list[Variation]()
-        for values, find in self._varied(parameters):
+        for k in count():
+            if k == len(known):
+                one = next(further, None)
+                if one is None:
+                    break
+                known.append(one)
+            values, find = known[k]
             figure = find(path)
             if type(figure) is float:
                 found.append(Variation(values, figure))
             if len(found) > VARIATIONS:
                 break
         return found
-
-    def _varied(self, parameters: Parameters) -> Iterator[Varied]:
-        """Yield what `_drawn` yields, each drawn once for all figures."""
-        known, further = self._variations.setdefault(tuple(parameters.items()), ([], self._drawn(parameters)))
-        yield from known
-        for one in further:
-            known.append(one)
-            yield one
-
-    def _drawn(self, parameters: Parameters) -> Iterator[Varied]:
-        """Yield the parameters of the question and of its variations, each with what finds figures of its answer."""
-        chance = Random(0)
-        for k in range(1 + 3 * VARIATIONS):
-            # Numbers that have to be equal are, in the last third.
-            shares: dict[tuple[Path, float], float] = {}
-            values = {}
-            for name, (place, value, _) in parameters.items():
-                group = (place[:-1], value) if k > 2 * VARIATIONS else (place, value)
-                share = shares.setdefault(group, chance.uniform(0.75, 1.25))
-                values[name] = value if k == 0 else value * share
-            request = changed(self.request, {parameters[name][0]: value for name, value in values.items()})
-            yield values, self.evaluate(request)
 
     def rotation(self) -> TorqueFree | None:
         """Return the free rotation that the question is about, None for questions about anything else."""

@@ -14,7 +14,7 @@ from core.assessment.compare import Floats, Judgement, Reference, compare, excha
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import steps_of
 from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission, explained
-from core.assessment.judged_formulas import FORMULA, Varied, judge_formula
+from core.assessment.judged_formulas import ENOUGH, FORMULA, NOT_JUDGED, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
 from core.assessment.units import factor
@@ -185,9 +185,13 @@ class Grader:
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
             mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
-        return self._result(
-            pointer, judged.judgement, reference, mistakes, "" if mistakes or not self._reveal else judged.why
-        )
+        said = not mistakes and (self._reveal or judged.why == NOT_JUDGED)
+        return self._result(pointer, judged.judgement, reference, mistakes, judged.why if said else "")
+
+    @property
+    def formulas_left(self) -> list[str]:
+        """Pointers to figures whose formulas are not judged, because the question has too few variations."""
+        return [pointer_of(path) for path, found in self._variations.items() if len(found) <= ENOUGH]
 
     @cached_property
     def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:

@@ -68,7 +68,7 @@ def judge_formula(
         At the question's own parameters.
     """
     if len(variations) <= ENOUGH:
-        return JudgedFormula(Judgement("not-gradable"), "There are too few questions like this one to judge a formula.")
+        return JudgedFormula(Judgement("not-gradable"), NOT_JUDGED)
     try:
         values = [value_in_doubles(formula, one.parameters) for one in variations]
     except Undefined:
@@ -85,6 +85,7 @@ def judge_formula(
     return JudgedFormula(own, _dimensional_fault(formula, units, reference.unit) or why, None if why else values[0])
 
 
+NOT_JUDGED = "A formula cannot be judged here. Write the number, with its unit."
 AT_ONE_PLACE = "The formula agrees at the given parameters, and at others it does not."
 
 

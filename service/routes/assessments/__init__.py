@@ -14,7 +14,7 @@ from core.assessment.catalogue import MISTAKES
 from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import is_null, steps_of, value_at
-from core.assessment.graded_question import VARIATIONS
+from core.assessment.formula_variations import VARIATIONS
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
@@ -76,7 +76,8 @@ class AssessmentRequest(Request):
     names: dict[str, str] | None = Field(
         default=None,
         description='Of the numbers of the request, in formulas, by pointer into it: {"M_1": "/masses/0"}; default: '
-        "their fields, several with their number: gravity, masses_1.",
+        "their fields, several with their number: gravity, masses_1; those that share one with the field around it: "
+        "one_mass, two_mass.",
     )
     credits: dict[str, Credit] | None = Field(
         default=None, description="Share of the score for a recognised mistake, by tag, in place of the catalogue's."
@@ -133,6 +134,14 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         if grader.looked_for > MOST_IDENTIFIED:
             detail = f"the method is looked for in the first {MOST_IDENTIFIED} wrong samples of a request"
             warnings.append(Notice("methods-not-looked-for", detail, ("submissions",)))
+        if grader.formulas_left:
+            # Says nothing of the reference, and is for who set the question.
+            rule = "choose in names other numbers, that can be changed independently of all that names leaves out"
+            if question.names is None:
+                rule = 'name the numbers that formulas may have in names, beside question: {"m": "/bodies/block/mass"}'
+            detail = f"formulas for {grader.formulas_left[0]} are not judged: with the numbers that formulas may name "
+            detail += f"changed by up to 25 %, the question has too rarely such a figure; {rule}"
+            warnings.append(Notice("formulas-not-judged", detail, ("names",)))
         return {"results": results, **shown, "warnings": warnings}
 
     def price(question: AssessmentRequest, budget: Budget) -> float:

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from core.assessment.figures import equal_moments, form_of, is_null, name_of, single_values, steps_of, value_at
-from core.errors import InvalidParameter
+from core.assessment.figures import equal_moments, form_of, is_null, names_of, single_values, steps_of, value_at
+from core.errors import InvalidParameter, Path
 
 
 class Row(NamedTuple):
@@ -103,11 +103,30 @@ def test_forms(path: tuple[str | int, ...], value: Any, unit: str, form: str) ->
 
 
 def test_names_of_parameters_and_groups_of_moments() -> None:
-    assert name_of(("masses", 0)) == "masses_1"
-    assert name_of(("body", "radius")) == "radius"
+    assert names_of([("masses", 0), ("body", "radius")]) == {"masses_1": ("masses", 0), "radius": ("body", "radius")}
     assert equal_moments([1.0, 1.0 + 1e-12, 2.0]) == ((0, 1), (2,))
     assert equal_moments([1.0, 1.5, 2.0]) == ((0,), (1,), (2,))
     assert equal_moments(None) == ()
+
+
+def test_numbers_that_share_a_name_have_the_fields_around_them() -> None:
+    paths: list[Path] = [
+        ("gravity", 1),
+        ("bodies", "one", "mass"),
+        ("bodies", "two", "mass"),
+        ("bodies", "1.a", "mass"),
+        ("bodies", "one", "radius"),
+        ("connections", 0, "on", "at", 1),
+        ("bodies", "one", "at", 1),
+        ("bodies", "two", "at", 1),
+    ]
+    assert names_of(paths) == dict(
+        zip(
+            ["gravity_2", "one_mass", "two_mass", "bodies_1_a_mass", "radius", "at_1_2", "one_at_2", "two_at_2"],
+            paths,
+            strict=True,
+        )
+    )
 
 
 def test_the_single_values_of_an_object() -> None:
