@@ -16,7 +16,7 @@ import numpy as np
 
 from core.assessment.compare import Floats, Reference
 from core.assessment.comparisons import Comparison
-from core.assessment.figures import steps_of
+from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.grader import Grader
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.results import Result, submission_view
@@ -93,7 +93,8 @@ def key_of(
     # Most figures have their variations at the same parameters, which are written once.
     settings: list[list[float]] = []
     variations: dict[str, list[Any]] = {}
-    for path in numbers:
+    # Of a described scene without names, a formula says itself what varies, and none is known yet.
+    for path in numbers if terms.names is not None or question.subject != DESCRIBED else ():
         at_path = variations[pointer_of(path)] = []
         for one in question.variations(path, parameters):
             values = [one.parameters[name] for name in parameters]
@@ -245,7 +246,8 @@ class AnswerKey:
 
     def variations(self, path: Path, parameters: Mapping[str, tuple[Path, float, str]]) -> list[KeyedVariation]:
         """Return the variations at which the figure at a path is known."""
-        settings = [dict(zip(parameters, values, strict=True)) for values in self._document["settings"]]
+        names = self._document["parameters"]
+        settings = [dict(zip(names, values, strict=True)) for values in self._document["settings"]]
         found = self._document["variations"].get(pointer_of(path), ())
         return [KeyedVariation(settings[i], figure) for i, figure in found]
 

@@ -13,6 +13,9 @@ from core.assessment.compare import Form
 from core.errors import InvalidParameter, Path
 from core.formulas import is_name
 
+DESCRIBED = "scenes"
+"""Subject of questions about described scenes."""
+
 EQUAL = 1e-9
 """Difference of moments, of the largest, up to which they count as equal."""
 

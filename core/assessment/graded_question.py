@@ -51,6 +51,9 @@ MOST_CERTIFIED = 20
 CERTIFIED = "ball arithmetic"
 BETWEEN_POINTS = "measured (curve through its points)"
 ESTIMATE = "estimate (conditioning)"
+UNKNOWN = "unknown"
+"""Unit of a number that none is declared for: nothing is said of the dimensions of formulas with it."""
+
 OF_METHOD = "estimate (rounding of the method that the question names)"
 
 
@@ -135,7 +138,9 @@ class GradedQuestion:
         """
         numbers = dict(numbers_of(self.request, zeros=True))
         chosen = names if names is not None else names_of(numbers)
-        return {name: (path, numbers[path], self._source.unit_of_request(path) or "1") for name, path in chosen.items()}
+        return {
+            name: (path, numbers[path], self._source.unit_of_request(path) or UNKNOWN) for name, path in chosen.items()
+        }
 
     def variations(self, path: Path, parameters: Parameters) -> list[Variation]:
         """Return the question's parameters and the figure at a path, and those of seeded variations of it."""

@@ -12,7 +12,7 @@ import numpy as np
 from core.assessment.claims import MOST_CLAIMS, Claim
 from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
-from core.assessment.figures import steps_of
+from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission, explained
 from core.assessment.judged_formulas import ENOUGH, FORMULA, NOT_JUDGED, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
@@ -119,7 +119,7 @@ class Grader:
         self._samples: dict[tuple[str, bytes], Reference] = {}
         self._columns: dict[int, tuple[ExactSamples, MethodSearch]] = {}
         self._wrong: dict[int, WrongValues] = {}
-        self._variations: dict[Path, Sequence[Varied]] = {}
+        self._variations: dict[tuple[Path, tuple[str, ...]], Sequence[Varied]] = {}
         self.looked_for = 0
 
     def judged(self, submission: Any) -> JudgedSubmission:
@@ -179,9 +179,11 @@ class Grader:
             raise fault.inside("formula") from None
         if reference.form == "none":
             return self._result(pointer, Judgement("incorrect"), reference)
-        if path not in self._variations:
-            self._variations[path] = self._question.variations(path, self._parameters)
-        judged = judge_formula(formula, self._variations[path], self._units, reference)
+        varied = self._varied_by(formula)
+        place = path, tuple(varied)
+        if place not in self._variations:
+            self._variations[place] = self._question.variations(path, varied)
+        judged = judge_formula(formula, self._variations[place], self._units, reference)
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
             mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
@@ -191,7 +193,17 @@ class Grader:
     @property
     def formulas_left(self) -> list[str]:
         """Pointers to figures whose formulas are not judged, because the question has too few variations."""
-        return [pointer_of(path) for path, found in self._variations.items() if len(found) <= ENOUGH]
+        return [pointer_of(path) for (path, _), found in self._variations.items() if len(found) <= ENOUGH]
+
+    def _varied_by(self, formula: Formula) -> Mapping[str, tuple[Path, float, str]]:
+        """Return the parameters at whose variations a formula has to agree.
+
+        Those of a described scene are mostly coordinates. Changed one by one they make another arrangement, with
+        strings that are vertical no more: without `names`, what the formula does not have stays as it is.
+        """
+        if self._names is not None or self._question.subject != DESCRIBED:
+            return self._parameters
+        return {name: self._parameters[name] for name in sorted(formula.names)}
 
     @cached_property
     def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:

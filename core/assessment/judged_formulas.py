@@ -73,7 +73,8 @@ def judge_formula(
         values = [value_in_doubles(formula, one.parameters) for one in variations]
     except Undefined:
         return JudgedFormula(Judgement("incorrect"), "The formula has no value at such parameters.")
-    own = compare(reference, values[0], FORMULA)
+    # Formula and reference have the same numbers: how uncertain these are is no difference between the two.
+    own = compare(replace(reference, inherited=0.0), values[0], FORMULA)
     if own.verdict == "not-gradable":
         return JudgedFormula(own)
     why = ""

@@ -493,6 +493,70 @@ async def test_formulas_name_the_fields_of_the_question_unless_names_are_given()
     assert (await graded(SHAFTS, {"/tension": {"formula": formula}}))["results"][0]["correct"]
 
 
+ATWOOD = {
+    "path": "/v1/scenes",
+    "request": {
+        "gravity": [0, -9.81],
+        "bodies": {"light": {"mass": 1, "at": [-0.1, -0.5]}, "heavy": {"mass": 3, "at": [0.1, -0.5]}},
+        "connections": [{"kind": "string", "name": "cord", "through": ["light", [-0.1, 0], [0.1, 0], "heavy"]}],
+    },
+}
+SLOPE = {"degrees": 30}
+WEDGE = {
+    "path": "/v1/scenes",
+    "request": {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "wedge": {"mass": 3, "inertia": 0.3, "at": [0, 0]},
+            "block": {"mass": 1, "at": {"polar": [1, SLOPE]}},
+        },
+        "connections": [
+            {"kind": "track", "place": "wedge", "on": {"at": [0, 0], "slope": 0}, "angle": 0},
+            {"kind": "track", "name": "face", "place": "block", "on": {"at": "wedge", "slope": SLOPE}},
+        ],
+    },
+}
+FACE = "-gravity_2*block_mass*wedge_mass*cos(A*pi/180)/(wedge_mass+block_mass*sin(A*pi/180)^2)"
+
+
+async def test_formulas_on_a_described_scene_need_no_names() -> None:
+    tension = "-2*gravity_2*light_mass*heavy_mass/(light_mass+heavy_mass)"
+    wrong, one_body = tension.replace("2*g", "g"), "mass*9.81*3/2"
+    claims = [{"/forces/cord.tension/value": {"formula": one}} for one in (tension, wrong, one_body)]
+    answer = await graded(ATWOOD, *claims)
+    first, second, third = answer["results"]
+    assert (first["correct"], second["correct"], answer["warnings"]) == (True, False, [])
+    # No units are declared for the numbers of a described scene: of dimensions nothing can be said.
+    assert "dimensions" not in second["feedback"]
+    # Both masses are one, and would be called so.
+    assert third["format_errors"][0]["detail"] == 'must use known names, unlike "mass"'
+    assert "heavy_mass, light_at_1" in third["format_errors"][0]["remedy"]
+
+
+async def test_formulas_on_a_described_scene_may_leave_what_agrees_to_it() -> None:
+    # The direction of the block is that of the face: one alone cannot be changed.
+    formulas = [FACE.replace("A", name) for name in ("slope_degrees_2", "polar_degrees_2", "30")]
+    wrong = FACE.replace("A", "slope_degrees_2").replace("wedge_mass+", "wedge_mass-")
+    claims = [{"/forces/face.normal/value": {"formula": one}} for one in (*formulas, wrong)]
+    results = (await graded(WEDGE, *claims))["results"]
+    assert [one["correct"] for one in results] == [True, True, True, False]
+    names = {"a": "/connections/1/on/slope/degrees", "m": "/bodies/block/mass", "M": "/bodies/wedge/mass"}
+    claim = {"/forces/face.normal/value": {"formula": "9.81*m*M*cos(a*pi/180)/(M+m*sin(a*pi/180)^2)"}}
+    assert (await graded(WEDGE, claim, names=names))["results"][0]["correct"]
+
+
+@pytest.mark.parametrize("reveal", [True, False])
+async def test_who_cannot_be_judged_by_a_formula_learns_what_to_do(reveal: bool) -> None:
+    # Two rods along one line have to stay on it.
+    answer = await graded(NO_VARIATION, {"/forces/face.normal/value": {"formula": "polar_1*9.81"}}, reveal=reveal)
+    ((test,),) = [one["tests"] for one in answer["results"]]
+    assert (test["verdict"], test["score"]) == ("not-gradable", None)
+    assert test["feedback"] == "A formula cannot be judged here. Write the number, with its unit."
+    (warning,) = answer["warnings"]
+    assert (warning["code"], warning["pointer"]) == ("formulas-not-judged", "/names")
+    assert "in names, beside question" in warning["detail"]
+
+
 @pytest.mark.parametrize(
     "formula", ["", "M_3", "(" * 200, "__import__('os').system('x')", "9" * 301, "M_1 M_2", 3, "sin(sin)", "1e9999"]
 )

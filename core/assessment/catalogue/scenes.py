@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from math import pi, sin, sqrt
 from typing import Any
 
+from core.assessment.figures import DESCRIBED
 from core.assessment.mistakes import Figure, Mistake
 
 SHAFTS, ROD, CHAIN = "scenes/unwinding-shafts", "scenes/rod-in-hole", "scenes/chain-on-wedge"
-DESCRIBED = "scenes"
 AT_HORIZONTAL = "angular_velocity_at_horizontal"
 UNIFORM = 1.0 / 12.0
 NO_SPIN = 1e12

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import Annotated, Any
@@ -13,7 +14,7 @@ from core.assessment.answer_key import Document, Terms, key_of
 from core.assessment.catalogue import MISTAKES
 from core.assessment.claims import Claim
 from core.assessment.comparisons import Comparison
-from core.assessment.figures import is_null, steps_of, value_at
+from core.assessment.figures import DESCRIBED, is_null, steps_of, value_at
 from core.assessment.formula_variations import VARIATIONS
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
@@ -47,6 +48,8 @@ SECONDS_OF_A_COLUMN = 2e-2
 
 CHANGED_BY_MISTAKES = 10
 """Changed questions that the mistakes of a figure are computed from, about."""
+
+_WORD = re.compile(r"[A-Za-z_]\w*")
 
 Credit = Annotated[float, Quantity("1", at_least=0, at_most=1)]
 
@@ -148,8 +151,11 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
         again = 1 + min(inputs, MOST_INPUTS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
-        formulas = len(_claims_with("formula", question.submissions))
-        again += VARIATIONS * min(1, formulas)
+        formulas = [claim["formula"] for claim in _claims_with("formula", question.submissions)]
+        # Without names, what varies of a described scene is what a formula has.
+        named = question.names is not None or question.question.path != f"/v1/{DESCRIBED}"
+        words = {"" if named else " ".join(sorted({*_WORD.findall(str(one))})) for one in formulas}
+        again += VARIATIONS * len(words)
         # What is right is judged in a hundredth of the time; before it is judged nobody knows.
         timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
         columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
@@ -160,7 +166,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
             SECONDS_OF_PROOF
             + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
             + samples
-            + SECONDS_OF_A_FORMULA * formulas
+            + SECONDS_OF_A_FORMULA * len(formulas)
             + SECONDS_OF_A_CLAIM * claims
         )
 
