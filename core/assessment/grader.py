@@ -13,8 +13,9 @@ from core.assessment.claims import MOST_CLAIMS, Claim
 from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import DESCRIBED, steps_of
+from core.assessment.formula_variations import Variation
 from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission, explained
-from core.assessment.judged_formulas import ENOUGH, FORMULA, NOT_JUDGED, Varied, judge_formula
+from core.assessment.judged_formulas import AT_ONE_PLACE, FORMULA, NOT_JUDGED, JudgedFormula, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
 from core.assessment.units import factor
@@ -100,6 +101,8 @@ class Grader:
         By pointer, those that were needed, but for samples at times of their own.
     looked_for : int
         Samples whose method was to be looked for.
+    formulas_left : list of str
+        Pointers to figures of which a formula was not judged, because too few variations of the question say anything.
     """
 
     def __init__(
@@ -121,6 +124,7 @@ class Grader:
         self._wrong: dict[int, WrongValues] = {}
         self._variations: dict[tuple[Path, tuple[str, ...]], Sequence[Varied]] = {}
         self.looked_for = 0
+        self.formulas_left: list[str] = []
 
     def judged(self, submission: Any) -> JudgedSubmission:
         """Return what becomes of a submission; nothing that it holds is refused with an error."""
@@ -179,31 +183,41 @@ class Grader:
             raise fault.inside("formula") from None
         if reference.form == "none":
             return self._result(pointer, Judgement("incorrect"), reference)
-        varied = self._varied_by(formula)
-        place = path, tuple(varied)
-        if place not in self._variations:
-            self._variations[place] = self._question.variations(path, varied)
-        judged = judge_formula(formula, self._variations[place], self._units, reference)
+        judged = self._agreeing(formula, path, reference)
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
             mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
         said = not mistakes and (self._reveal or judged.why == NOT_JUDGED)
         return self._result(pointer, judged.judgement, reference, mistakes, judged.why if said else "")
 
-    @property
-    def formulas_left(self) -> list[str]:
-        """Pointers to figures whose formulas are not judged, because the question has too few variations."""
-        return [pointer_of(path) for (path, _), found in self._variations.items() if len(found) <= ENOUGH]
+    def _agreeing(self, formula: Formula, path: Path, reference: Reference) -> JudgedFormula:
+        """Judge a formula at variations of the named numbers, or of those that may vary without `names`.
 
-    def _varied_by(self, formula: Formula) -> Mapping[str, tuple[Path, float, str]]:
-        """Return the parameters at whose variations a formula has to agree.
-
-        Those of a described scene are mostly coordinates. Changed one by one they make another arrangement, with
-        strings that are vertical no more: without `names`, what the formula does not have stays as it is.
+        The numbers of a described scene are mostly coordinates. Changed one by one they make another arrangement, with
+        strings that are vertical no more: without `names`, masses vary, and what else the formula has.
         """
         if self._names is not None or self._question.subject != DESCRIBED:
-            return self._parameters
-        return {name: self._parameters[name] for name in sorted(formula.names)}
+            found = self._judged(formula, path, reference, self._parameters)
+        else:
+            masses = {name: one for name, one in self._parameters.items() if one[0][-1] == "mass"}
+            own = {name: self._parameters[name] for name in sorted(formula.names)}
+            found = self._judged(formula, path, reference, masses | own)
+            if found.why == AT_ONE_PLACE and self._judged(formula, path, reference, masses).judgement.correct:
+                # Either the lengths in it are wrong, or the scene with others is another one.
+                found = JudgedFormula(Judgement("not-gradable"), NOT_JUDGED)
+        if found.why == NOT_JUDGED and pointer_of(path) not in self.formulas_left:
+            self.formulas_left.append(pointer_of(path))
+        return found
+
+    def _judged(
+        self, formula: Formula, path: Path, reference: Reference, varied: Mapping[str, tuple[Path, float, str]]
+    ) -> JudgedFormula:
+        place = path, tuple(varied)
+        if place not in self._variations:
+            fixed = {name: value for name, (_, value, _) in self._parameters.items() if name not in varied}
+            found = self._question.variations(path, varied)
+            self._variations[place] = [Variation(fixed | {**one.parameters}, one.figure) for one in found]
+        return judge_formula(formula, self._variations[place], self._units, reference)
 
     @cached_property
     def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:

@@ -507,11 +507,11 @@ WEDGE = {
     "request": {
         "gravity": [0, -9.81],
         "bodies": {
-            "wedge": {"mass": 3, "inertia": 0.3, "at": [0, 0]},
+            "wedge": {"mass": 3, "inertia": 0.1, "at": [0, 0]},
             "block": {"mass": 1, "at": {"polar": [1, SLOPE]}},
         },
         "connections": [
-            {"kind": "track", "place": "wedge", "on": {"at": [0, 0], "slope": 0}, "angle": 0},
+            {"kind": "slider", "a": "wedge", "b": [0, 0]},
             {"kind": "track", "name": "face", "place": "block", "on": {"at": "wedge", "slope": SLOPE}},
         ],
     },
@@ -545,16 +545,44 @@ async def test_formulas_on_a_described_scene_may_leave_what_agrees_to_it() -> No
     assert (await graded(WEDGE, claim, names=names))["results"][0]["correct"]
 
 
+SPOOL = {
+    "path": "/v1/scenes",
+    "request": {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "flange": {"mass": 2, "radius": 0.2, "inertia": 0.03, "at": [0, 0.2]},
+            "axle": {"mass": 0, "radius": 0.1, "inertia": 0, "at": [0, 0.2]},
+            "weight": {"mass": 1, "at": [1, -0.5]},
+        },
+        "connections": [
+            {"kind": "weld", "a": "axle", "b": "flange"},
+            {"kind": "rolling", "name": "floor", "place": "flange", "on": {"at": [0, 0]}},
+            {"kind": "string", "through": ["axle", [1, 0.1], "weight"], "sides": {"axle": "below"}},
+        ],
+    },
+}
+OF_SPOOL = "weight_mass*9.81*0.1*0.2/(0.03+flange_mass*0.2^2+weight_mass*0.1^2)"
+
+
 @pytest.mark.parametrize("reveal", [True, False])
-async def test_who_cannot_be_judged_by_a_formula_learns_what_to_do(reveal: bool) -> None:
-    # Two rods along one line have to stay on it.
-    answer = await graded(NO_VARIATION, {"/forces/face.normal/value": {"formula": "polar_1*9.81"}}, reveal=reveal)
-    ((test,),) = [one["tests"] for one in answer["results"]]
-    assert (test["verdict"], test["score"]) == ("not-gradable", None)
-    assert test["feedback"] == "A formula cannot be judged here. Write the number, with its unit."
+async def test_a_formula_that_cannot_be_judged_says_what_to_do(reveal: bool) -> None:
+    # With another axle the string, which leaves it at the height of a fixed point, is level no more.
+    pointer = "/accelerations/flange/linear/0"
+    with_axle = OF_SPOOL.replace("0.1*0.2", "(0.2-axle_radius)*0.2")
+    wrong = with_axle.replace("0.1^2", "0.2^2")
+    answer = await graded(SPOOL, *({pointer: {"formula": one}} for one in (OF_SPOOL, with_axle, wrong)), reveal=reveal)
+    right, unclear, wrong_too = (one["tests"][0] for one in answer["results"])
+    assert (right["verdict"], wrong_too["verdict"]) == ("correct", "incorrect")
+    assert (unclear["verdict"], unclear["score"]) == ("not-gradable", None)
+    assert unclear["feedback"] == "A formula cannot be judged here. Write the number, with its unit."
     (warning,) = answer["warnings"]
     assert (warning["code"], warning["pointer"]) == ("formulas-not-judged", "/names")
+    assert pointer in warning["detail"]
     assert "in names, beside question" in warning["detail"]
+    named = {"m": "/bodies/weight/mass", "M": "/bodies/flange/mass", "g": "/gravity/1"}
+    formula = OF_SPOOL.replace("weight_mass", "m").replace("flange_mass", "M").replace("9.81", "(-g)")
+    answer = await graded(SPOOL, {pointer: {"formula": formula}}, names=named)
+    assert (answer["results"][0]["correct"], answer["warnings"]) == (True, [])
 
 
 @pytest.mark.parametrize(

@@ -139,11 +139,11 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
             warnings.append(Notice("methods-not-looked-for", detail, ("submissions",)))
         if grader.formulas_left:
             # Says nothing of the reference, and is for who set the question.
-            rule = "choose in names other numbers, that can be changed independently of all that names leaves out"
+            remedy = "choose other numbers in names"
             if question.names is None:
-                rule = 'name the numbers that formulas may have in names, beside question: {"m": "/bodies/block/mass"}'
-            detail = f"formulas for {grader.formulas_left[0]} are not judged: with the numbers that formulas may name "
-            detail += f"changed by up to 25 %, the question has too rarely such a figure; {rule}"
+                remedy = 'say in names, beside question, which numbers formulas have: {"m": "/bodies/block/mass"}'
+            detail = f"a formula for {grader.formulas_left[0]} is not judged: where its numbers change alone, "
+            detail += f"the question has no such figure, or is about another arrangement; {remedy}"
             warnings.append(Notice("formulas-not-judged", detail, ("names",)))
         return {"results": results, **shown, "warnings": warnings}
 
