@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 from core.assessment.answer_key import AnswerKey, Terms, figures_within, key_of
 from core.assessment.catalogue import MISTAKES
 from core.assessment.comparisons import Data, DecDig, Interval, RelAbs, SigFig
+from core.assessment.figures import DESCRIBED
 from core.assessment.graded_question import GradedQuestion
 from core.assessment.grader import Grader, credited
+from core.assessment.judged_formulas import NOT_JUDGED
 from core.assessment.results import reference_views, submission_view
 from tests.core.assessment.test_variants import REQUEST, Pendulum
 
@@ -128,3 +130,18 @@ def test_the_figures_of_an_answer_are_its_leaves_and_small_arrays() -> None:
     assert {("period",), ("symmetry",), ("flip",), ("axes",), ("axes", 2), ("axes", 2, 1)} <= set(found)
     assert {("equilibria", 0, "stable"), ("equilibria", 0, "eigenvalues")} <= set(found)
     assert not [path for path in found if path[0] in ("samples", "signature")]
+
+
+class Described(Pendulum):
+    """The same, as a described scene."""
+
+    subject = DESCRIBED
+
+
+@pytest.mark.parametrize(("names", "score"), [(None, None), ({"l": ("length",), "g": ("gravity",)}, 1.0)])
+def test_of_a_described_scene_a_key_has_variations_of_named_numbers(names: Any, score: float | None) -> None:
+    key = key_of(GradedQuestion(Described(), REQUEST, None), Terms(None, {}, True, names), MISTAKES, [], [])
+    formula = "2*pi*sqrt(l/g)" if names else "2*pi*sqrt(length/gravity)"
+    (found,) = AnswerKey(json.loads(json.dumps(key))).results([{"/period": {"formula": formula}}])
+    assert found["score"] == score
+    assert found["feedback"] == ("Correct." if score else NOT_JUDGED)
