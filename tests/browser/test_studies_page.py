@@ -13,7 +13,7 @@ def test_a_map_has_the_numbers_of_the_api(opened, base):
     page.locator("#start").click()
     row = page.locator("#list li")
     row.get_by_text("successful").wait_for(timeout=120_000)
-    row.locator("button").first.click()
+    row.get_by_role("button", name="Show results").click()
     page.locator("#map").wait_for()
     (study,) = json.load(urlopen(f"{base}/v1/studies"))["studies"]
     answer = json.load(urlopen(f"{base}/v1/studies/{study['jobID']}/results?count=1"))
@@ -44,6 +44,38 @@ def test_a_fault_is_shown_with_its_place(opened):
     page.locator("#start").click()
     page.locator("#problem", has_text="/quantities/0").wait_for()
     assert page.locator("#list li").count() == 0
+    study["vary"][0]["pointer"] = "/no_such_number"
+    page.locator("#editor").fill(json.dumps(study))
+    page.locator("#price").click()
+    page.locator("#problem", has_text="/vary/0/pointer").wait_for()
+    assert "/request" not in page.locator("#problem").inner_text()
+
+
+def test_no_time_is_foreseen_until_a_member_is_done(opened):
+    state = {"jobID": "one", "path": "/v1/scenes", "inputs": [{"pointer": "/gravity/1"}]}
+    state |= {
+        "created": "2030-01-01T00:00:00Z",
+        "status": "running",
+        "message": "",
+        "count": 3000,
+        "done": 0,
+        "failed": 0,
+    }
+    state |= {"predicted_end": "2030-01-01T00:00:00Z"}
+    later = []
+
+    def answered(route):
+        alone = route.request.url.endswith("/one")
+        route.fulfill(json=state | {"done": len(later)} if alone else {"studies": [state]})
+
+    page = opened("/studies")
+    page.route("**/v1/studies**", answered)
+    page.reload()
+    row = page.locator("#list li")
+    row.get_by_text("running, 0 of 3000 members, starting").wait_for()
+    assert not row.get_by_role("button", name="Show results").is_visible()
+    later.append(1)
+    row.get_by_text("running, 1 of 3000 members, about").wait_for()
 
 
 def test_a_running_study_shows_progress_and_can_be_stopped(opened, base):
