@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -113,20 +114,28 @@ def _drawn(panel: Panel, top: float) -> Iterator[str]:
     if panel.one_scale:
         x, y = _alike(x, y)
     box = (LEFT, top, WIDTH, panel.height)
-    yield from framed(box, panel.across, panel.up, x.ticks(), y.ticks(), 38)
+    yield from framed(box, _with_strokes(panel.across), _with_strokes(panel.up), x.ticks(), y.ticks(), 38)
     for k, line in enumerate(panel.lines):
         colour = COLOURS[k % len(COLOURS)]
+        # A colour that comes again is dashed.
+        dashed = ' stroke-dasharray="6 4"' if k // len(COLOURS) % 2 else ""
         every = slice(None, None, max(1, ceil(len(line.x) / MOST_POINTS)))
         points = " ".join(
             f"{px:.1f},{py:.1f}"
             for px, py in zip(x.at(line.x[every]).tolist(), y.at(line.y[every]).tolist(), strict=True)
         )
-        yield f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.2" stroke-linejoin="round"/>'
+        stroke = f'stroke="{colour}" stroke-width="1.2" stroke-linejoin="round"{dashed}'
+        yield f'<polyline points="{points}" fill="none" {stroke}/>'
         if len(line.x) == 1:
             yield f'<circle cx="{points.partition(",")[0]}" cy="{points.partition(",")[2]}" r="3" fill="{colour}"/>'
         if k < MOST_LABELS:
             height = top + 14 + 18 * k
             yield f'<text x="{LEFT + WIDTH + 14:g}" y="{height:g}" fill="{colour}">{escape(line.label)}</text>'
+
+
+def _with_strokes(name: str) -> str:
+    """Return a name whose unit is written for people: rad/s in place of rad s^-1."""
+    return re.sub(r" (\w+)\^-1\b", r"/\1", name)
 
 
 def _alike(x: Axis, y: Axis) -> tuple[Axis, Axis]:

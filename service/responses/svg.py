@@ -10,7 +10,8 @@ from math import ceil, floor, log10
 SVG = "image/svg+xml"
 """Media type."""
 
-COLOURS = ("#c1440e", "#1f4e8c", "#2a6f4e", "#7a1fa2", "#b8860b", "#008b8b", "#8b2252", "#555555")
+COLOURS = ("#1f4e8c", "#c1440e", "#7a1fa2", "#2a6f4e", "#b8860b", "#008b8b", "#8b2252", "#555555")
+"""In the order of the pages, so that a component has one colour."""
 LEFT, TOP, WIDTH, HEIGHT = 70.0, 40.0, 560.0, 400.0
 MOST_TICKS = 9
 

@@ -39,7 +39,8 @@ def figure(results: Results) -> Iterator[bytes]:
             levels = np.unique(np.linspace(0, shape[1] - 1, min(MOST_CURVES, shape[1])).round().astype(int))
             rows = values.reshape(shape)
             lines = [_curve(f"{inner[1]} {second[0, j]:.6g}", first[:, j], rows[:, j]) for j in levels]
-            shown.append(Panel(axes[0], title, lines))
+            some = "" if len(levels) == shape[1] else f"; curves at {len(levels)} of {shape[1]} values of {inner[1]}"
+            shown.append(Panel(axes[0] + some, title, lines))
         else:
             shown.append(_distribution(title, values))
     yield panels(f"Study of {results.study.count} members", shown).encode()

@@ -63,6 +63,10 @@ def test_two_numbers_give_a_curve_for_each_of_few_levels(levels: int) -> None:
     assert len(found) == min(levels, MOST_CURVES)
     assert all(len(one) == 5 for one in found)
     assert "b 0" in words(document)
+    assert (f"curves at {MOST_CURVES} of {levels} values of b" in words(document)) == (levels > MOST_CURVES)
+    lines = document.findall("svg:polyline", SPACE)
+    looks = {(one.attrib["stroke"], one.attrib.get("stroke-dasharray")) for one in lines}
+    assert len(looks) == len(lines), "no two curves look alike"
 
 
 @pytest.mark.parametrize(
