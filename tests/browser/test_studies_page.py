@@ -1,6 +1,7 @@
 """The page of studies: what is started runs to its end, is drawn with the numbers of the API, and goes away."""
 
 import json
+import re
 from urllib.request import urlopen
 
 REFUSED = ("422",)
@@ -22,7 +23,7 @@ def test_a_map_has_the_numbers_of_the_api(opened, base):
     for pointer, found in figures.items():
         page.locator("#figure").select_option(pointer)
         said = page.locator("#numbers").inner_text()
-        assert said.startswith(f"{found['present']} members have it; mean {found['mean']:.6g}")
+        assert said.startswith(f"{found['present']} members have this figure; mean {found['mean']:.6g}")
         assert "Map over /body/moments/0 and /body/moments/1" in page.locator("#map").get_attribute("aria-label")
         assert page.locator("#histogram").get_attribute("aria-label").startswith("Histogram from ")
     with page.expect_download() as download:
@@ -41,8 +42,9 @@ def test_a_fault_is_shown_with_its_place(opened):
     study = json.loads(page.locator("#editor").input_value())
     study["quantities"] = ["/no_such_figure"]
     page.locator("#editor").fill(json.dumps(study))
-    page.locator("#start").click()
-    page.locator("#problem", has_text="/quantities/0").wait_for()
+    for button in ("#price", "#start"):
+        page.locator(button).click()
+        page.locator("#problem", has_text=re.compile("^/quantities/0 ")).wait_for()
     assert page.locator("#list li").count() == 0
 
 
