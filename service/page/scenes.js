@@ -200,7 +200,8 @@ function tell(events) {
 
 const EVENTS = {
   touch: "touches", "lift-off": "lifts off", slip: "begins to slip", stick: "sticks", roll: "rolls without slip", settle: "has come to rest after ever smaller bounces",
-  taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "a length becomes zero",
+  taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "has come to a length of zero",
+  "no-motion": "has no possible motion", "several-motions": "has several possible motions", "end-of-chain": "has come to its end",
 };
 
 const sayEvent = (event) => `${event.name} ${EVENTS[event.kind] || event.kind.replaceAll("-", " ")}`.trim();

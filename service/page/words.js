@@ -14,11 +14,11 @@ export function motionInWords(answer) {
     return "It spins steadily, but about an unstable axis: the slightest disturbance grows exponentially and turns the body over.";
   }
   if (regime.includes("rest")) return "It is at rest.";
-  if (answer.tumbles && answer.flip_interval) return `It turns over every ${written(answer.flip_interval)} s: its middle axis swings from ${degrees(least)} to ${degrees(largest)} from the angular momentum.`;
+  if (answer.tumbles && answer.flip_interval) return `It turns over every ${written(answer.flip_interval)} s: the angle between its middle axis and the angular momentum swings from ${degrees(least)} to ${degrees(largest)}.`;
   if (answer.tumbles) return "It turns over once and then comes ever closer to the unstable middle axis: this is the separatrix.";
   if (regime.includes(STEADY)) return "It spins steadily and stays so: the axis is stable.";
   const between = same(least, largest) ? `at ${degrees(least)}` : `between ${degrees(least)} and ${degrees(largest)}`;
-  const range = least === undefined ? "" : ` Its middle axis stays ${between} from the angular momentum.`;
+  const range = least === undefined ? "" : ` The angle between its middle axis and the angular momentum stays ${between}.`;
   return `It wobbles about a stable axis and does not flip.${range}`;
 }
 
