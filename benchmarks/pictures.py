@@ -15,7 +15,7 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.solve import solve
 
 ROOT = Path(__file__).parents[1]
-COLOURS = ("#c1440e", "#2a6f4e", "#1f4e8c")
+COLOURS = ("#1f4e8c", "#c1440e", "#7a1fa2")
 NAMES = ("ω₁", "ω₂", "ω₃")
 
 

@@ -169,7 +169,7 @@ def _decided_group(at: _Situation, group: Sequence[int], settled: Sequence[State
     if not consistent:
         return Problem(
             "no-motion",
-            "no states of the contacts go with a motion of rigid bodies: the friction of what slides presses it on "
+            "no motion of rigid bodies is possible here: the friction of what slides presses it on "
             "more strongly than its inertia gives way (Painleve)",
             names,
             decided_by="a compliance of the contact, or an impact without collision, in which the slip stops at once",

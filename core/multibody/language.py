@@ -137,6 +137,7 @@ def check_name(name: object, path: Path) -> None:
     """Raise `InvalidParameter` unless something may be called so."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or name == GROUND:
         rule = (
-            f'be called by at most {LONGEST_NAME} letters, digits, "-" and "_", starting with a letter, not "{GROUND}"'
+            f'have a name of at most {LONGEST_NAME} letters, digits, "-" and "_" '
+            f'that begins with a letter and is not "{GROUND}"'
         )
         raise InvalidParameter(path, rule)

@@ -81,7 +81,7 @@ class Modes:
     table: Table
     matrix: list[list[Ball]]
     name: str = "modes"
-    why: str = "every measure is linear and the forces are linear in places and velocities"
+    why: str = "the geometry is linear and the forces are linear in places and velocities"
     how: str = "closed form"
     _known: dict[int | str, Any] = field(default_factory=dict, repr=False)
 

@@ -65,7 +65,7 @@ class Periodic:
     turned: Ball = None
     winding: float = 0.0
     name: str = "one period"
-    why: str = "one degree of freedom in a potential: the motion repeats"
+    why: str = "one degree of freedom in a potential: left to itself, the motion repeats"
     how: str = "measured against pairs"
     _turns: dict[float, tuple[Pair, Pair]] = field(default_factory=dict, repr=False)
 

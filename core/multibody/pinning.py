@@ -44,7 +44,7 @@ def pin(state: Reduced) -> bool:
         if lost:
             raise weightless(table, lost, ())
     state.pinned.extend(table.names[i] for i in sorted(pinned))
-    state.steps.append(f"nothing ever moves {', '.join(table.names[i] for i in sorted(pinned))}")
+    state.steps.append(f"constant throughout the motion: {', '.join(table.names[i] for i in sorted(pinned))}")
     expressions: list[Poly | None] = [None] * len(table.names)
     for i in pinned:
         expressions[i] = constant(table.q[i])

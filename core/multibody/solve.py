@@ -132,7 +132,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
     noticed = noticed_of(found, forces, multipliers)
     still = at_rest(found)
     if still:
-        noticed.append(f"nothing ever moves {', '.join(still)}")
+        noticed.append(f"constant throughout the motion: {', '.join(still)}")
     model = scene_model(found, noticed, multipliers.rank)
     system = DescribedSystem(scene, found, [value.value is not None for value in forces], request.outputs)
     trajectory = request.solved(system)

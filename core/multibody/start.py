@@ -135,8 +135,8 @@ def noticed_of(found: Modelled, forces: list[ForceAtStart], multipliers: Multipl
     if found.fitted:
         said.append(f"{', '.join(found.fitted)} were taken as rounded: the velocities follow from the connections")
     for name, others in multipliers.redundant().items():
-        beside = f" beside {', '.join(others)}" if others else ""
-        said.append(f"{name} holds more than it has to{beside}: forces that it shares are not determined")
+        beside = f" what {', '.join(others)} hold" if others else " itself"
+        said.append(f"{name} partly repeats{beside}: the forces that are shared are not determined")
     for force, value in zip(measures.forces, forces, strict=True):
         if value.value is None:
             said.append(f"{force.name} is not determined by the scene")

@@ -23,7 +23,7 @@ class Uniform:
     table: Table
     acceleration: Sequence[Ball]
     name: str = "constant acceleration"
-    why: str = "every measure is linear and no force depends on place or velocity"
+    why: str = "the geometry is linear and no force depends on place or velocity"
     how: str = "closed form"
     period: Ball | None = None
 

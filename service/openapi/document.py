@@ -24,7 +24,7 @@ from service.routing import PostRoute, ResourceRoute, Route, StudyRoute
 from service.schemas import ProblemDocument
 
 DESCRIPTION = """\
-The motion of rigid bodies and small constrained scenes, and how right each answer is.
+The motion of rigid bodies and small constrained scenes, and how accurate each answer is.
 
 SI units, radians. Vectors are [x, y, z], matrices are written row by row, quaternions [w, x, y, z] turn body into
 space. Body axes are the axes in which the body was defined. Times are measured from the given state. Arrays of samples
@@ -34,7 +34,7 @@ are rows. Every number is a finite double; a derived figure outside the range of
 is a decimal string whose digits are proven, and numbers of the question may be decimal strings too ("0.1" is one tenth,
 0.1 a double).
 
-Answers are JSON, or a numpy archive to `Accept: application/x-npz`: the same names, and the rest
+Answers are JSON, or a numpy archive for `Accept: application/x-npz`: the same names, and the rest
 as JSON in metadata.json.
 
 Refusals are application/problem+json (RFC 9457) with a stable code and JSON pointers into the document that was sent.

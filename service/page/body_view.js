@@ -28,7 +28,7 @@ export class BodyView extends View {
     this.body.add(this.shapes);
     this.lookFrom(new Vector3(0.25, 0.3, 1), UP);
     this.momentum.pointTo(new Vector3(0, 1.15, 0));
-    this.label("L", "L fixed", new Vector3(0, 1.25, 0), "deep");
+    this.label("L", "L fixed", new Vector3(0, 1.17, 0), "deep");
   }
 
   /** Show shapes, moved so that `center` is the origin, beside principal `axes` (columns) coloured by stability. */
@@ -60,7 +60,7 @@ export class BodyView extends View {
     this.body.quaternion.set(x, y, z, s).normalize();
     const turned = new Vector3(...w).divideScalar(largest || 1).applyQuaternion(new Quaternion().copy(this.space.quaternion).multiply(this.body.quaternion));
     this.omega.pointTo(turned.multiplyScalar(1.15));
-    this.label("w", "ω", this.omega.group.visible ? turned.clone().multiplyScalar(1.1) : new Vector3(), "warm");
+    this.label("w", "ω", this.omega.group.visible ? turned.clone().multiplyScalar(1.02) : new Vector3(), "warm");
     this.render();
   }
 

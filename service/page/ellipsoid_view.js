@@ -47,8 +47,8 @@ export class EllipsoidView extends View {
       axis.bar.material.color.set(color(axis.name));
       axis.bar.scale.set(1, length, 1);
       axis.bar.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), direction);
-      this.label(`axis${k}`, `${names[k]} ${stability[k]}`, direction.clone().multiplyScalar(sizes[k] + 0.24), stability[k]);
-      this.label(`back${k}`, `${names[k]}`, direction.clone().multiplyScalar(-sizes[k] - 0.24), stability[k]);
+      this.label(`axis${k}`, `${names[k]} ${stability[k]}`, direction.clone().multiplyScalar(sizes[k] + 0.19), stability[k]);
+      this.label(`back${k}`, `${names[k]}`, direction.clone().multiplyScalar(-sizes[k] - 0.19), stability[k]);
     });
     this.render();
   }

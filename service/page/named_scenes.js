@@ -1,6 +1,7 @@
 // The scenes with endpoints of their own, put as descriptions with columns, so that they are drawn like all others.
 
 const rows = (list, make) => ({ values: list.map(make), unit: "m" });
+const turns = (list, make) => ({ values: list.map(make), unit: "rad" });
 const force = (list, pick) => ({ values: list.map(pick), unit: "N" });
 const down = (slope, s, left) => [(left ? -1 : 1) * s * Math.cos(slope), -s * Math.sin(slope)];
 /** The faces of a wedge whose apex is the origin. */
@@ -21,7 +22,7 @@ const MADE = {
       const connections = [...faces(slopes), { kind: "string", name: "string", through: ["one", [0, 0], "two"], sides: { one: "below", two: "below" } }];
       const columns = {
         "one.position": rows(positions, center(0)), "two.position": rows(positions, center(1)),
-        "one.angle": rows(angles, (a) => a[0]), "two.angle": rows(angles, (a) => a[1]), "string.tension": force(tension, (t) => t),
+        "one.angle": turns(angles, (a) => a[0]), "two.angle": turns(angles, (a) => a[1]), "string.tension": force(tension, (t) => t),
       };
       return { bodies, connections, columns };
     },
@@ -34,7 +35,7 @@ const MADE = {
       const bodies = { rod: { at: center(angle[0]), mass, inertia: 1, places: { A: [-length / 2, 0], B: [length / 2, 0] } } };
       const connections = ["A", "B"].map((end) => ({ kind: "track", name: end, place: `rod.${end}`, on: { at: [0, 0], radius: -R } }));
       const columns = {
-        "rod.position": rows(angle, center), "rod.angle": rows(angle, (a) => a),
+        "rod.position": rows(angle, center), "rod.angle": turns(angle, (a) => a),
         "A.normal": force(forces || [], (f) => f[0]), "B.normal": force(forces || [], (f) => f[1]),
       };
       if (!forces) { delete columns["A.normal"]; delete columns["B.normal"]; }

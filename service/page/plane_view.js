@@ -96,27 +96,30 @@ export class PlaneView {
       const points = [...Array(81).keys()].map((i) => (i / 40 - 1) * this.size).map((s) => add(add(face.point, face.along, s), face.normal, (face.curvature * s * s) / 2));
       return this.line(points, "soft", 2);
     }
-    this.face(face.point, face.along, face.body);
+    this.face(face.point, face.along, face.body && c);
   }
 
-  face(point, along, body) {
+  face(point, along, carried) {
     const reach = 2.2 * this.size;
-    if (!body) {
+    if (!carried) {
       this.line([add(point, along, -reach), add(point, along, reach)], "soft", 2);
       return this.hatch(point, along, reach);
     }
-    // A face of a body is drawn as a wedge below it.
-    const end = add(point, along, 1.25 * this.size), foot = [end[0], point[1]];
+    // A face of a body is drawn as a wedge below it, as far as something moves on it; faces of one wedge have one foot.
+    const endOf = (c) => { const face = this.model.face(c.on); return add(face.point, face.along, 1.15 * this.model.farthestOn(c) || 1.25 * this.size); };
+    const end = endOf(carried), others = this.model.connections.filter((c) => c.on?.at === carried.on.at && c.on.radius === undefined);
+    const low = Math.min(point[1], ...others.map((c) => endOf(c)[1]));
+    const outline = [point, end, [end[0], low], [point[0], low]];
     const { pen } = this;
     if (Math.abs(along[1]) > 0.05) {
       pen.beginPath();
-      [point, end, foot].forEach((p, i) => pen[i ? "lineTo" : "moveTo"](...this.at(p)));
+      outline.forEach((p, i) => pen[i ? "lineTo" : "moveTo"](...this.at(p)));
       pen.closePath();
       pen.fillStyle = this.inks.faceThree;
       pen.globalAlpha = 0.45;
       pen.fill();
       pen.globalAlpha = 1;
-      this.line([point, end, foot, point], "ink", 1.5);
+      this.line([...outline, point], "ink", 1.5);
     } else this.line([add(point, along, -0.3 * this.size), add(point, along, 0.3 * this.size)], "ink", 2);
   }
 

@@ -17,7 +17,7 @@ export class TimeChart {
     this.plot?.destroy();
     this.panel.replaceChildren();
     const ink = { stroke: color("soft"), grid: { stroke: color("line"), width: 1 }, ticks: { stroke: color("line"), width: 1 } };
-    const values = (plot, ticks) => ticks.map((v) => (v === 0 ? "0" : Math.abs(v) >= 1e4 || Math.abs(v) < 1e-2 ? v.toExponential(0) : String(Number(v.toPrecision(4)))));
+    const values = (plot, ticks) => ticks.map((v) => (v === 0 ? "0" : Math.abs(v) >= 1e4 || Math.abs(v) < 1e-2 ? v.toExponential(digitsBeside(v, ticks)) : String(Number(v.toPrecision(4)))));
     this.plot = new uPlot(
       {
         width: Math.max(200, this.panel.clientWidth),
@@ -52,6 +52,12 @@ export class TimeChart {
     this.plot.setSize({ width: Math.max(200, this.panel.clientWidth), height: this.height });
     this.move();
   }
+}
+
+/** Digits behind the point by which a tick is told from its neighbours. */
+function digitsBeside(value, ticks) {
+  const power = (x) => Math.floor(Math.log10(Math.abs(x)) + 1e-9);
+  return ticks.length > 1 ? Math.max(0, Math.min(8, power(value) - power(ticks[1] - ticks[0]))) : 0;
 }
 
 /** Errors against evaluations, both logarithmic; `points` are [evaluations, error], `now` is marked. */

@@ -104,7 +104,7 @@ async function answerState() {
       send("/v1/rotation/trajectory", { ...start, times: [0] }),
       BODIES[state.body].own === "moments" ? null : send("/v1/bodies/mass-properties", { body }),
     ]);
-    const stop = state.window ?? windowOf(first.answer, state.spin);
+    const stop = state.window ?? windowOf(first.answer, start.angular_velocity);
     const question = { ...start, attitude: [1, 0, 0, 0], times: { start: 0, stop, count: SAMPLES } };
     const { answer } = await send("/v1/rotation/trajectory", question);
     return { surface: surface.answer, answer, question, surfaceQuestion, stop, center: mass?.answer.center_of_mass || [0, 0, 0] };
@@ -122,17 +122,17 @@ function windowOf({ period, tumbles }, w) {
 }
 
 function show(result) {
-  const { surface, answer, question, stop } = result;
+  const { surface, answer, question, stop } = result, start = question.angular_velocity;
   const principal = surface.semi_axes.map((a) => (2 * surface.energy) / (a * a));
   const stability = stabilities(principal);
   motion = { ...result, principal, axes: surface.axes, method: null };
   ellipsoid.showSurface(surface.semi_axes, surface.axes, stability);
   ellipsoid.showCurves(surface.polhodes[0].points, surface.separatrix.map((curve) => curve.points));
-  ellipsoid.setStart(state.spin);
+  ellipsoid.setStart(start);
   if (facing) { ellipsoid.faceStart(); facing = false; }
   view.showBody(shapesOf(question.body, principal, surface.axes), result.center, surface.axes, stability);
-  view.setMomentum(momentumOf(state.spin));
-  const turns = (Math.hypot(...state.spin) * stop) / (2 * Math.PI);
+  view.setMomentum(momentumOf(start));
+  const turns = (Math.hypot(...start) * stop) / (2 * Math.PI);
   player.setSpan(stop, Math.max(6, Math.min(40, turns / 0.8)));
   $("window").placeholder = String(stop);
   tell(answer, turns);
@@ -233,7 +233,8 @@ function complain(faults) {
   $("window-error").textContent = at("/times").map(sentence).join(" ");
   $("points-error").textContent = state.body === "points" ? at("/body").map(sentence).join(" ") : "";
   mark($("points"), $("points-error").textContent !== "");
-  $("problem").textContent = rest.map((f) => `${fieldName(f.pointer)}${sentence(f)}`).join(" ");
+  $("problem").textContent = rest.map((f) => `${fieldName(f.pointer)}${sentence(f)}`.replace(/\.?$/, ".")).join(" ");
+  document.querySelector(".stage").classList.toggle("stale", faults.length > 0);
 }
 
 function fieldName(pointer) {

@@ -13,6 +13,7 @@ export class SceneModel {
     this.bodies = Object.entries(description.bodies || {}).map(([name, body]) => this.readBody(name, body));
     this.space = this.bodies[0]?.start.length === 3;
     this.connections = (description.connections || []).map((connection, i) => ({ ...connection, label: connection.name || `${connection.kind}-${i + 1}` }));
+    this.reaches = new Map();
     this.seek(0);
     this.strings = this.connections.filter((c) => ["string", "chain"].includes(c.kind)).map((c) => [c, stringPath(this, c)]);
     this.forceScale = this.largestForce();
@@ -44,8 +45,26 @@ export class SceneModel {
     return typeof a === "number" ? a + this.part * (b - a) : a.map((x, i) => x + this.part * (b[i] - x));
   }
 
+  /** How far along the face of a body what is on it comes from the point of the face, with its sign. */
+  farthestOn(connection) {
+    if (!this.reaches.has(connection)) {
+      const { now } = this;
+      let far = 0;
+      for (let k = 0; k <= 40; k++) {
+        this.seek((k / 40) * this.time.at(-1));
+        const { point, along } = this.face(connection.on);
+        const s = dot(sub(this.place(connection.place).point, point), along);
+        if (Math.abs(s) > Math.abs(far)) far = s;
+      }
+      this.reaches.set(connection, far);
+      this.seek(now);
+    }
+    return this.reaches.get(connection);
+  }
+
   /** Put the scene to a time. */
   seek(time) {
+    this.now = time;
     const last = this.time.length - 1;
     let low = 0, high = last;
     while (high - low > 1) {

@@ -12,7 +12,17 @@ import { SceneModel } from "./scene_model.js";
 import { markFaults, replaced, sliders } from "./scene_sliders.js";
 import { SpaceView } from "./space_view.js";
 import { readState, writeState } from "./url_state.js";
-import { power } from "./words.js";
+import { howInWords, power } from "./words.js";
+
+const sentence = (text) => text.replace(/^./, (c) => c.toUpperCase());
+const titled = (name) => sentence(name.replaceAll("-", " "));
+
+/** Under which heading a scene of the catalogue is listed. */
+function kindOf({ name, example }) {
+  if (isNamed(name)) return "With endpoints of their own";
+  if (Object.values(example.bodies)[0].at?.length === 3) return "In space";
+  return example.connections?.some((c) => c.kind === "contact") ? "In the plane, with contacts" : "In the plane";
+}
 
 const SAMPLES = 801, LONGEST = 20, MOST_EVENTS = 12;
 const OUTPUTS = ["accelerations", "forces", "energy", "trajectory", "forces-in-time", "energy-in-time"];
@@ -48,24 +58,28 @@ function choose(name, text = null) {
   state.window = null;
   $("window").value = "";
   $("scene").value = name;
-  $("about").textContent = `${entry.summary}.`;
-  $("language").href = isNamed(name) ? "/docs" : "/docs#/scenes/solve_scene";
+  $("language").href = isNamed(name) ? "/docs" : "/docs#/scenes/described_scene";
   player.time = 0;
   const example = isNamed(name) ? movingQuestion(name, entry.example) : entry.example;
   edited(text ?? readable(example), text !== null);
   state.own = text !== null;
 }
 
+/** What is shown: the scene that was chosen, or what the reader has made of it. */
+const titleNow = () => (state.own ? `Changed from “${titled(state.scene)}”` : sentence(catalogue.get(state.scene).summary));
+
 /** Take a new text: sliders, picture and messages follow. */
 function edited(text, own, rebuild = true) {
   state.text = text;
   state.own = own;
+  $("about").textContent = `${titleNow()}.`;
   if ($("editor").value !== text) $("editor").value = text;
   try {
     state.read = readJson(text);
   } catch (error) {
     if (!(error instanceof NotJson)) throw error;
-    return complain([{ pointer: null, detail: `This is not JSON yet: ${error.message}`, place: [error.offset, error.offset + 1] }]);
+    const line = text.slice(0, error.offset).split("\n").length;
+    return complain([{ pointer: null, detail: `this is not JSON yet, in line ${line}: ${error.message}`, place: [error.offset, error.offset + 1] }]);
   }
   if (rebuild) sliders($("sliders"), $("place-sliders"), state.read, (pointer, next) => edited(replaced(state.text, state.read.places, pointer, next), true, false));
   return refresh();
@@ -140,9 +154,10 @@ function show({ answer: next, text, path }) {
   model = new SceneModel(description, trajectory);
   showView();
   const time = trajectory?.time || [0], events = (answer.events || []).map((e) => ({ ...e, label: sayEvent(e) }));
-  const stop = Math.max(time.at(-1), ...events.map((e) => e.time || 0)) || 1;
-  player.setSpan(stop, Math.max(4, Math.min(15, 3 * stop)), events);
-  $("window").placeholder = written(stop, 4);
+  const stop = Math.max(time.at(-1), ...events.map((e) => e.time || 0)), still = !(stop > 0);
+  for (const name of ["player", "curves-line", "chart"]) $(name).hidden = still;
+  player.setSpan(stop || 1, Math.max(4, Math.min(15, 3 * stop)), events);
+  $("window").placeholder = still ? "" : written(stop, 4);
   tell(events);
   fillCurves();
   showRequests({ "the motion": [path, value] });
@@ -162,15 +177,15 @@ function showView() {
 
 function tell(events) {
   const m = answer.model, accuracy = answer.accuracy, moving = model.bodies.map((b) => b.name).join(", ");
-  const span = answer.shown ? ` over ${written(player.stop, 4)} s` : "";
+  const span = $("player").hidden ? "" : ` over ${written(player.stop, 4)} s`;
   const last = answer.ended && answer.ended !== "horizon" ? events.at(-1) : null;
   const ended = last ? ` It ends at ${written(last.time, 8)} s: ${sayEvent(last)}.` : events.length ? ` ${events.length} event${events.length === 1 ? "" : "s"} on the way.` : "";
   const words = `${moving}: ${m.name}, ${m.degrees_of_freedom} degree${m.degrees_of_freedom === 1 ? "" : "s"} of freedom${span}.${ended}`;
   $("summary").textContent = words;
-  for (const canvas of [$("plane-canvas"), $("space-canvas")]) canvas.setAttribute("aria-label", `${catalogue.get(state.scene).summary}. ${words}`);
+  for (const canvas of [$("plane-canvas"), $("space-canvas")]) canvas.setAttribute("aria-label", `${titleNow()}. ${words}`);
   const list = [["Model", m.name], ["Why", m.why], ["Period", answer.period ? `${written(answer.period, 10)} s` : "none"]];
   if (m.noticed?.length) list.push(["Noticed", m.noticed.join("; ")]);
-  if (accuracy) list.push(["Accuracy", accuracy.error === 0 ? "exact" : `below ${power(accuracy.error)} of the largest value (${accuracy.how})`]);
+  if (accuracy) list.push(["Accuracy", accuracy.error === 0 ? "exact" : `below ${power(accuracy.error)} of the largest value (${howInWords(accuracy.how)})`]);
   for (const [name, f] of Object.entries(answer.forces || {})) list.push([`${name}, at the start`, f.determined ? `${written(f.value, 8)} ${f.unit}` : "not determined"]);
   $("answer").replaceChildren(...list.flatMap(([name, text]) => [make("dt", { textContent: name }), make("dd", { textContent: text })]));
   $("warnings").replaceChildren(...answer.warnings.map((w) => make("p", { className: "notice", textContent: w.detail })));
@@ -185,10 +200,13 @@ function tell(events) {
 
 const EVENTS = {
   touch: "touches", "lift-off": "lifts off", slip: "begins to slip", stick: "sticks", roll: "rolls without slip", settle: "has come to rest after ever smaller bounces",
-  taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "a length becomes zero",
+  taut: "becomes taut", slack: "goes slack", stop: "reaches its stop", release: "leaves its stop", singular: "has come to a length of zero",
+  "no-motion": "has no possible motion", "several-motions": "has several possible motions", "end-of-chain": "has come to its end",
 };
 
 const sayEvent = (event) => `${event.name} ${EVENTS[event.kind] || event.kind.replaceAll("-", " ")}`.trim();
+
+const varies = ({ data }) => data.some((x) => x !== data[0]);
 
 /** Groups of columns of one unit, to choose from. */
 function fillCurves() {
@@ -205,7 +223,7 @@ function fillCurves() {
   const before = $("curves").value;
   $("curves").replaceChildren(...[...groups.keys()].map((kind) => make("option", { textContent: kind })));
   if (groups.has(before)) $("curves").value = before;
-  else if (groups.has("Angles (rad)")) $("curves").value = "Angles (rad)";
+  else $("curves").value = ["Angles (rad)", ...groups.keys()].find((kind) => groups.get(kind)?.some(varies)) ?? [...groups.keys()][0] ?? "";
   showCurves();
 }
 
@@ -222,8 +240,9 @@ function showCurves() {
 function complain(faults) {
   const places = state.read?.places || new Map();
   const rest = markFaults([$("sliders"), $("place-sliders")], faults);
-  $("problem").textContent = rest.filter((f) => f.pointer === "" || f.pointer === null).map((f) => `${f.detail}.`).join(" ");
+  $("problem").textContent = rest.filter((f) => f.pointer === "").map((f) => `${f.detail}.`).join(" ");
   mark($("editor"), faults.length > 0);
+  document.querySelector(".stage").classList.toggle("stale", faults.length > 0);
   $("faults").replaceChildren(...faults.map((fault) => {
     const button = make("button", { type: "button", className: "fault", textContent: `${fault.pointer || "scene"}: ${[fault.detail, fault.remedy].filter(Boolean).join("; ")}` });
     button.onclick = () => {
@@ -251,8 +270,7 @@ function restore() {
 
 const { scenes } = await get("/v1/scenes");
 catalogue = new Map(scenes.map((scene) => [scene.name, scene]));
-const titled = (name) => name.replaceAll("-", " ").replace(/^./, (c) => c.toUpperCase());
-$("scene").replaceChildren(...scenes.map(({ name }) => make("option", { value: name, textContent: titled(name) + (isNamed(name) ? " (closed form)" : "") })));
+$("scene").replaceChildren(...[...Map.groupBy(scenes, kindOf)].map(([label, entries]) => make("optgroup", { label }, ...entries.map(({ name }) => make("option", { value: name, textContent: titled(name) })))));
 restore();
 await new Promise((done) => { const wait = () => (model || $("problem").textContent ? done() : setTimeout(wait, 20)); wait(); });
 player.begin();

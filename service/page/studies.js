@@ -19,22 +19,14 @@ function titleOf(state) {
   return `${state.path}, ${axes}, ${new Date(state.created).toLocaleString([], { dateStyle: "short", timeStyle: "medium" })}`;
 }
 
-/** What is still to come of a study. Before a member is done nothing is known of it: processes start first. */
-function remaining({ predicted_end: end, status, done }) {
-  if (!end) return "";
-  if (!done) return status === "running" ? ", starting" : "";
-  return `, about ${Math.max(0, Math.round((Date.parse(end) - Date.now()) / 1000))} s left`;
-}
-
 /** Show the state of a study in its row, which is made where it is missing. */
 function show(state) {
   let row = rows.get(state.jobID);
   if (!row) {
-    const open = make("button", { type: "button", className: "play", textContent: "Show results" });
+    const open = make("button", { type: "button", textContent: "Show", "aria-label": `Show ${titleOf(state)}` });
     const drop = make("button", { type: "button", textContent: "Remove" });
-    open.setAttribute("aria-label", `Show results: ${titleOf(state)}`);
     row = { open, drop, bar: make("progress", { max: state.count }), text: make("span") };
-    row.item = make("li", {}, titleOf(state), " ", row.bar, " ", row.text, " ", open, " ", drop);
+    row.item = make("li", {}, titleOf(state), " ", open, " ", row.bar, " ", row.text, " ", drop);
     open.addEventListener("click", () => results(row.state).catch(tell));
     drop.addEventListener("click", () => remove(row.state).catch(tell));
     rows.set(state.jobID, row);
@@ -43,8 +35,11 @@ function show(state) {
   row.state = state;
   row.bar.value = state.done;
   row.bar.setAttribute("aria-label", `${state.done} of ${state.count} members`);
-  row.text.textContent = `${state.status}, ${state.done} of ${state.count} members${state.failed ? `, ${state.failed} refused` : ""}${remaining(state)} ${state.message}`;
-  row.open.hidden = state.status !== "successful";
+  const seconds = Math.round((Date.parse(state.predicted_end) - Date.now()) / 1000);
+  // Before the first members are done, most of the time goes to the start of processes, which no price has.
+  const left = !state.predicted_end ? "" : state.done ? `, about ${Math.max(0, seconds)} s left` : ", starting";
+  row.text.textContent = `${state.status}, ${state.done} of ${state.count} members${state.failed ? `, ${state.failed} refused` : ""}${left} ${state.message}`;
+  row.open.disabled = state.status !== "successful";
   row.drop.textContent = state.predicted_end ? "Stop" : "Remove";
   $("none").hidden = rows.size > 0;
 }
@@ -103,8 +98,8 @@ function draw() {
   const figure = state.figures.find((f) => f.pointer === $("figure").value);
   const found = statistics[figure.pointer];
   const unit = figure.unit && figure.unit !== "1" ? ` ${figure.unit}` : "";
-  const said = [["mean", found.mean], ["deviation", found.std], ["least", found.min?.value], ["largest", found.max?.value]];
-  $("numbers").textContent = `${found.present} members have it; ${said.filter(([, x]) => x != null).map(([name, x]) => `${name} ${written(x)}${unit}`).join(", ")}`;
+  const said = [["mean", found.mean], ["standard deviation", found.std], ["smallest", found.min?.value], ["largest", found.max?.value]];
+  $("numbers").textContent = `${found.present} members have this figure; ${said.filter(([, x]) => x != null).map(([name, x]) => `${name} ${written(x)}${unit}`).join(", ")}`;
   $("map").hidden = $("scale").hidden = !map;
   if (map) drawMap(state, column("figures", figure.pointer), state.inputs.map((axis) => column("inputs", axis.pointer)), found, unit);
   drawHistogram(found.histogram, unit);
@@ -156,12 +151,8 @@ function drawHistogram(histogram, unit) {
 }
 
 function tell(error) {
-  const said = error.errors?.map(({ pointer, detail }) => `${pointer} ${detail}`.trim());
-  $("problem").textContent = said?.join("; ") || error.message;
+  $("problem").textContent = error.errors?.map((fault) => `${fault.pointer} ${fault.detail}`).join("; ") || error.message;
 }
-
-/** A fault of a plan, with its pointer into the study that was written: to the plan, the study is its `request`. */
-const within = (fault) => ({ ...fault, pointer: fault.pointer.replace(/^\/request(?=\/|$)/, "") });
 
 async function send(work) {
   $("problem").textContent = $("told").textContent = "";
@@ -172,7 +163,9 @@ $("editor").value = JSON.stringify(START, null, 2);
 $("figure").addEventListener("change", draw);
 $("price").addEventListener("click", () => send(async (text) => {
   const { answer } = await ask("/v1/plan", { path: STUDIES, request: JSON.parse(text) });
-  if (!answer.answerable) throw Object.assign(new Error(), { errors: answer.errors.map(within) });
+  // The study is the request of the plan.
+  const errors = answer.errors?.map((fault) => ({ ...fault, pointer: fault.pointer.replace(/^\/request(?=\/|$)/, "") }));
+  if (!answer.answerable) throw Object.assign(new Error(), { errors });
   $("told").textContent = `${written(answer.cost.milliseconds / 1000, 3)} s of one processor`;
 }));
 $("start").addEventListener("click", () => send(async (text) => { follow((await ask(STUDIES, text)).answer).catch(tell); }));

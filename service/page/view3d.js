@@ -60,10 +60,12 @@ export class View {
   turning(name) {
     const canvas = this.canvas;
     canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+    // Then the keys turn the picture.
+    canvas.addEventListener("click", () => group.focus({ preventScroll: true }));
     canvas.addEventListener("pointermove", (event) => {
       if (canvas.hasPointerCapture(event.pointerId)) this.turn(-event.movementX / 120, event.movementY / 120);
     });
-    const group = make("div", { className: "turn", role: "group", "aria-label": `Turn ${name}` });
+    const group = make("div", { className: "turn", role: "group", tabIndex: -1, "aria-label": `Turn ${name}` });
     const turns = { "◀": ["left", 0.2, 0], "▶": ["right", -0.2, 0], "▲": ["up", 0, -0.2], "▼": ["down", 0, 0.2] };
     for (const [sign, [way, yaw, pitch]] of Object.entries(turns)) {
       group.append(make("button", { type: "button", textContent: sign, "aria-label": `Turn ${name} ${way}`, onclick: () => this.turn(yaw, pitch) }));
@@ -101,7 +103,10 @@ export class View {
       this.frame.append(entry.element);
       this.labels.set(key, entry);
     }
-    entry.element.textContent = text;
+    if (entry.element.textContent !== text) {
+      entry.element.textContent = text;
+      entry.size = [entry.element.offsetWidth, entry.element.offsetHeight];
+    }
     entry.element.className = `label ${name}`;
     entry.point = point;
   }
@@ -152,11 +157,25 @@ export class View {
     this.camera.updateMatrixWorld();
     this.light.position.copy(this.camera.position).addScaledVector(this.camera.up, 14);
     this.paint();
-    for (const { element, point } of this.labels.values()) {
-      const { x, y } = this.project(point);
+    this.placeLabels();
+    for (const listener of this.onView) listener();
+  }
+
+  /** Put labels beyond their points, as seen from the origin, inside the frame and off one another. */
+  placeLabels() {
+    const origin = this.project(new Vector3()), placed = [];
+    for (const { element, point, size: [wide, high] } of this.labels.values()) {
+      const p = this.project(point), [dx, dy] = [p.x - origin.x, p.y - origin.y], away = Math.hypot(dx, dy) || 1;
+      const within = (value, half, whole) => Math.max(half + 3, Math.min(whole - half - 3, value));
+      const x = within(p.x + ((Math.abs(dx) * wide + Math.abs(dy) * high) / 2 / away) * (dx / away), wide / 2, this.width);
+      let y = within(p.y + ((Math.abs(dx) * wide + Math.abs(dy) * high) / 2 / away) * (dy / away), high / 2, this.height);
+      for (const other of placed) {
+        const [gapX, gapY] = [(wide + other.wide) / 2, (high + other.high) / 2];
+        if (Math.abs(x - other.x) < gapX && Math.abs(y - other.y) < gapY) y = other.y + (y < other.y ? -gapY : gapY);
+      }
+      placed.push({ x, y, wide, high });
       element.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
     }
-    for (const listener of this.onView) listener();
   }
 }
 

@@ -3,6 +3,9 @@ import { degrees, superscript, written } from "./dom.js";
 
 const STEADY = "steady rotation";
 
+/** Whether two angles are written alike. */
+const same = (a, b) => degrees(a) === degrees(b);
+
 /** One sentence on how the body moves. */
 export function motionInWords(answer) {
   const regime = answer.model.regime;
@@ -11,10 +14,11 @@ export function motionInWords(answer) {
     return "It spins steadily, but about an unstable axis: the slightest disturbance grows exponentially and turns the body over.";
   }
   if (regime.includes("rest")) return "It is at rest.";
-  if (answer.tumbles && answer.flip_interval) return `It turns over every ${written(answer.flip_interval)} s: its middle axis swings from ${degrees(least)} to ${degrees(largest)} from the angular momentum.`;
+  if (answer.tumbles && answer.flip_interval) return `It turns over every ${written(answer.flip_interval)} s: the angle between its middle axis and the angular momentum swings from ${degrees(least)} to ${degrees(largest)}.`;
   if (answer.tumbles) return "It turns over once and then comes ever closer to the unstable middle axis: this is the separatrix.";
   if (regime.includes(STEADY)) return "It spins steadily and stays so: the axis is stable.";
-  const range = least === undefined ? "" : ` Its middle axis stays between ${degrees(least)} and ${degrees(largest)} from the angular momentum.`;
+  const between = same(least, largest) ? `at ${degrees(least)}` : `between ${degrees(least)} and ${degrees(largest)}`;
+  const range = least === undefined ? "" : ` The angle between its middle axis and the angular momentum stays ${between}.`;
   return `It wobbles about a stable axis and does not flip.${range}`;
 }
 
@@ -24,23 +28,27 @@ export function rowsOf(answer) {
   if (answer.tumbles && answer.flip_interval) rows.push(["Flip interval", `${written(answer.flip_interval, 8)} s`]);
   if (answer.middle_axis_tilt) {
     const [least, largest] = answer.middle_axis_tilt;
-    rows.push(["Middle axis from L", `${degrees(least)} to ${degrees(largest)}`]);
+    rows.push(["Middle axis from L", same(least, largest) ? degrees(least) : `${degrees(least)} to ${degrees(largest)}`]);
   }
   rows.push(["Energy", `${written(answer.energy)} J`], ["Angular momentum", `${written(answer.angular_momentum)} kg m²/s`]);
   return rows;
 }
 
 const HOW = {
+  "measured against pairs": "measured against a computation with twice as many digits",
   "closed form": "a bound, from the closed form",
   "measured against closed form": "measured against the closed form",
   "estimate (finer run)": "an estimate from a finer run",
 };
 
+/** What a stated error rests on. */
+export const howInWords = (how) => HOW[how] || how;
+
 /** The stated error, with what it rests on. */
 export function accuracyInWords({ error, how, inherited }) {
   const own = error === 0 ? "no rounding at all" : `below ${power(error)} of the largest rate`;
   const from = inherited ? `; rounding of the inputs adds at most ${power(inherited)}` : "";
-  return `${own} (${HOW[how] || how})${from}`;
+  return `${own} (${howInWords(how)})${from}`;
 }
 
 export function power(value) {

@@ -293,7 +293,7 @@ WORK_PRECISION = (
         answer_work_precision,
         CalibratedCost("work_precision", work_precision_counts),
         planning_probe=work_precision_probe,
-        description="The same as a figure is answered to `Accept: image/svg+xml`.",
+        description="`Accept: image/svg+xml` returns the same as a figure.",
         representations={SVG: drawn},
     ),
 )

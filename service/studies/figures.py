@@ -41,7 +41,7 @@ def figure(results: Results) -> Iterator[bytes]:
             rows = values.reshape(shape)
             lines = [_curve(f"{inner[1]} {second[0, j]:.6g}", first[:, j], rows[:, j]) for j in levels]
             shown.append(Panel(axes[0], up, lines))
-            drawn = f"; curves for {len(levels)} of {shape[1]} values of {inner[1]}"
+            drawn = f"; curves at {len(levels)} of {shape[1]} values of {inner[1]}"
         else:
             shown.append(_distribution(up, values))
     yield panels(f"Study of {results.study.count} members{drawn}", shown).encode()

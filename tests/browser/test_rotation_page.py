@@ -111,6 +111,10 @@ def test_the_pictures_turn_by_pointer_buttons_and_keys(opened):
         page.mouse.up()
         page.wait_for_timeout(100)
         frames.append(picture(page, f"{view}-canvas"))
+        # A press on the picture gives it the keys.
+        page.keyboard.press("ArrowRight")
+        page.wait_for_timeout(100)
+        frames.append(picture(page, f"{view}-canvas"))
         left = page.locator(f"#{view}-view .turn button").first
         left.click()
         page.wait_for_timeout(100)
@@ -118,7 +122,7 @@ def test_the_pictures_turn_by_pointer_buttons_and_keys(opened):
         page.keyboard.press("ArrowUp")
         page.wait_for_timeout(100)
         frames.append(picture(page, f"{view}-canvas"))
-        assert len(set(frames)) == 4
+        assert len(set(frames)) == 5
     assert spin_of(page) == spin
 
 
@@ -206,6 +210,22 @@ def test_errors_stand_at_their_fields_in_words(opened):
     page.locator("#points").blur()
     settle(page)
     assert "line 2" in page.locator("#points-error").inner_text()
+
+
+def test_pictures_beside_an_error_are_those_of_the_last_answer_and_pale(opened):
+    page = opened("/#body=t-handle&spin=0,0,10", expected=REFUSED)
+    before = picture(page, "ellipsoid-canvas")
+    page.locator("#spin input").nth(2).fill("0")
+    page.locator("#spin input").nth(2).blur()
+    settle(page)
+    assert "must not be zero" in page.locator("#problem").inner_text()
+    assert "stale" in page.locator(".stage").get_attribute("class")
+    assert picture(page, "ellipsoid-canvas") != before
+    page.locator("#spin input").nth(2).fill("10")
+    page.locator("#spin input").nth(2).blur()
+    settle(page)
+    assert "stale" not in page.locator(".stage").get_attribute("class")
+    assert picture(page, "ellipsoid-canvas") == before
 
 
 def test_the_playhead(opened):

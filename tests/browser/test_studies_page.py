@@ -1,6 +1,7 @@
 """The page of studies: what is started runs to its end, is drawn with the numbers of the API, and goes away."""
 
 import json
+import re
 from urllib.request import urlopen
 
 REFUSED = ("422",)
@@ -13,7 +14,7 @@ def test_a_map_has_the_numbers_of_the_api(opened, base):
     page.locator("#start").click()
     row = page.locator("#list li")
     row.get_by_text("successful").wait_for(timeout=120_000)
-    row.get_by_role("button", name="Show results").click()
+    row.get_by_role("button", name="Show").click()
     page.locator("#map").wait_for()
     (study,) = json.load(urlopen(f"{base}/v1/studies"))["studies"]
     answer = json.load(urlopen(f"{base}/v1/studies/{study['jobID']}/results?count=1"))
@@ -22,7 +23,7 @@ def test_a_map_has_the_numbers_of_the_api(opened, base):
     for pointer, found in figures.items():
         page.locator("#figure").select_option(pointer)
         said = page.locator("#numbers").inner_text()
-        assert said.startswith(f"{found['present']} members have it; mean {found['mean']:.6g}")
+        assert said.startswith(f"{found['present']} members have this figure; mean {found['mean']:.6g}")
         assert "Map over /body/moments/0 and /body/moments/1" in page.locator("#map").get_attribute("aria-label")
         assert page.locator("#histogram").get_attribute("aria-label").startswith("Histogram from ")
     with page.expect_download() as download:
@@ -41,14 +42,10 @@ def test_a_fault_is_shown_with_its_place(opened):
     study = json.loads(page.locator("#editor").input_value())
     study["quantities"] = ["/no_such_figure"]
     page.locator("#editor").fill(json.dumps(study))
-    page.locator("#start").click()
-    page.locator("#problem", has_text="/quantities/0").wait_for()
+    for button in ("#price", "#start"):
+        page.locator(button).click()
+        page.locator("#problem", has_text=re.compile("^/quantities/0 ")).wait_for()
     assert page.locator("#list li").count() == 0
-    study["vary"][0]["pointer"] = "/no_such_number"
-    page.locator("#editor").fill(json.dumps(study))
-    page.locator("#price").click()
-    page.locator("#problem", has_text="/vary/0/pointer").wait_for()
-    assert "/request" not in page.locator("#problem").inner_text()
 
 
 def test_no_time_is_foreseen_until_a_member_is_done(opened):
@@ -73,7 +70,7 @@ def test_no_time_is_foreseen_until_a_member_is_done(opened):
     page.reload()
     row = page.locator("#list li")
     row.get_by_text("running, 0 of 3000 members, starting").wait_for()
-    assert not row.get_by_role("button", name="Show results").is_visible()
+    assert row.get_by_role("button", name="Show").is_disabled()
     later.append(1)
     row.get_by_text("running, 1 of 3000 members, about").wait_for()
 

@@ -127,3 +127,17 @@ def test_the_pages_weigh_at_most_700_kilobytes_gzipped() -> None:
     code = [file for file in FOLDER.rglob("*") if file.suffix in (".js", ".css", ".html")]
     assert weight(code) <= 700_000
     assert weight([file for file in code if not file.name.startswith("swagger-ui")]) <= 250_000
+
+
+def test_links_into_the_reference_lead_to_operations() -> None:
+    document = json.loads((FOLDER.parents[1] / "docs" / "openapi.json").read_text(encoding="utf-8"))
+    operations = {
+        (tag, operation["operationId"])
+        for path in document["paths"].values()
+        for operation in path.values()
+        if isinstance(operation, dict) and "operationId" in operation
+        for tag in operation["tags"]
+    }
+    links = {found for file in OWN for found in re.findall(r"/docs#/(\w+)/(\w+)", file.read_text(encoding="utf-8"))}
+    assert links
+    assert links <= operations

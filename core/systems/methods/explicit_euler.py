@@ -54,7 +54,7 @@ class ExplicitEuler(FixedStep):
     between_steps: ClassVar[str] = ONE_STEP + " For this method that is the straight line to the next grid point."
     on_constraints: ClassVar[str] = PROJECTED
     when_to_use: ClassVar[str] = (
-        "To see what a first-order method does, which most physics engines use: on a free body its energy grows at "
+        "To see what the simplest first-order method does: on a free body its energy grows at "
         "every step, and ten times less error costs ten times more steps."
     )
 

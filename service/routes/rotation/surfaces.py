@@ -274,7 +274,7 @@ SURFACES = (
         CalibratedCost("energy_ellipsoid", ellipsoid_counts),
         is_small_ellipsoid,
         ellipsoid_probe,
-        description="The same as a figure, without the mesh, is answered to `Accept: image/svg+xml`.",
+        description="`Accept: image/svg+xml` returns the same as a figure, without the mesh.",
         representations={SVG: ellipsoid_figure},
     ),
     PostRoute(

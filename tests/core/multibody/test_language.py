@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import MISSING, fields
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -172,3 +175,14 @@ def test_dataclasses_and_json_say_the_same() -> None:
     built = Scene({"p": SceneBody(mass=1, at=[0, -1])}, (Rod(a="p", b=[0, 0]),), [0, -9.81])
     assert built == scene_from(pendulum(connections=(ROD,)))
     assert built.names() == ("rod-1",)
+
+
+def test_the_guide_has_every_kind_of_connection_with_its_fields() -> None:
+    guide = (Path(__file__).parents[3] / "docs" / "describing-scenes.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `([\w-]+)` \| ([^|]+) \|", guide, re.MULTILINE))
+    assert set(rows) == set(KINDS)
+    for kind, connection in KINDS.items():
+        required = {f.name for f in fields(connection) if f.default is MISSING and f.default_factory is MISSING}
+        written = {name for group in re.findall(r"`([^`]+)`", rows[kind]) for name in re.findall(r"\w+", group)}
+        assert required <= written, kind
+        assert written <= {f.name for f in fields(connection)}, kind

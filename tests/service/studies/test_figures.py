@@ -66,7 +66,7 @@ def test_two_numbers_give_a_curve_for_each_of_few_levels(levels: int) -> None:
     assert len(found) == min(levels, MOST_CURVES)
     assert all(len(one) == 5 for one in found)
     assert "b 0" in words(document)
-    assert f"Study of {5 * levels} members; curves for {len(found)} of {levels} values of b" in words(document)
+    assert f"Study of {5 * levels} members; curves at {len(found)} of {levels} values of b" in words(document)
     looks = [(one.attrib["stroke"], one.attrib.get("stroke-dasharray")) for one in document.iter(POLYLINE)]
     assert len(set(looks)) == len(found), "every curve can be told from the others"
     assert len({colour for colour, _ in looks}) >= min(levels, 8)
