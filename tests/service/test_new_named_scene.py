@@ -83,7 +83,7 @@ async def test_it_is_planned_rounded_archived_and_drawn(service: Service) -> Non
     assert short["accuracy"]["error"] >= 5e-3
     assert np.load(io.BytesIO(archive.content))["trajectory/velocity"].shape == (7,)
     assert "position" in figure.text
-    assert "m s^-1" in figure.text
+    assert "m/s" in figure.text
     assert wrong.status_code == 422
     assert wrong.json()["errors"][0]["pointer"] == "/mass"
 
