@@ -13,7 +13,16 @@ import numpy as np
 
 from core.assessment.compare import Floats, Form, Reference, distance
 from core.assessment.curves import dense
-from core.assessment.figures import equal_moments, form_of, inside, is_null, names_of, single_values, value_at
+from core.assessment.figures import (
+    DESCRIBED,
+    equal_moments,
+    form_of,
+    inside,
+    is_null,
+    names_of,
+    single_values,
+    value_at,
+)
 from core.assessment.formula_variations import VARIATIONS, Parameters, Variation, Varied, drawn, tied_numbers
 from core.assessment.judged_formulas import ENOUGH
 from core.assessment.propagation import Propagation, numbers_of, relative_uncertainties
@@ -199,11 +208,15 @@ class GradedQuestion:
 
     @cached_property
     def _propagation(self) -> Propagation:
-        return Propagation(self.request, relative_uncertainties(self.request, self._uncertainty), self.evaluate)
+        return self._propagated(self._uncertainty)
 
     @cached_property
     def _in_half_ulps(self) -> Propagation:
-        return Propagation(self.request, relative_uncertainties(self.request, None), self.evaluate)
+        return self._propagated(None)
+
+    def _propagated(self, given: float | Mapping[Path, float] | None) -> Propagation:
+        uncertainties = relative_uncertainties(self.request, given)
+        return Propagation(self.request, uncertainties, self.evaluate, connected=self.subject == DESCRIBED)
 
     @cached_property
     def _scales(self) -> Mapping[str, float]:

@@ -26,6 +26,9 @@ HALF_ULP = 2.0**-53
 SEEN = 1e-7
 """Relative change in place of a smaller one, whose effect rounding would hide; the effect is scaled."""
 
+WITHIN_ROUNDING = 2.0**-34
+"""The same for described scenes: so little that what touches or fits together still does (1e-9)."""
+
 SETTINGS = {"times", "accuracy", "method", "measure", "input_uncertainty", "outputs", "round", "resolution", "points"}
 SETTINGS |= {"seed", "count"}
 """Fields of questions that are no data."""
@@ -111,19 +114,23 @@ class Propagation:
         Relative.
     evaluate : callable
         Asks a changed question; raises or finds None where there is no answer.
+    connected : bool
+        Whether numbers follow from others, as places do that connections hold. Then each is changed by
+        `WITHIN_ROUNDING`, and one that cannot change, alone or with those that equal it, counts as exact.
     """
 
     request: Any
     uncertainties: Mapping[Path, float]
     evaluate: Evaluate
-    _moved: dict[Shares, tuple[float, list[Callable[[Path], Any]]]] = field(default_factory=dict, init=False)
+    connected: bool = False
+    _moved: dict[tuple[Shares, float], Callable[[Path], Any]] = field(default_factory=dict, init=False)
 
     def of(self, path: Path, reference: Reference) -> float | None:
         """Return by how much the figure at a path of the answer may change (in its unit), None if that is not found."""
         if len(self._uncertain) > MOST_INPUTS:
             effects = [self._effect(pattern, path, reference) for pattern in self._patterns]
             found = [effect for effect in effects if effect is not None]
-            return max(found) if len(found) == len(effects) else None
+            return max(found, default=0.0) if self.connected or len(found) == len(effects) else None
         total = 0.0
         done: set[Path] = set()
         for place, share in self._uncertain.items():
@@ -131,12 +138,12 @@ class Propagation:
                 continue
             alone = self._effect(((place, share),), path, reference)
             if alone is None:
-                together = [p for p in _equal_beside(place, self._numbers) if p in self._uncertain]
+                together = [p for p in self._tied_to(place) if p in self._uncertain]
                 done.update(together)
                 alone = self._effect(tuple((p, self._uncertain[p]) for p in together), path, reference)
-            if alone is None:
+            if alone is None and not self.connected:
                 return None
-            total += alone
+            total += alone or 0.0
         return total
 
     @cached_property
@@ -155,27 +162,35 @@ class Propagation:
             for row in signs
         ]
 
+    def _tied_to(self, place: Path) -> list[Path]:
+        """Return the places of numbers that have to equal the one at a place, that one too."""
+        if not self.connected:
+            return _equal_beside(place, self._numbers)
+        return [p for p, number in self._numbers.items() if abs(number) == abs(self._numbers[place])]
+
     def _effect(self, shares: Shares, path: Path, reference: Reference) -> float | None:
-        if shares not in self._moved:
-            self._moved[shares] = self._asked(shares)
-        scaled, answers = self._moved[shares]
+        largest = max(abs(share) for _, share in shares)
+        scaled = WITHIN_ROUNDING / largest if self.connected else max(1.0, SEEN / largest)
         worst = None
-        for answer in answers:
-            value = answer(path)
+        for sign in (1.0, -1.0):
+            value = self._answer(shares, sign * scaled)(path)
             if value is None:
                 continue
             try:
                 worst = max(worst or 0.0, distance(reference, value) / scaled)
             except InvalidParameter:
                 continue
+            if scaled != 1.0:
+                # To first order the other direction has the same effect.
+                break
         return worst
 
-    def _asked(self, shares: Shares) -> tuple[float, list[Callable[[Path], Any]]]:
-        """Return by how much changes are scaled, and the answers with these added and, unless scaled, taken away."""
-        scaled = max(1.0, SEEN / max(abs(share) for _, share in shares))
-        signs = (1.0, -1.0) if scaled == 1.0 else (1.0,)
-        moved = [{p: self._numbers[p] * (1.0 + sign * scaled * share) for p, share in shares} for sign in signs]
-        return scaled, [self.evaluate(changed(self.request, changes)) for changes in moved]
+    def _answer(self, shares: Shares, scaled: float) -> Callable[[Path], Any]:
+        """Return what finds figures of the answer with changes added, scaled."""
+        if (shares, scaled) not in self._moved:
+            moved = {p: self._numbers[p] * (1.0 + scaled * share) for p, share in shares}
+            self._moved[shares, scaled] = self.evaluate(changed(self.request, moved))
+        return self._moved[shares, scaled]
 
 
 def _equal_beside(place: Path, numbers: Mapping[Path, float]) -> list[Path]:

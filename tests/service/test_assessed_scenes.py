@@ -1,0 +1,60 @@
+"""Assessments of described scenes: what a student finds about any worked scene can be graded."""
+
+from __future__ import annotations
+
+import json
+from math import cos, radians, sin
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.responses.json_rows import written
+from tests.service.test_assessments import HANDLER, ROUTES, handled
+
+SCENES = {file.stem: file for file in (Path(__file__).parents[2] / "examples" / "scenes").glob("*.json")}
+UNIT = "m/s^2"
+
+
+def question_of(name: str) -> Any:
+    """Return the question about the start of a worked scene."""
+    request = json.loads(SCENES[name].read_text(encoding="utf-8"))
+    kept = {key: request[key] for key in ("gravity", "bodies", "connections", "let") if key in request}
+    return {"path": "/v1/scenes", "request": kept | {"outputs": ["accelerations", "forces"]}}
+
+
+def answer_to(question: Any) -> Any:
+    route = ROUTES[question["path"]]
+    return json.loads(written(HANDLER.answer(route, HANDLER.read(route, json.dumps(question["request"]).encode()))))
+
+
+@pytest.mark.parametrize("name", sorted(SCENES))
+def test_figures_at_the_start_are_gradable(name: str) -> None:
+    question = question_of(name)
+    answer = answer_to(question)
+    claims: dict[str, Any] = {
+        f"/forces/{force}/value": {"value": found["value"], "unit": found["unit"]}
+        for force, found in answer["forces"].items()
+        if found["determined"]
+    }
+    for body, found in answer["accelerations"].items():
+        for k, value in enumerate(found["linear"] or ()):
+            claims[f"/accelerations/{body}/linear/{k}"] = {"value": value, "unit": UNIT}
+    chosen = dict(list(claims.items())[-6:])
+    (result,) = handled(question, chosen)["results"]
+    assert [test["verdict"] for test in result["tests"]] == ["correct"] * len(chosen)
+
+
+def test_numbers_that_belong_together_change_together() -> None:
+    """The slope of a wedge, and the direction of the block on it, are one angle: A = m g sin cos / (M + m sin^2)."""
+    share, m, mass, slope = 1e-3, 1.0, 3.0, radians(30)
+    question = question_of("movable-wedge")
+    claim = {"/accelerations/wedge/linear/0": {"value": 1, "unit": UNIT}}
+    answer = handled(question, claim, input_uncertainty=share)
+    (reference,) = answer["reference"]
+    s, c = sin(slope), cos(slope)
+    size = m * 9.81 * s * c / (mass + m * s * s)
+    assert abs(reference["value"]) == pytest.approx(size, rel=1e-14)
+    by_masses = 2 * mass / (mass + m * s * s)
+    by_angle = slope * (c / s - s / c - 2 * m * s * c / (mass + m * s * s))
+    assert reference["inherited"] == pytest.approx(size * share * (1 + by_masses + abs(by_angle)), rel=1e-4)
