@@ -17,8 +17,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from math import isfinite
 
 Path = tuple[str | int, ...]
+
+COUNTABLE = 10**18
+"""Counts above this are reported as this: what matters is that they are out of reach, and every JSON reader has it."""
 
 
 def pointer_of(path: Iterable[str | int]) -> str:
@@ -105,11 +109,8 @@ class AccuracyUnreachable(MechanicsError):
         remedy: str | None = None,
     ) -> None:
         asked = "" if requested is None else f"an error of at most {requested:.3g} was asked for and "
-        super().__init__(
-            f"{asked}{achievable:.3g} {'is all that ' if requested is None else ''}can be reached: {reason}",
-            path=path,
-            remedy=remedy,
-        )
+        reached = f"{achievable:.3g} {'is all that ' if requested is None else ''}" if isfinite(achievable) else "none "
+        super().__init__(f"{asked}{reached}can be reached: {reason}", path=path, remedy=remedy)
         self.requested, self.achievable = requested, achievable
 
 
@@ -121,12 +122,12 @@ class BudgetExceeded(MechanicsError):
     what : str
         What is counted: ``"samples"``, ``"evaluations"``.
     needed, limit : int
-        The count needed and the count allowed.
+        The count needed and the count allowed. A count above `COUNTABLE` is reported as that.
     """
 
-    def __init__(self, what: str, needed: int, limit: int, *, path: Path = (), remedy: str | None = None) -> None:
-        super().__init__(f"{needed} {what} are needed and {limit} are allowed", path=path, remedy=remedy)
-        self.what, self.needed, self.limit = what, needed, limit
+    def __init__(self, what: str, needed: float, limit: int, *, path: Path = (), remedy: str | None = None) -> None:
+        self.what, self.needed, self.limit = what, int(min(needed, COUNTABLE)), limit
+        super().__init__(f"{self.needed} {what} are needed and {limit} are allowed", path=path, remedy=remedy)
 
 
 @contextmanager

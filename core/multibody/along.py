@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from math import copysign
+from math import copysign, inf
 
 import numpy as np
 
@@ -48,11 +48,13 @@ def watched_times(whole: Whole, end: float, every: int = 1) -> Floats:
             found.append(motion.nodes(end)[::every])
             continue
         once = np.abs(motion.nodes(copysign(period, end))[::every])
-        count = int(abs(end) / period) + 1
-        if count * len(once) > MOST_NODES:
+        # A period may be so short that their number is no double.
+        periods = abs(end) / period if period > 0.0 else inf
+        if (periods + 1.0) * len(once) > MOST_NODES:
             what = "times at which the motion is looked at"
             remedy = "ask for earlier times, or without what is summed up or searched along the way"
-            raise BudgetExceeded(what, count * len(once), MOST_NODES, path=("outputs",), remedy=remedy)
+            raise BudgetExceeded(what, (periods + 1.0) * len(once), MOST_NODES, path=("outputs",), remedy=remedy)
+        count = int(periods) + 1
         found.append(copysign(1.0, end) * (np.arange(count)[:, None] * period + once).ravel())
     times = np.unique(np.abs(np.concatenate(found)))
     times = times[times <= abs(end)]

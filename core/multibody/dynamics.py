@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from math import inf
 
 from flint import arb_mat
 
-from core.errors import InvalidParameter
+from core.errors import AccuracyUnreachable, InvalidParameter
 from core.multibody.connection_effects import Force
 from core.multibody.measures import Measures
-from core.multibody.polynomials import ONE, ZERO, Ball, entry, evaluated, is_zero, variables
+from core.multibody.polynomials import BITS, ONE, ZERO, Ball, entry, evaluated, is_zero, variables
 from core.multibody.rank import Elimination, independent
 from core.multibody.table import Row, Table
 
@@ -238,7 +239,13 @@ class Multipliers:
 
 
 def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Multipliers:
-    """Return the multipliers that give the accelerations."""
+    """Return the multipliers that give the accelerations.
+
+    Raises
+    ------
+    AccuracyUnreachable
+        If numbers of very different size leave none that do.
+    """
     table = measures.table
     pushed, given = table.inertial(acceleration), table.forces()
     lines: list[dict[int, Ball]] = [{} for _ in table.names]
@@ -248,7 +255,11 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
     elimination = Elimination()
     for line, inertia, force in zip(lines, pushed, given, strict=True):
         left = elimination.add(line, inertia - force)
-        assert left is None or is_zero(left), "accelerations that no multipliers give"
+        if left is not None and not is_zero(left):
+            # What is small beside the largest of the numbers was lost, and with it a coefficient.
+            reason = f"the forces are not known in {BITS} bits, as the numbers of the scene differ too much in size"
+            remedy = "choose units and an origin by which the numbers are moderate"
+            raise AccuracyUnreachable(None, inf, reason, path=("bodies",), remedy=remedy)
     return Multipliers(table, elimination, frozenset(measures.coordinates.frames))
 
 

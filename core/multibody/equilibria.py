@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.errors import BudgetExceeded, NotApplicable
+from core.errors import AccuracyUnreachable, BudgetExceeded, NotApplicable
 from core.multibody.answer import Equilibrium
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
@@ -270,6 +270,10 @@ def _described(resting: RestingPlaces, time: int, dense: _Dense, q: Floats, mult
     modes, stable = _small_motion(dense, q, multipliers)
     rate = two_to(-time)
     shown = tuple((float(w * rate), float(g * rate)) for w, g in modes)
+    if not np.isfinite(shown).all():
+        reason = "the search for equilibria leaves the range of doubles"
+        remedy = "ask without equilibria, or choose units in which the numbers are moderate"
+        raise AccuracyUnreachable(None, np.inf, reason, path=("outputs",), remedy=remedy)
     residual = float(np.abs(left).max(initial=0.0) / terms) if terms else 0.0
     return Equilibrium(*resting.shown(q), stable, shown, residual)
 

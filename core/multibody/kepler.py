@@ -158,8 +158,10 @@ class Kepler:
         unit = (distance**3 / abs(self.mu)).sqrt()
         speed = distance / unit
         sign = 1.0 if self.mu > 0 else -1.0
-        scaled = (float(product / (distance * speed)), sign, float(beta / (speed * speed)))
-        s = arb(universal_in_doubles(*scaled, float(time / unit))) * unit / distance
+        scaled = (float(product / (distance * speed)), sign, float(beta / (speed * speed)), float(time / unit))
+        if not all(map(math.isfinite, scaled)):
+            raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
+        s = arb(universal_in_doubles(*scaled)) * unit / distance
         for _ in range(12):
             g0, g1, g2, g3 = stumpff(beta, s)
             left = distance * g1 + product * g2 + self.mu * g3 - time

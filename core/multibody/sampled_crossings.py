@@ -80,15 +80,16 @@ class Sampled:
                 if len(motions) == 1 and not np.any(motion.shift):
                     end = float(own[-1])
                 else:
-                    count = math.ceil(end / own[-1])
-                    if count * len(own) > _MOST_NODES:
+                    periods = end / own[-1] if own[-1] > 0.0 else math.inf
+                    if (periods + 1.0) * len(own) > _MOST_NODES:
                         raise BudgetExceeded(
                             "looks for events",
-                            count * len(own),
+                            (periods + 1.0) * len(own),
                             _MOST_NODES,
                             path=("times",),
                             remedy="ask for a shorter time",
                         )
+                    count = math.ceil(periods)
                     own = (np.arange(count)[:, None] * own[-1] + own[None, :]).ravel()
             nodes.append(own)
         times = np.unique(np.concatenate(nodes))

@@ -157,7 +157,10 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
     turned = _angle((first.q, first.v), (last.q, last.v))
     motion = Periodic(table, units, run, time, False, np.zeros((3, 2)), (late, 4.0 * off), turned)
     motion.why = "the motion is symmetric about the vertical: its height repeats, and each period turns it further"
-    motion.winding = _unwrapped(motion, float(turned))
+    winding = _unwrapped(motion, float(turned))
+    if winding is None:
+        return None
+    motion.winding = winding
     return Shifted(motion, centre) if shifted else motion
 
 
@@ -220,10 +223,13 @@ def _angle(start: tuple[Floats, Floats], end: tuple[Floats, Floats]) -> Ball:
     return arb.atan2(sine, cosine)
 
 
-def _unwrapped(motion: Periodic, angle: float) -> float:
-    """Return the angle of a period with its full turns, followed along the period."""
+def _unwrapped(motion: Periodic, angle: float) -> float | None:
+    """Return the angle of a period with its full turns, followed along the period; None beyond the range of doubles."""
     length = float(motion.length[0]) * two_to(motion.units.time)
-    found = replace(motion, turned=None).states(np.linspace(0.0, length * (1 - 1e-12), 513))
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = replace(motion, turned=None).states(np.linspace(0.0, length * (1 - 1e-12), 513))
+    if not np.isfinite(found.q).all():
+        return None
     azimuth = np.unwrap(np.arctan2(found.q[:, 1, 0], found.q[:, 0, 0]))
     gone = float(azimuth[-1] - azimuth[0])
     return angle + 2 * math.pi * round((gone - angle) / (2 * math.pi))

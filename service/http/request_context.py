@@ -52,7 +52,7 @@ class RequestContext:
         self._since = perf_counter()
         self._records, self.operation, self.scope = records, operation, scope
         self.receive, self._send = receive, send
-        self.headers: dict[bytes, bytes] = dict(scope["headers"])
+        self.headers = _by_name(scope["headers"])
         self.started = False
         self.key: Key | None = None
         self.identity = records.id_of(self.headers.get(b"x-request-id"))
@@ -212,6 +212,14 @@ class RequestContext:
             own.append((b"connection", b"close"))
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": [*headers, *own]})
+
+
+def _by_name(headers: Sequence[Header]) -> dict[bytes, bytes]:
+    """Return headers by their names; the values of one that is repeated form a list (RFC 9110, 5.3)."""
+    found = dict(headers)
+    if len(found) < len(headers):
+        found = {name: b", ".join(value for other, value in headers if other == name) for name in found}
+    return found
 
 
 def _gathered(pieces: Iterator[bytes | memoryview]) -> tuple[bytes, bool]:

@@ -183,6 +183,7 @@ class Studies:
             if media == JSON_TYPE:
                 await self._page(context, study, found)
             else:
+                _require_no_page(context, media)
                 pieces = {
                     archive.MEDIA_TYPE: found.archive,
                     tables.MEDIA_TYPE: lambda: tables.table(found),
@@ -199,7 +200,7 @@ class Studies:
             raise Refusal("results-not-ready", detail, retry_after=2.0) from None
 
     async def _page(self, context: RequestContext, study: Study, found: Results) -> None:
-        query = parse_qs(context.scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True)
+        query = _query(context)
         faults = [Fault(f"?{name[:LONGEST_WORD]}", "is not known here") for name in query if name not in WORDS_OF_PAGE]
         faults += [Fault(f"?{name}", "must be given once") for name in WORDS_OF_PAGE if len(query.get(name, ())) > 1]
         if faults:
@@ -296,6 +297,17 @@ def _stored(pieces: Iterator[bytes]) -> Iterator[bytes]:
 
 def _owner(context: RequestContext) -> str:
     return "" if context.key is None else context.key.name
+
+
+def _query(context: RequestContext) -> dict[str, list[str]]:
+    return parse_qs(context.scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True)
+
+
+def _require_no_page(context: RequestContext, media: str) -> None:
+    """Refuse to choose a page of what has all members."""
+    faults = [Fault(f"?{name[:LONGEST_WORD]}", f"must be left out: {media} has all members") for name in _query(context)]
+    if faults:
+        raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
 
 
 def _whole(query: dict[str, list[str]], name: str, least: int, most: int, default: int) -> int:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import inspect
+import math
 import re
 
 import pytest
 
 from core import errors
 from core.errors import (
+    COUNTABLE,
     AccuracyUnreachable,
     BudgetExceeded,
     InvalidParameter,
@@ -63,4 +65,9 @@ def test_errors_carry_their_figures() -> None:
     over = BudgetExceeded("samples", 11, 10, remedy="ask for fewer")
     assert (over.what, over.needed, over.limit, over.path, over.remedy) == ("samples", 11, 10, (), "ask for fewer")
     assert over.detail == "11 samples are needed and 10 are allowed"
+    assert AccuracyUnreachable(None, math.inf, "all is lost").detail == "none can be reached: all is lost"
+    for count in (10**400, math.inf):
+        beyond_count = BudgetExceeded("steps", count, 10)
+        assert (beyond_count.needed, type(beyond_count.needed)) == (COUNTABLE, int)
+        assert beyond_count.detail == "1000000000000000000 steps are needed and 10 are allowed"
     assert NotApplicable("no such method", path=("kind",)).remedy is None

@@ -211,6 +211,31 @@ async def test_what_cannot_be_answered_is_refused_with_its_place(case: str) -> N
     assert len(problem["detail"]) > 20
 
 
+IMMODERATE: dict[str, tuple[str, tuple[str | int, ...], str, str]] = {
+    "a period that is short beyond counting": ("pendulum-timed", ("gravity", 0), "1e60", "/outputs"),
+    "a place far from all others": ("atwood-machine", ("bodies", "heavy", "at", 0), "1e300", "/bodies"),
+    "a spin that turns once in 1e-309 s": ("lagrange-top", ("bodies", "top", "angular_velocity", 0), "1e309", "/times"),
+    "a start of 1e308 m/s": ("conical-pendulum", ("bodies", "bob", "velocity", 1), "1e308", "/times"),
+    "a start of 1e-400 m": ("harmonic-ellipse", ("bodies", "bob", "at", 0), "1e-400", "/outputs"),
+    "a mass of 1e434294 kg": ("binary-stars", ("bodies", "a", "mass"), "cosh(1e6)", "/times"),
+}
+"""Worked scenes with one number that is valid and leads beyond the range of doubles, and where the refusal points."""
+
+
+@pytest.mark.parametrize("case", IMMODERATE, ids=IMMODERATE)
+async def test_numbers_that_lead_beyond_doubles_are_refused(case: str) -> None:
+    name, path, formula, pointer = IMMODERATE[case]
+    scene = json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
+    node = scene
+    for step in path[:-1]:
+        node = node[step]
+    node[path[-1]] = formula
+    response = await asked(scene)
+    assert response.status_code == 422, response.text
+    assert response.json()["errors"][0]["pointer"] == pointer
+    assert "inf " not in response.json()["detail"]
+
+
 async def test_refusals_name_the_limit() -> None:
     for case, limit in (("too many bodies", MOST_BODIES), ("too many connections", MOST_CONNECTIONS)):
         assert f"at most {limit}" in (await asked(HOSTILE[case][0])).json()["detail"]

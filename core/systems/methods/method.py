@@ -31,9 +31,6 @@ PROJECTED = (
 
 LONGEST, SHORTEST = float(np.finfo(np.float64).max), float(np.finfo(np.float64).smallest_subnormal)
 
-COUNTABLE = 10**18
-"""Counts above this are reported as this: what matters is that they are out of reach."""
-
 
 @dataclass(frozen=True, eq=False)
 class Integration:
@@ -260,9 +257,8 @@ class Marching(AbstractMethod):
         return InvalidParameter(self.setting, rule, remedy=f"use a smaller {self.setting}")
 
     def _over_budget(self, needed: float, limit: int) -> BudgetExceeded:
-        count = int(min(max(needed, limit + 1.0), float(COUNTABLE)))
         remedy = f"use a larger {self.setting}, or ask for earlier times"
-        return BudgetExceeded("evaluations", count, limit, path=(self.setting,), remedy=remedy)
+        return BudgetExceeded("evaluations", max(needed, limit + 1.0), limit, path=(self.setting,), remedy=remedy)
 
     def _out_of_budget(self, spent: int, limit: int, fraction: float) -> BudgetExceeded:
         """Return the refusal of a run that was stopped after a fraction of the way, with the work it would need."""

@@ -95,7 +95,8 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         route, design = table.route(question.question), question.all_members()
         if design.members > budget.members:
             remedy = "take fewer levels or a smaller count, or several studies"
-            raise BudgetExceeded("members", design.members, budget.members, path=("vary",), remedy=remedy)
+            path = ("vary",) if question.count is None else ("count",)
+            raise BudgetExceeded("members", design.members, budget.members, path=path, remedy=remedy)
         source = table.source(question.question, budget)
         with within_question():
             answer = source.answer(json.dumps(question.question.request))

@@ -87,6 +87,14 @@ class TestBody:
         assert (Wire(x_request_id=given_id).exchange.id == given_id) is kept
 
 
+    async def test_a_header_that_is_repeated_has_all_its_values(self) -> None:
+        wire = Wire(accept="text/html", content_type="application/json")
+        repeated = [*wire.exchange.scope["headers"], (b"accept", b"application/json")]
+        scope = wire.exchange.scope | {"headers": repeated}
+        headers = RequestContext(Records(wire.metrics, "none"), "ask_toy", scope, wire.receive, wire.send).headers
+        assert headers == {b"accept": b"text/html, application/json", b"content-type": b"application/json"}
+
+
 class TestHas:
     @pytest.mark.parametrize(
         ("known", "has"),

@@ -152,6 +152,11 @@ async def test_all_results_as_an_archive_a_table_and_a_grid(desk_on: Desks, in_p
         assert figure.headers["content-type"] == "image/svg+xml"
         assert figure.content.startswith(b"<svg")
         assert (await get(client, place, "text/csv")).status_code == 406
+        for query in ("start=1", "count=2", "first=1", "start"):
+            everything = {"accept": "application/x-npz"}
+            response = await client.get(f"{place}/results?{query}", headers=everything)
+            assert (response.status_code, response.json()["code"]) == (422, "invalid-parameter"), query
+            assert response.json()["errors"][0]["pointer"] == f"?{query.partition('=')[0]}"
 
 
 async def get(client: httpx.AsyncClient, place: str, media: str) -> httpx.Response:
@@ -303,6 +308,16 @@ async def test_dismissing_gives_back_what_was_not_computed(tmp_path: Path) -> No
         ),
         ({"design": "zip"}, {}, "invalid-parameter", "/vary/1"),
         ({"design": "random"}, {}, "invalid-parameter", "/count"),
+        (
+            {
+                "design": "random",
+                "vary": [{"pointer": "/angular_velocity/0", "min": 0.5, "max": 1.5}],
+                "count": 10_000_001,
+            },
+            {},
+            "budget-exceeded",
+            "/count",
+        ),
         ({"question": {"path": "/v1/studies", "request": {}}}, {}, "invalid-parameter", "/question/path"),
         ({"question": {"path": "/v1/toy", "request": {}}}, {}, "invalid-parameter", "/question/request/body"),
         (
