@@ -1,1 +1,1 @@
-"""The mechanics: bodies, systems, their motion, and how right each answer is. Knows nothing of HTTP."""
+"""The mechanics: bodies, systems, their motion, and how accurate each answer is. Knows nothing of HTTP."""

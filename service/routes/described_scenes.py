@@ -48,8 +48,7 @@ answer too: `problem` says what, and which assumption would decide it.
 Not covered yet: friction of balls on one another in space, friction of held connections, connections with `from` and
 `until`. They are refused. It is not proven that all equilibria are found. A plan
 reads numbers as doubles, and foresees neither for how long a motion can be followed nor the equilibria of more than
-about three bodies. The paths of a motion in the plane, and its columns over time, are answered as a figure to
-`Accept: image/svg+xml`."""
+about three bodies. `Accept: image/svg+xml` draws the paths of a motion in the plane, and its columns over time."""
 
 NEAR = 0.01
 """How far (s) a motion is followed when it is planned."""
