@@ -12,10 +12,10 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.contact_places import Rim, gap_of_rims, is_on, place_on, refuse_limits, two_rims
-from core.multibody.directions import perpendicular, unit
+from core.multibody.directions import cross, perpendicular, unit
 from core.multibody.frames import Rate
 from core.multibody.measures import Measures
-from core.multibody.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.polynomials import ONE, Ball, Poly, combined, constant, difference, dot, is_zero
 from core.multibody.rolling import rate_of, sum_of_rates
 
 
@@ -88,7 +88,7 @@ def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> Touch
                     "be left out on balls that cannot turn",
                     remedy=f'give "{connection.place}" its moments of inertia',
                 )
-            lever = [-radius * x for x in _cross(n, e)]
+            lever = [-radius * x for x in cross(n, e)]
             spin = {j: constant(x) for j, x in zip(frame.turns, lever, strict=True) if not is_zero(x)}
             parts.append((constant(ONE), spin))
         slips.append(sum_of_rates(*parts))
@@ -105,7 +105,3 @@ def _round(a: Rim, b: Rim, path: Path, *, rubs: bool) -> Touching:
         )
     gap, _, _ = gap_of_rims(a[:2], b[:2], path)
     return Touching(gap, None, None, not (is_zero(a[1]) and is_zero(b[1])))
-
-
-def _cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
-    return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] + ZERO for i in range(3)]

@@ -1,4 +1,4 @@
-"""Unit vectors along a direction that a description gives, and across it."""
+"""Unit vectors along a direction that a description gives and across it, and the cross product, in balls."""
 
 from __future__ import annotations
 
@@ -35,6 +35,10 @@ def perpendicular(along: Sequence[Ball], path: Path) -> list[list[Ball]]:
         return [[-t[1], t[0]]]
     k = min(range(3), key=lambda i: abs(float(t[i])))
     e = [ONE if i == k else ONE - ONE for i in range(3)]
-    first = unit([t[(i + 1) % 3] * e[(i + 2) % 3] - t[(i + 2) % 3] * e[(i + 1) % 3] for i in range(3)], path)
-    second = [t[(i + 1) % 3] * first[(i + 2) % 3] - t[(i + 2) % 3] * first[(i + 1) % 3] for i in range(3)]
-    return [first, second]
+    first = unit(cross(t, e), path)
+    return [first, cross(t, first)]
+
+
+def cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
+    """Return the cross product a x b of two vectors with three components."""
+    return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]

@@ -18,6 +18,7 @@ from core.certified.exact_inertia import ExactInertia
 from core.certified.exact_start import ExactStart
 from core.certified.turning_motion import TurningMotion
 from core.errors import AccuracyUnreachable, MechanicsError
+from core.multibody.directions import cross
 from core.multibody.motion import States
 from core.multibody.packed import Floats, pair, two_to
 from core.multibody.polynomials import BITS, ONE, ZERO, Ball, is_zero
@@ -107,7 +108,7 @@ def freely_turning(table: Table, body: TurningBody) -> FreeBody | None:
         if start.regime == "rest" or inertia.is_line:
             return None
         momentum = [sum((x * w for x, w in zip(row, body.angular_velocity, strict=True)), ZERO) for row in body.tensor]
-        if all(is_zero(x) for x in _cross(momentum, body.angular_velocity)):
+        if all(is_zero(x) for x in cross(momentum, body.angular_velocity)):
             return FreeBody(table, body, _steady(body.angular_velocity))
         return FreeBody(table, body, _turning(start))
     except (Undetermined, MechanicsError, ZeroDivisionError):
@@ -134,10 +135,6 @@ def _steady(omega: list[Ball]) -> Sample:
         return omega, [cosine, *(sine * x / rate for x in omega)]
 
     return sample
-
-
-def _cross(a: list[Ball], b: list[Ball]) -> list[Ball]:
-    return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]
 
 
 def _fraction(ball: Ball) -> Fraction:

@@ -12,13 +12,12 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.connection_effects import Work
-from core.multibody.directions import perpendicular, unit
+from core.multibody.directions import cross, perpendicular, unit
 from core.multibody.frames import Point, Rate
 from core.multibody.laws import clock
 from core.multibody.measures import COMPONENTS, Measures
 from core.multibody.polynomials import (
     ONE,
-    ZERO,
     Ball,
     Poly,
     combined,
@@ -88,10 +87,10 @@ class _Surface:
         rows, across = [], perpendicular(n, self.path)
         driven: list[tuple[int, Poly]] = []
         for e in across:
-            parts = [*self._velocity(e), self._spin([-self.radius * x for x in _cross(n, e)])]
+            parts = [*self._velocity(e), self._spin([-self.radius * x for x in cross(n, e)])]
             if not is_zero(turning):
                 # The surface moves with turning n x d, of which this is the component along e.
-                carried = combined(*((-turning * x, self.d[i]) for i, x in enumerate(_cross(e, n))))
+                carried = combined(*((-turning * x, self.d[i]) for i, x in enumerate(cross(e, n))))
                 parts.append((carried, {clock(measures): constant(ONE)}))
                 measures.conservative = False
                 driven.append((len(measures.table.rows), carried))
@@ -107,7 +106,7 @@ class _Surface:
         measures, name, table = self.measures, self.name, self.measures.table
         a = unit(measures.numerals.vector(direction, (*self.path, "direction"), 3), (*self.path, "direction"))
         first = perpendicular(a, self.path)[0]
-        second = _cross(a, first)
+        second = cross(a, first)
         reach = self._reach(radius)
         away = [self._along(f) for f in (first, second)]
         start = [evaluated(x, table.q) / reach for x in away]
@@ -175,7 +174,3 @@ class _Surface:
 
 def _one(index: int) -> Rate:
     return {index: constant(ONE)}
-
-
-def _cross(a: Vector, b: Vector) -> list[Ball]:
-    return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] + ZERO for i in range(3)]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from flint import arb
 
 from core.errors import InvalidParameter, Path
+from core.multibody.directions import cross
 from core.multibody.frames import Frame, Given, Rate
 from core.multibody.inertia import symmetry_axes, three_vectors
 from core.multibody.language import SceneBody
 from core.multibody.numerals import Numerals
-from core.multibody.polynomials import ONE, ZERO, Ball, combined, constant, coordinate, dot, is_zero
+from core.multibody.polynomials import ONE, ZERO, combined, constant, coordinate, dot, is_zero
 from core.multibody.table import Row, Table
 
 
@@ -81,7 +81,7 @@ class SpatialOrientation:
         if omega is not None:
             space = [sum((omega[a] * axes[a][i] for a in range(3)), ZERO) for i in range(3)]
             for a in range(3):
-                rate = _cross(space, axes[a])
+                rate = cross(space, axes[a])
                 for i in range(3):
                     self.given.append(Given({frame.axes[a][i]: ONE}, rate[i], (*path, "angular_velocity")))
         if "turn" in seen and "orientation" not in seen:
@@ -132,12 +132,8 @@ class SpatialOrientation:
                 table.add_gyration(n[i], n[j], n[m], p)
                 table.add_gyration(n[i], n[m], n[j], -p)
         space = [sum((omega[a] * axes[a][i] for a in range(3)), ZERO) for i in range(3)]
-        for i, value in enumerate(_cross(space, axes[k])):
+        for i, value in enumerate(cross(space, axes[k])):
             self.given.append(Given({n[i]: ONE}, value, ("bodies", name, "angular_velocity")))
-
-
-def _cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
-    return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]
 
 
 def _check_axes(axes: Any, path: Path) -> None:
@@ -147,6 +143,6 @@ def _check_axes(axes: Any, path: Path) -> None:
             product = sum((x * y for x, y in zip(axes[a], axes[b], strict=True)), ZERO)
             if not abs(product - (1 if a == b else 0)) < tolerance:
                 raise InvalidParameter(path, "be unit vectors at right angles to one another")
-    handed = sum((x * y for x, y in zip(axes[0], _cross(axes[1], axes[2]), strict=True)), ZERO)
+    handed = sum((x * y for x, y in zip(axes[0], cross(axes[1], axes[2]), strict=True)), ZERO)
     if handed < 0:
         raise InvalidParameter(path, "be right-handed")
