@@ -305,7 +305,8 @@ def _query(context: RequestContext) -> dict[str, list[str]]:
 
 def _require_no_page(context: RequestContext, media: str) -> None:
     """Refuse to choose a page of what has all members."""
-    faults = [Fault(f"?{name[:LONGEST_WORD]}", f"must be left out: {media} has all members") for name in _query(context)]
+    rule = f"must be left out: {media} has all members"
+    faults = [Fault(f"?{name[:LONGEST_WORD]}", rule) for name in _query(context)]
     if faults:
         raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
 

@@ -235,7 +235,8 @@ async def test_nothing_is_sent_of_a_large_answer_that_is_not_finite(client: http
 
 
 async def test_refusals_and_requests_are_counted(client: httpx.AsyncClient) -> None:
-    await client.post("/v1/toy", json={})
+    for question in (GOOD, {}):
+        await client.post("/v1/toy", json=question)
     text = (await client.get("/metrics")).text
     assert 'polhode_problems_total{code="invalid-parameter"}' in text
     assert 'polhode_request_seconds_count{operation="ask_toy",status="200"}' in text

@@ -86,7 +86,6 @@ class TestBody:
     def test_the_id_is_the_clients_where_it_is_plain(self, given_id: str, kept: bool) -> None:
         assert (Wire(x_request_id=given_id).exchange.id == given_id) is kept
 
-
     async def test_a_header_that_is_repeated_has_all_its_values(self) -> None:
         wire = Wire(accept="text/html", content_type="application/json")
         repeated = [*wire.exchange.scope["headers"], (b"accept", b"application/json")]
