@@ -21,6 +21,7 @@ from core.multibody.contact_start import ContactStart
 from core.multibody.description import Described
 from core.multibody.dynamics import accelerations
 from core.multibody.expansion import Expansion, expansion, saddle, slope, value
+from core.multibody.frames import Rate
 from core.multibody.measures import COMPONENTS
 from core.multibody.modelling import Modelled, Piece
 from core.multibody.motion import States
@@ -215,13 +216,21 @@ class TurningWhole(Whole):
             return super().force(force, q, v, multipliers)
         one, axis, row = self.turning[force.name]
         assert one.tangents is not None
-        slip = [
-            sum(float(poly[()]) * v[:, j, 0] for j, poly in (line or {}).items()) for line in (one.slip, one.across)
-        ]
+        slip = np.array([_slip(line or {}, v) for line in (one.slip, one.across)])
         length = np.maximum(np.hypot(slip[0], slip[1]), 1e-300)
         along = (float(one.tangents[0][axis]) * slip[0] + float(one.tangents[1][axis]) * slip[1]) / length
         push = float(one.kinetic) * multipliers[:, row]
         return 0.0 - push * along, np.abs(push)
+
+
+def _slip(line: Rate, v: Floats) -> Floats:
+    """Return a rate of slip at rates of shape (t, n, 2); where slip ends its terms cancel, down to their tails."""
+    found = np.zeros(len(v))
+    with precision(_BITS):
+        for s, rates in enumerate(v.tolist()):
+            terms = (poly[()] * (arb(rates[j][0]) + arb(rates[j][1])) for j, poly in line.items())
+            found[s] = float(sum(terms, ZERO).mid())
+    return found
 
 
 def turning_model(

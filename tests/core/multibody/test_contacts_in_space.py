@@ -254,3 +254,36 @@ def test_a_stone_leaves_a_hollow_sphere() -> None:
         end = mp.acos((2 * g * r - 16) / (3 * g * r))
         when = quad(lambda a: r / sqrt(16 - 2 * g * r * (1 - mp.cos(a))), [0, end])
     assert abs(answer.events[0].time - when) <= answer.events[0].error + 1e-16
+
+
+@pytest.mark.parametrize(("speed", "spin"), [(2, 0), (32, -300)])
+def test_friction_near_the_end_of_a_slip_that_turns_is_as_right_as_stated(speed: int, spin: int) -> None:
+    """A ball on a tilted plane: with tau the tangent of half the slip's angle, everything is a power of tau.
+
+    The slip u and its angle psi obey u' = G cos(psi) - c, u psi' = -G sin(psi) with c = 7/2 mu g_n, so that
+    u = A tau^(k-1) (1 + tau^2) with k = c/G, and the time that is left is A/G (tau^(k-1)/(k-1) + tau^(k+1)/(k+1)).
+    """
+    with mp.workdps(50):
+        along, across, friction = mp.mpf(3), mp.mpf(9), mp.mpf("0.25")
+        k = 7 * friction * across / 2 / along
+
+        def left(tau: Any) -> Any:
+            return (tau ** (k - 1) / (k - 1) + tau ** (k + 1) / (k + 1)) / along
+
+        times = [float(left(mp.mpf(1)) - mp.mpf(before)) for before in ("0.2", "1e-2", "1e-4", "1e-6", "1e-8")]
+        found = []
+        for time in times:
+            rest = left(mp.mpf(1)) - mp.mpf(time)
+            start = (rest * along * (k - 1)) ** (1 / (k - 1))
+            angle = 2 * mp.atan(mp.findroot(lambda tau, rest=rest: mp.log(left(tau) / rest), start))
+            found.append([-friction * across * mp.cos(angle), -friction * across * mp.sin(angle)])
+    ball = {"mass": 1, "radius": "0.1", "moments": ["0.004"] * 3, "at": [0, 0, "0.1"]}
+    ball |= {"velocity": [0, speed, 0], "angular_velocity": [spin, 0, 0]}
+    floor = {"kind": "contact", "name": "f", "place": "b", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}
+    scene = {"gravity": [3, 0, -9], "bodies": {"b": ball}, "connections": [{**floor, "friction": "0.25"}]}
+    answer = solve_scene(read(scene), times, ("forces-in-time",))
+    assert answer.trajectory is not None
+    for i, axis in enumerate("xy"):
+        rub = answer.trajectory.columns[f"f.friction.{axis}"]
+        for value, true in zip(rub.values, found, strict=True):
+            assert abs(value - true[i]) <= rub.error
