@@ -138,7 +138,7 @@ class Propagation:
                 continue
             alone = self._effect(((place, share),), path, reference)
             if alone is None:
-                together = [p for p in self._tied_to(place) if p in self._uncertain]
+                together = [p for p in self._tied_to(place, path, reference) if p in self._uncertain]
                 done.update(together)
                 alone = self._effect(tuple((p, self._uncertain[p]) for p in together), path, reference)
             if alone is None and not self.connected:
@@ -162,11 +162,13 @@ class Propagation:
             for row in signs
         ]
 
-    def _tied_to(self, place: Path) -> list[Path]:
+    def _tied_to(self, place: Path, path: Path, reference: Reference) -> list[Path]:
         """Return the places of numbers that have to equal the one at a place, that one too."""
         if not self.connected:
             return _equal_beside(place, self._numbers)
-        return [p for p, number in self._numbers.items() if abs(number) == abs(self._numbers[place])]
+        alike = [p for p in self._uncertain if abs(self._numbers[p]) == abs(self._numbers[place])]
+        # A number that can change alone is equal by chance, and has an effect of its own.
+        return [p for p in alike if self._effect(((p, self._uncertain[p]),), path, reference) is None]
 
     def _effect(self, shares: Shares, path: Path, reference: Reference) -> float | None:
         largest = max(abs(share) for _, share in shares)

@@ -58,3 +58,17 @@ def test_numbers_that_belong_together_change_together() -> None:
     by_masses = 2 * mass / (mass + m * s * s)
     by_angle = slope * (c / s - s / c - 2 * m * s * c / (mass + m * s * s))
     assert reference["inherited"] == pytest.approx(size * share * (1 + by_masses + abs(by_angle)), rel=1e-4)
+
+
+def test_a_number_that_is_equal_by_chance_keeps_its_own_effect() -> None:
+    """With a block of 30 kg, too, on a slope of 30 degrees, its mass changes alone."""
+    question = question_of("movable-wedge")
+    question["request"]["bodies"]["block"]["mass"] = 30
+    claim = {"/accelerations/wedge/linear/0": {"value": 1, "unit": UNIT}}
+    share, m, mass, slope = 1e-3, 30.0, 3.0, radians(30)
+    (reference,) = handled(question, claim, input_uncertainty=share)["reference"]
+    s, c = sin(slope), cos(slope)
+    by_masses = 2 * mass / (mass + m * s * s)
+    by_angle = abs(slope * (c / s - s / c - 2 * m * s * c / (mass + m * s * s)))
+    size = m * 9.81 * s * c / (mass + m * s * s)
+    assert reference["inherited"] == pytest.approx(size * share * (1 + by_masses + by_angle), rel=1e-4)

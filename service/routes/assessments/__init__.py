@@ -111,7 +111,7 @@ quaternion, principal axes up to sign and, where moments are equal, up to rotati
 times of the claim. Arrays count as wrong as their worst entry. Units are converted; for an angular rate 1 Hz is 2 pi
 rad/s. A tolerance finer than the reference is known is not widened: the claim is not gradable.
 
-With `reveal: false` no mistakes are named and none gives credit: a student who is told that a factor of 2 is missing
+With `reveal: false` no mistakes are named and none gives credit: a student who learns that a factor of 2 is missing
 knows the reference."""
 
 
