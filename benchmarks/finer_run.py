@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.machine import RESULTS, described
+from core.arrays import Floats
 from core.bodies.mass_properties import diagonal
 from core.errors import MechanicsError
 from core.rotation.torque_free import TorqueFree
@@ -35,7 +36,6 @@ from core.systems.methods import (
     SymmetricSplitting,
 )
 from core.systems.solve import solve
-from core.systems.system import Floats
 
 MOTIONS = 10_000
 CHUNK = 50

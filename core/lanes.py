@@ -12,16 +12,15 @@ import operator
 from collections.abc import Callable
 from typing import Any, cast
 
-import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
-from numpy.typing import NDArray
+
+from core.arrays import Floats
 
 WIDTH = 8
 
-Floats = NDArray[np.float64]
 
 _VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 

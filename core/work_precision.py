@@ -20,6 +20,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from core.arrays import Floats
 from core.errors import AccuracyUnreachable, InvalidParameter, MechanicsError
 from core.systems.budget import Budget
 from core.systems.error_statements import bound_of, drifts, estimated, known_norm, measured
@@ -37,7 +38,7 @@ from core.systems.methods import (
 )
 from core.systems.methods.dormand_prince_853 import SMALLEST_TOLERANCE
 from core.systems.solve import checked_times
-from core.systems.system import Floats, InitialValueProblem
+from core.systems.system import InitialValueProblem
 
 STEPS_PER_OWN_TIME = tuple(4 * 2**k for k in range(9))
 TOLERANCES = tuple(10.0**-k for k in range(3, 15, 2))

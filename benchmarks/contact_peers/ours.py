@@ -7,7 +7,7 @@ from typing import Any
 
 from benchmarks.contact_peers.cases import BETWEEN, BOUNCE, LADDER, SLIP, ContactCase
 from core.multibody.answer import SceneAnswer
-from core.multibody.reading import scene_from
+from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
 
 _WATCHED = {

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.described_scenes.drake import prepared
-from core.multibody.reading import scene_from
+from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
 
 G, INERTIA, HALF, END = 9.8125, 0.08203125, 0.5, 10.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.systems.system import Floats
+from core.arrays import Floats
 
 SAMPLES = 10_000
 

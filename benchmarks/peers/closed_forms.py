@@ -6,12 +6,12 @@ import numpy as np
 
 from benchmarks.peers.cases import Case
 from benchmarks.peers.peer import CLOSED_FORM, OURS, Peer, Run
+from core.arrays import Floats
 from core.bodies.mass_properties import PrincipalInertia, diagonal
 from core.rotation.attitude.free_attitude import FreeAttitude
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
 from core.systems.solve import solve
-from core.systems.system import Floats
 
 
 def _sampled(case: Case, setting: float) -> Run:

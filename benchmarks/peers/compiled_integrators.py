@@ -11,9 +11,9 @@ from numba import njit
 from benchmarks.peers.cases import Case
 from benchmarks.peers.equations import answer, c_function, c_function_output_first, initial_state, vector_field
 from benchmarks.peers.peer import COMPILED, TOLERANCES, Peer, Run
+from core.arrays import Floats
 from core.systems.budget import Budget
 from core.systems.methods import DormandPrince853
-from core.systems.system import Floats
 from tests.core.systems.systems import Given
 
 UNLIMITED = Budget(evaluations=10**12)

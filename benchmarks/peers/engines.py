@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.peers.cases import SAMPLES, Case
 from benchmarks.peers.peer import ENGINE, TOLERANCES, Peer, Run
-from core.systems.system import Floats
+from core.arrays import Floats
 
 STEPS_PER_SAMPLE = tuple(float(2**k) for k in range(6))
 MASS = 300.0

@@ -13,7 +13,8 @@ import numpy as np
 from numba import cfunc, njit, types
 
 from benchmarks.peers.cases import Case
-from core.systems.system import VECTOR_FIELD, Floats
+from core.arrays import Floats
+from core.systems.system import VECTOR_FIELD
 
 
 @njit(inline="always")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.peers.cases import Case
-from core.systems.system import Floats
+from core.arrays import Floats
 
 
 def measured(case: Case, states: Floats, true: Floats) -> dict[str, Any]:

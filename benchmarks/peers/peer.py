@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib import metadata
 
 from benchmarks.peers.cases import Case
-from core.systems.system import Floats
+from core.arrays import Floats
 
 Run = Callable[[], Floats]
 

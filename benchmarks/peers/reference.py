@@ -8,8 +8,8 @@ import mpmath
 import numpy as np
 
 from benchmarks.peers.cases import Case
+from core.arrays import Floats
 from core.certified.free_rotation import CertifiedRotation
-from core.systems.system import Floats
 from tests.oracles.free_rotation import reference_angular_velocity, reference_attitude
 
 DIGITS = 50

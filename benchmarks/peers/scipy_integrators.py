@@ -7,7 +7,7 @@ import warnings
 from benchmarks.peers.cases import Case
 from benchmarks.peers.equations import answer, array_function, initial_state
 from benchmarks.peers.peer import INTERPRETED, TOLERANCES, Peer, Run
-from core.systems.system import Floats
+from core.arrays import Floats
 
 
 def _solve_ivp(method: str, case: Case, tolerance: float) -> Run:

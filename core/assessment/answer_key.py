@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from core.assessment.compare import Floats, Reference
+from core.arrays import Floats
+from core.assessment.compare import Reference
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.grader import Grader

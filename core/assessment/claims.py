@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from core.assessment.compare import Floats
+from core.arrays import Floats
 from core.errors import InvalidParameter
 from core.formulas import LONGEST_FORMULA
 

@@ -24,8 +24,8 @@ from math import inf, isfinite, pi
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.assessment.comparisons import Comparison, Interval, RelAbs
 from core.assessment.curves import separation
 from core.errors import InvalidParameter
@@ -42,8 +42,6 @@ MOST_OF_A_SET = 6
 """Members of a set: all their orders are tried."""
 
 LARGEST = np.finfo(np.float64).max.item()
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

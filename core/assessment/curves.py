@@ -8,9 +8,8 @@ exponentially convergent trapezoidal rule", SIAM Review 56 (2014) 385, section 4
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from core.arrays import Floats
 
 DENSE = 2048
 """Points by which the curve of an answer is compared."""

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from core.assessment.compare import Floats, Form, Reference, distance
+from core.arrays import Floats
+from core.assessment.compare import Form, Reference, distance
 from core.assessment.curves import dense
 from core.assessment.figures import (
     DESCRIBED,

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from core.arrays import Floats
 from core.assessment.claims import MOST_CLAIMS, Claim
-from core.assessment.compare import Floats, Judgement, Reference, compare, exchanged
+from core.assessment.compare import Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.formula_variations import Variation

@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from core.assessment.compare import Floats, norms
+from core.arrays import Floats
+from core.assessment.compare import norms
 from core.assessment.sample_findings import Consistent
 from core.assessment.student_methods import ExplicitMidpoint, Heun, SemiImplicitEuler
 from core.errors import MechanicsError

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.assessment.compare import Floats, Reference, compare, tolerance_of
+from core.arrays import Floats
+from core.assessment.compare import Reference, compare, tolerance_of
 from core.assessment.comparisons import Comparison, Interval
 from core.assessment.propagation import Evaluate
 from core.errors import InvalidParameter, Path

@@ -8,7 +8,8 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from core.assessment.compare import Floats, norms
+from core.arrays import Floats
+from core.assessment.compare import norms
 from core.assessment.sample_findings import SampleErrors
 from core.errors import MechanicsError
 from core.rotation.torque_free import TorqueFree

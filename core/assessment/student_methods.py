@@ -12,10 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import Family
-from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
+from core.systems.system import VECTOR_FIELD, InitialValueProblem
 
 
 @kernel(steps_by(VECTOR_FIELD))

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats, Integers
 from core.errors import InvalidParameter, OpenMesh
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 def closed(vertices: Floats, faces: Integers) -> Integers:

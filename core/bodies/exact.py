@@ -10,11 +10,10 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.errors import InvalidParameter
 
-Floats = NDArray[np.float64]
 Vector = Sequence[Fraction]
 Matrix = Sequence[Sequence[Fraction]]
 

@@ -15,12 +15,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_add_d, dd_div, dd_mul, dd_sqrt, dd_sub
-
-Floats = NDArray[np.float64]
 
 _SWEEPS = 40
 # An off-diagonal component below this fraction of sqrt(|a_pp a_qq|) changes no eigenvalue by one part in 2^106.

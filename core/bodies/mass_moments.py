@@ -13,11 +13,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.exact import Matrix, Vector
-
-Floats = NDArray[np.float64]
 
 BITS = 4096
 UNRESOLVED = 1 << (BITS - 2000)

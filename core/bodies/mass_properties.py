@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.exact import (
     Matrix,
     Vector,
@@ -28,7 +28,6 @@ from core.notices import Notice
 
 __all__ = ["Condition", "MassProperties", "PrincipalInertia", "Symmetry", "Validity"]
 
-Floats = NDArray[np.float64]
 About = Literal["center-of-mass", "origin"]
 
 

@@ -8,8 +8,8 @@ from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.exact import SMALLEST, exact_matrix, exact_vector, tensor_pairs
 from core.bodies.mass_properties import About, MassProperties, diagonal
 from core.bodies.principal_inertia import EPSILON, summed
@@ -19,8 +19,6 @@ from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
 from core.quantities import InertiaComponent, Mass, MomentOfInertia, Position, Quantity, check
 from core.rows import Rows
-
-Floats = NDArray[np.float64]
 
 POSITIONS = Rows(3, Quantity("m"))
 MASSES = Rows(0, Quantity("kg", above=0))

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats, Integers
 from core.bodies.closed_surface import closed
 from core.bodies.mass_properties import MassProperties
 from core.bodies.principal_inertia import DERIVED, Rounding
@@ -21,9 +21,6 @@ from core.errors import InvalidParameter, UnphysicalInertia
 from core.notices import Notice
 from core.quantities import Quantity
 from core.rows import Rows
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 VERTICES = Rows(3, Quantity("m"), at_least=4)
 FACES = Rows(3, Quantity("1", at_least=0), at_least=4, whole=True)

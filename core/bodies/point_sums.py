@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_div, dd_mul, dd_mul_d, dd_sub
-
-Floats = NDArray[np.float64]
 
 
 @kernel()

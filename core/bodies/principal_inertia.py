@@ -9,12 +9,11 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.exact import Matrix, exact_matrix
 from core.errors import InvalidParameter
 
-Floats = NDArray[np.float64]
 Symmetry = Literal["spherical", "oblate", "prolate", "triaxial", "linear", "point"]
 
 EPSILON = 2.0**-52

@@ -9,12 +9,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties
 from core.bodies.principal_inertia import EPSILON, GIVEN, ROUNDED_ONCE, PrincipalInertia
-
-Floats = NDArray[np.float64]
 
 WIDER = 1.0 + 8.0 * EPSILON
 """For the rounding of the bounds themselves."""

@@ -15,16 +15,14 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.composite import Composite, moments_of
 from core.bodies.exact import rotation
 from core.bodies.mass_properties import MassProperties
 from core.bodies.measured import InertiaTensor, PointMasses
 from core.bodies.mesh import Mesh
 from core.bodies.uniform import Uniform
-
-Floats = NDArray[np.float64]
 
 STEP = Fraction(1, 2**30)
 """Relative step of the finite differences of solids, which are formed in rational arithmetic without cancellation."""

@@ -16,13 +16,10 @@ D. Eberly, "Polyhedral mass properties (revisited)", Geometric Tools (2002).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import Pair, dd_add, dd_mul, dd_sub
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 # Twice the relative error of the two products of a component of a cross product whose factors are differences.
 _PARALLEL = 2.0**-50

@@ -8,22 +8,22 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from core.arrays import Floats
 from core.balls import precision
 from core.errors import InvalidParameter, SlackAtStart
+from core.multibody.algebra.polynomials import BITS
 from core.multibody.answer import SceneAnswer
-from core.multibody.chains import has_chain
-from core.multibody.dynamics import forces_at_start, multipliers_at_start
-from core.multibody.equilibria import equilibria_of
-from core.multibody.language import Scene
-from core.multibody.modelling import modelled
-from core.multibody.occurrences import ExtremesOf, When, check_search
-from core.multibody.packed import Floats
-from core.multibody.phase_answer import THRESHOLDS, answer_in_phases
-from core.multibody.phases import one_sided
-from core.multibody.polynomials import BITS
+from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
+from core.multibody.language.scene import Scene
+from core.multibody.motion.modelling import modelled
+from core.multibody.phases.phase_answer import THRESHOLDS, answer_in_phases
+from core.multibody.phases.phases import one_sided
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
-from core.multibody.thresholds import RestOf, range_of_rest
-from core.multibody.trajectories import DescribedSystem, SceneRequest
+from core.multibody.statics.equilibria import equilibria_of
+from core.multibody.statics.thresholds import RestOf, range_of_rest
+from core.multibody.table.chains import has_chain
+from core.multibody.trajectory.occurrences import ExtremesOf, When, check_search
+from core.multibody.trajectory.trajectories import DescribedSystem, SceneRequest
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty, check_value
 from core.systems.budget import Budget

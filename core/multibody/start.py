@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.answer import BodyAcceleration, Energy, ForceAnswer, PartModel, SceneModel
-from core.multibody.description import Described
-from core.multibody.dynamics import ForceAtStart, Multipliers, kinetic, potential
-from core.multibody.modelling import Modelled
-from core.multibody.modes import Modes
-from core.multibody.periods import Periodic
-from core.multibody.polynomials import ZERO, Ball, is_zero
-from core.multibody.vertical_symmetry import Shifted, Steady
+from core.multibody.equations.dynamics import ForceAtStart, Multipliers, kinetic, potential
+from core.multibody.motion.modelling import Modelled
+from core.multibody.motion.modes import Modes
+from core.multibody.motion.periods import Periodic
+from core.multibody.motion.vertical_symmetry import Shifted, Steady
+from core.multibody.table.description import Described
 
 
 def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:

@@ -19,8 +19,9 @@ import math
 
 import numpy as np
 
+from core.arrays import Floats
 from core.compiled import kernel
-from core.systems.system import DISCRETE_STEP, Floats
+from core.systems.system import DISCRETE_STEP
 
 ITERATIONS = 50
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, Path
 from core.notices import Notice
@@ -16,7 +17,6 @@ from core.systems.error_statements import rest_of
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
 from core.systems.solve import checked_times, solve
-from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
 from core.work import spend
 

@@ -14,10 +14,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from core.arrays import Floats
 from core.bodies.exact import exact_vector, vector_pairs
 from core.bodies.principal_inertia import PrincipalInertia
 from core.notices import Notice
-from core.systems.system import Floats
 
 NEARLY_EQUAL = Notice(
     "moments-nearly-equal",

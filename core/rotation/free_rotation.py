@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from core.arrays import Floats
 from core.bodies.principal_inertia import PrincipalInertia
 from core.double_double import Scaled, dd_div
 from core.elliptic.functions import LARGEST_QUARTER
@@ -33,7 +34,7 @@ from core.rotation.regimes import model_of
 from core.rotation.stability.classification import unstable_spin
 from core.rotation.uncertainty.input_uncertainty import InputUncertainty, lost_after
 from core.rotation.uncertainty.sensitivities import COMPONENTS, Sensitivities, tensors_of_moments
-from core.systems.system import Floats, Model
+from core.systems.system import Model
 
 UNIT_ROUNDOFF = 2.0**-53
 

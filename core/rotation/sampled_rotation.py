@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.notices import Notice
@@ -21,7 +22,6 @@ from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits, rounded
 from core.systems.solve import solve
 from core.systems.state_motion import HALF_ULP
-from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
 
 Output = Literal["time", "angular_velocity", "attitude"]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties
 from core.bodies.sensitivities import tensor_sensitivities
 from core.compiled import kernel
@@ -22,7 +23,7 @@ from core.rotation.free_rotation import FreeRotation
 from core.rotation.stability.classification import unstable_axis
 from core.systems.question import MotionQuestion
 from core.systems.state_motion import state_motion
-from core.systems.system import PART_FLOW, VECTOR_FIELD, Floats, Model, Range, Splitting, Structure
+from core.systems.system import PART_FLOW, VECTOR_FIELD, Model, Range, Splitting, Structure
 from core.systems.trajectory import Trajectory
 
 PARTS = 3

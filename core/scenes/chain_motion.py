@@ -13,11 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
+from core.arrays import Floats
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, sign, square_root
 from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
 from core.scenes.quadratics import real_roots
-from core.systems.system import Floats, Model
+from core.systems.system import Model
 
 SMALLEST = 2.0**-1074
 NAMES = ("position", "velocity", "apex_tension")

@@ -18,18 +18,10 @@ from functools import cached_property
 
 import numpy as np
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.scenes.enclosure import ZERO, Ball
-from core.systems.system import (
-    PART_FLOW,
-    VECTOR_FIELD,
-    ClosedForm,
-    Floats,
-    Model,
-    Range,
-    Splitting,
-    Structure,
-)
+from core.systems.system import PART_FLOW, VECTOR_FIELD, ClosedForm, Model, Range, Splitting, Structure
 
 
 @kernel(VECTOR_FIELD)

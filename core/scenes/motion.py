@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from core.arrays import Floats
 from core.errors import InvalidParameter
 from core.notices import Notice
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, exact, sign
 from core.scenes.equation import SceneEquation
-from core.systems.system import Floats, Model
+from core.systems.system import Model
 from core.systems.trajectory import Column, MotionEvent
 from core.work import spend
 

@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, get_type_hints
 
 import numpy as np
 
+from core.arrays import Floats
 from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.notices import Notice
@@ -27,7 +28,7 @@ from core.systems.methods.method import AbstractMethod
 from core.systems.question import MotionQuestion
 from core.systems.rounding import Digits
 from core.systems.solve import as_requested, checked_times
-from core.systems.system import Floats, Model
+from core.systems.system import Model
 from core.systems.trajectory import HORIZON, Accuracy, Trajectory, Work
 from core.work import spend
 

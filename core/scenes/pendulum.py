@@ -21,13 +21,13 @@ from typing import Literal
 
 import numpy as np
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
 from core.elliptic.functions import LARGEST_QUARTER, jacobi_at, separatrix_at, split_phase
 from core.elliptic.lattice import Lattice, lattice
 from core.errors import AccuracyUnreachable
 from core.scenes.enclosure import ONE, UNIT_ROUNDOFF, ZERO, Ball, as_pair, exact, rf, sign, square_root
-from core.systems.system import Floats
 
 Regime = Literal["rest", "libration", "separatrix", "rotation"]
 

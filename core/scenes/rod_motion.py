@@ -19,12 +19,13 @@ from typing import Any
 
 import numpy as np
 
+from core.arrays import Floats
 from core.scenes.enclosure import UNIT_ROUNDOFF, ZERO, Ball, Balls, angle_of, exact, sign
 from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Samples, UnbrokenMotion, finite
 from core.scenes.pendulum import Pendulum
 from core.scenes.pendulum_in_balls import pendulum_in_balls
-from core.systems.system import Floats, Model
+from core.systems.system import Model
 
 WHY = {
     "rest": "the rod lies at the bottom",

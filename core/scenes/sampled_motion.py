@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.arrays import Floats, Integers
 from core.balls import precision
 from core.errors import InvalidParameter, NotApplicable, inside_field
 from core.scenes.enclosure import BITS
@@ -17,7 +18,6 @@ from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
 from core.systems.question import MotionQuestion
-from core.systems.system import Floats, Integers
 from core.systems.trajectory import Accuracy, Column, How, MotionEvent, Trajectory, Work
 
 _NOT_KNOWN = "what the uncertainty of the inputs does is not followed in this scene"

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from flint import arb
 
+from core.arrays import Floats
 from core.balls import Undetermined
 from core.errors import NotApplicable
 from core.notices import Notice
@@ -18,7 +19,7 @@ from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.motion import Event, Motion, Samples, finite
 from core.scenes.string_phases import Phase, Phases
 from core.scenes.string_state import State
-from core.systems.system import Floats, Model
+from core.systems.system import Model
 
 WHY = {"taut": "the string is taut", "slack": "the string is slack", "stick": "both shafts roll on the string's track"}
 FREEDOM = {"taut": 3, "slack": 4, "stick": 2}

@@ -20,8 +20,9 @@ from typing import Literal
 
 import numpy as np
 
+from core.arrays import Floats
 from core.errors import InvalidParameter
-from core.studies.study_input import Floats, StudyInput
+from core.studies.study_input import StudyInput
 
 Kind = Literal["product", "zip", "sobol", "random"]
 

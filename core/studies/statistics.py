@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
-from core.studies.study_input import Floats
+from core.arrays import Floats
 
 Statistic = Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]
 STATISTICS: tuple[Statistic, ...] = get_args(Statistic)

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.assessment.varied_input import LONGEST_WORD, MOST_TOGETHER, End, VariedInput
 from core.errors import InvalidParameter
 from core.quantities import Quantity, check
@@ -27,7 +28,6 @@ FARTHEST = 8.5
 
 Levels = Annotated[int, Quantity("1", at_least=1, at_most=MOST_LEVELS)]
 Deviation = Annotated[float, Quantity("1", above=0)]
-Floats = NDArray[np.float64]
 
 
 class Value:

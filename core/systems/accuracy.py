@@ -13,12 +13,13 @@ from functools import cache
 from importlib import resources
 from typing import NamedTuple
 
+from core.arrays import Floats
 from core.errors import AccuracyUnreachable
 from core.systems.budget import Budget
 from core.systems.error_statements import Errors, estimated, rest_of
 from core.systems.methods import DormandPrince853, Lsoda, Radau
 from core.systems.methods.method import AbstractMethod
-from core.systems.system import Floats, InitialValueProblem
+from core.systems.system import InitialValueProblem
 from core.systems.trajectory import Work
 
 CANDIDATES: dict[str, type[DormandPrince853 | Lsoda | Radau]] = {

@@ -14,11 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import types
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.errors import AccuracyUnreachable, BudgetExceeded, NotApplicable
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Integration
-from core.systems.system import ClosedForm, Floats, InitialValueProblem
+from core.systems.system import ClosedForm, InitialValueProblem
 
 SAFETY = 4.0
 """Factor between the estimate from a finer run and the error that is stated.

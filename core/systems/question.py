@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from core.arrays import Floats
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
-from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
 
 

@@ -12,8 +12,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from core.arrays import Floats
 from core.notices import Notice
-from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
 from core.work import spend
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from core.arrays import Floats
 from core.errors import BudgetExceeded, InvalidParameter
 from core.notices import Notice
 from core.quantities import Tolerance, Uncertainty, check_value
@@ -14,7 +15,6 @@ from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.question import MotionQuestion, System
 from core.systems.rounding import Digits, shortened
-from core.systems.system import Floats
 from core.systems.trajectory import Trajectory
 from core.work import spend
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.arrays import Floats
 from core.errors import (
     AccuracyUnreachable,
     BudgetExceeded,
@@ -26,7 +27,7 @@ from core.systems.error_statements import bound_of, drifts, estimated, known_nor
 from core.systems.methods import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod, Integration
 from core.systems.question import MotionQuestion
-from core.systems.system import ClosedForm, Floats, InitialValueProblem, Model
+from core.systems.system import ClosedForm, InitialValueProblem, Model
 from core.systems.trajectory import Accuracy, Column, Trajectory, Work
 
 HALF_ULP = 2.0**-53

@@ -6,14 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
-import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.compiled import kernel
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 VECTOR_FIELD = types.void(types.float64, types.float64[::1], types.float64[::1], types.float64[::1])
 """Signature of a compiled equation of motion: (time, state, parameters, derivative to be filled in)."""

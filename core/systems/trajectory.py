@@ -11,9 +11,10 @@ from typing import Literal
 
 import numpy as np
 
+from core.arrays import Floats, Integers
 from core.notices import Notice
 from core.quantities import Duration
-from core.systems.system import Floats, Integers, Model
+from core.systems.system import Model
 
 How = Literal["closed form", "measured against closed form", "measured against pairs", "estimate (finer run)"]
 """What a statement of error rests on: a bound; a difference with a bound added; the difference from a run in pairs of

@@ -7,7 +7,7 @@ from importlib import import_module
 gc.disable()
 
 # The server process begins with the methods at the same time. On empty caches, each compiles half and loads the rest.
-for compiling in ("core.elliptic.functions", "core.multibody.generic_equation", "core.rotation.torque_free"):
+for compiling in ("core.elliptic.functions", "core.multibody.motion.generic_equation", "core.rotation.torque_free"):
     import_module(compiling)
 
 from service.execution.worker import handler_of, terms_of  # noqa: E402

@@ -17,11 +17,12 @@ from pydantic import Field, SkipValidation, create_model
 
 from core.bodies import Body
 from core.errors import InvalidParameter, Path
-from core.multibody import connections, language
-from core.multibody.occurrences import MOST_FOUND, ExtremesOf, When
-from core.multibody.reading import scene_from, unknown_field
+from core.multibody.language import connections, scene
+from core.multibody.language.reading import scene_from, unknown_field
+from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene
 from core.multibody.solve import DEFAULT_OUTPUTS, Output
-from core.multibody.thresholds import RestOf
+from core.multibody.statics.thresholds import RestOf
+from core.multibody.trajectory.occurrences import MOST_FOUND, ExtremesOf, When
 from core.near_names import did_you_mean
 from core.quantities import Tolerance, Uncertainty
 from core.systems.methods import Method
@@ -76,13 +77,13 @@ def _by_core(hint: Any) -> Any:
 
 
 def _body_form() -> type[Request]:
-    hints = get_type_hints(language.SceneBody)
+    hints = get_type_hints(scene.SceneBody)
     own: dict[str, Any] = {
         entry.name: (_by_core(hints[entry.name]), ... if entry.default is MISSING and entry.name == "at" else None)
-        for entry in fields(language.SceneBody)
+        for entry in fields(scene.SceneBody)
     }
     own["body"] = (Body | None, None)
-    form: type[Request] = create_model("SceneBody", __base__=Request, __doc__=language.SceneBody.__doc__, **own)
+    form: type[Request] = create_model("SceneBody", __base__=Request, __doc__=scene.SceneBody.__doc__, **own)
     return form
 
 
@@ -108,10 +109,10 @@ def _connection_form() -> type[Request]:
 
 SceneBody: Any = _body_form()
 SceneConnection: Any = _connection_form()
-Gravity: Any = _by_core(get_type_hints(language.Scene)["gravity"])
-NamedNumbers: Any = _by_core(get_type_hints(language.Scene)["let"])
+Gravity: Any = _by_core(get_type_hints(Scene)["gravity"])
+NamedNumbers: Any = _by_core(get_type_hints(Scene)["let"])
 ConnectionReadByCore: Any = _by_core(SceneConnection)
-SCENE_FIELDS = tuple(entry.name for entry in fields(language.Scene))
+SCENE_FIELDS = tuple(entry.name for entry in fields(Scene))
 
 
 class WhenQuestion(Request):
@@ -159,9 +160,9 @@ class SceneDescription(Request):
         default=None, description="Acceleration of free fall (m/s^2), of two or three components; none if left out."
     )
     bodies: dict[str, SceneBody] = Field(
-        description=f"By name, at most {language.MOST_BODIES}. Names are letters, digits, - and _."
+        description=f"By name, at most {MOST_BODIES}. Names are letters, digits, - and _."
     )
-    connections: list[ConnectionReadByCore] = Field(default=[], description=f"At most {language.MOST_CONNECTIONS}.")
+    connections: list[ConnectionReadByCore] = Field(default=[], description=f"At most {MOST_CONNECTIONS}.")
     let: NamedNumbers = Field(
         default={}, description="Named numbers for formulas, each of which may use those before it."
     )
@@ -182,7 +183,7 @@ class SceneDescription(Request):
         read = {name: document[name] for name in ("gravity", "connections", "let") if name in document}
         return self.model_copy(update={**read, "bodies": bodies})
 
-    def scene(self) -> language.Scene:
+    def scene(self) -> Scene:
         """Return the scene, or raise `InvalidParameter`."""
         description = {name: getattr(self, name) for name in SCENE_FIELDS if name in self.model_fields_set}
         description["bodies"] = {

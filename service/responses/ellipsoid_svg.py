@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from service.responses.svg import COLOURS, heading, page
-
-Floats = NDArray[np.float64]
 
 AZIMUTH, ELEVATION = radians(32.0), radians(24.0)
 """Of the viewer, from the body's x axis about z, and above the plane of x and y."""

@@ -8,11 +8,9 @@ from html import escape
 from math import ceil, floor, log10
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from service.responses.svg import COLOURS, Tick, framed, heading, page, stroke
-
-Floats = NDArray[np.float64]
 
 LEFT, TOP, WIDTH, HEIGHT = 80.0, 50.0, 520.0, 260.0
 SQUARE = 520.0

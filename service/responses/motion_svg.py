@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.errors import InvalidParameter
 from service.responses.linear_svg import Line, Panel
 from service.responses.unit_text import unit_text
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

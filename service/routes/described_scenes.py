@@ -11,9 +11,9 @@ import numpy as np
 
 from core.errors import BudgetExceeded
 from core.multibody.answer import RestRange, SceneModel
-from core.multibody.generic_equation import weight_of
-from core.multibody.inherited import MOST_INPUTS
+from core.multibody.motion.generic_equation import weight_of
 from core.multibody.solve import OUTPUTS, solve_scene
+from core.multibody.trajectory.inherited import MOST_INPUTS
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.from_scipy import FromSciPy

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from core.arrays import Floats
 from core.errors import AccuracyUnreachable
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation
 from core.systems.rounding import ROUND_TRIP
-from core.systems.system import Floats
 from service.execution.cost_model import error_of, extreme
 from service.responses.json_rows import written
 from service.routing import Answer, PlanningProbe

@@ -11,8 +11,8 @@ from pydantic import Field
 
 from core.bodies import Body
 from core.errors import InvalidParameter, inside_field
-from core.multibody.generic_equation import weight_of
-from core.multibody.modelling import system_of
+from core.multibody.motion.generic_equation import weight_of
+from core.multibody.motion.modelling import system_of
 from core.notices import Notice
 from core.quantities import AngularVelocity, Tolerance
 from core.rotation.torque_free import TorqueFree

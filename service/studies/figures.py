@@ -6,14 +6,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from service.responses.linear_svg import Line, Panel, panels
 from service.responses.unit_text import unit_text
 from service.studies.grids import names
 from service.studies.results import Results
-
-Floats = NDArray[np.float64]
 
 MOST_CURVES = 9
 """Curves of a panel; of more levels of the second number, as many are drawn, evenly chosen, and the title says so."""

@@ -18,7 +18,7 @@ from benchmarks.contact_peers.observed import Step, figures
 from benchmarks.contact_peers.page import section, with_section
 from benchmarks.contact_peers.worker import ENGINES, OURS
 from benchmarks.machine import RESULTS
-from core.multibody.reading import scene_from
+from core.multibody.language.reading import scene_from
 
 ROOT = Path(__file__).parents[2]
 

@@ -15,7 +15,7 @@ from core.assessment.formulas import DOUBLES, Undefined, value_in_doubles
 from core.balls import precision
 from core.errors import InvalidParameter
 from core.formulas import DEEPEST, FUNCTIONS, LONGEST_FORMULA, Formula
-from core.multibody.numerals import BALLS
+from core.multibody.language.numerals import BALLS
 
 NAMES = {"M": 2.0, "g": 9.81, "alpha": 0.5, "a_1": 3.0, "pi_2": 7.0}
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
-from core.multibody.modelling import system_of
+from core.multibody.motion.modelling import system_of
 from core.systems.budget import Budget
 from core.systems.error_statements import known_norm, measured
 from core.systems.methods import (
@@ -22,7 +22,7 @@ from core.systems.methods import (
 )
 from core.systems.solve import solve
 from core.work_precision import Measurement, pareto_front, work_precision
-from tests.core.multibody.test_generic_equation import PENDULUM, PROJECTILE
+from tests.core.multibody.motion.test_generic_equation import PENDULUM, PROJECTILE
 from tests.core.multibody.worked_examples import read
 from tests.core.systems.systems import elliptic_functions, explosion, lorenz, prey_and_predator, stiff
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.multibody.reading import scene_from
+from core.multibody.language.reading import scene_from
 from core.multibody.solve import DEFAULT_OUTPUTS, solve_scene
 from service.routes.scene_catalogue import scene_catalogue
 

@@ -10,9 +10,9 @@ from functools import cached_property
 
 import numpy as np
 
+from core.arrays import Floats
 from core.certified.exact_inertia import ExactInertia
 from core.certified.free_rotation import CertifiedRotation
-from core.systems.system import Floats
 from tests.oracles.uncertain_bodies import Uncertain
 
 DIGITS = 50

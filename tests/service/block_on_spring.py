@@ -9,13 +9,14 @@ from typing import Annotated, Any, ClassVar, Generic, Literal
 
 import numpy as np
 
+from core.arrays import Floats
 from core.quantities import Length, Mass, Quantity, Unit, Velocity, check
 from core.scenes.enclosure import Ball, exact
 from core.scenes.equation import AcceleratedCoordinate, SceneEquation
 from core.scenes.figures import MechanicalEnergy, N, SceneExample, outputs_of
 from core.scenes.motion import UnbrokenMotion
 from core.scenes.named_scene import NamedScene
-from core.systems.system import Floats, Model
+from core.systems.system import Model
 from service.routes import questions
 from service.routes.scenes import members
 from service.routing import PostRoute

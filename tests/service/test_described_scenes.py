@@ -13,7 +13,7 @@ import httpx
 import numpy as np
 import pytest
 
-from core.multibody.language import MOST_BODIES, MOST_CONNECTIONS
+from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS
 from core.systems.budget import Budget
 from core.work import work_limit
 from service.requests.described_scene import DescribedSceneRequest

@@ -7,14 +7,13 @@ from math import pi, sqrt, tan
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.assessment.mistakes import Figure, Mistake
 
 PRECESSION, TRAJECTORY, WOBBLE, STABILITY = (
     f"rotation/{name}" for name in ("precession", "trajectory", "wobble", "stability")
 )
-Floats = NDArray[np.float64]
 TIME_SCALES = (60.0, 1.0 / 60.0, 1e3, 1e-3, 2.0 * pi, 0.5 / pi, 2.0, 0.5)
 """Factors of times that are in another unit, or by which a rate is wrong."""
 

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import PI, Scaled, dd_div, sc_add, sc_mul, sc_sqrt, scaled
 from core.elliptic.functions import LARGEST_QUARTER
@@ -19,7 +20,6 @@ from core.rotation.closed_form.circulation import PERIODIC, REST, STEADY
 from core.rotation.free_rotation import SET_UP_ROUNDING, UNIT_ROUNDOFF, FreeRotation
 from core.rotation.precession.constants import PrecessionConstants, angle_per_period, precession_constants
 from core.rotation.uncertainty.input_uncertainty import WHOLE_TURN, lost_after
-from core.systems.system import Floats
 
 ATTITUDE_ERROR = 14.0 * UNIT_ROUNDOFF
 """Bound of the error of one attitude, as the largest change of a unit vector that it turns.

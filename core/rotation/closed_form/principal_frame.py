@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.principal_inertia import RESOLUTION, PrincipalInertia
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
-from core.systems.system import Floats
 
 
 @kernel()

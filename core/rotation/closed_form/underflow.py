@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from core.arrays import Floats
 from core.rotation.closed_form.circulation import SEPARATRIX
 from core.rotation.closed_form.constants_of_motion import Motion
-from core.systems.system import Floats
 
 UNDERFLOW = 2.0**-1070
 """What samples, and the tails of moments and components, lose in all where they are below the normal doubles."""

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.principal_inertia import EQUAL, ZEROS
 from core.bodies.validity import TOLERANCE
 from core.compiled import kernel
@@ -22,7 +23,6 @@ from core.rotation.closed_form.circulation import PERIODIC
 from core.rotation.closed_form.principal_frame import resolve
 from core.rotation.precession.figures import precession_figures
 from core.rotation.precession.middle_axis import swing
-from core.systems.system import Floats
 
 NUMBERS = 9
 """Figures of a precession, in the order of `core.rotation.precession.precession.FIGURES`."""

@@ -12,6 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
+from core.arrays import Floats
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, MechanicsError
 from core.quantities import Duration, Quantity, Unit, check
 from core.rotation.free_rotation import FreeRotation
@@ -19,7 +20,6 @@ from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.error_statements import bound_of, drifts, measured
 from core.systems.methods import Method
-from core.systems.system import Floats
 from core.systems.trajectory import Work
 from core.work import spend
 

@@ -31,6 +31,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties, Symmetry
 from core.errors import InvalidParameter
 from core.notices import Notice
@@ -51,7 +52,6 @@ from core.rotation.precession.figures import OUT_OF_RANGE, UNRESOLVED, precessio
 from core.rotation.precession.middle_axis import middle_axis_tilt
 from core.rotation.stability.classification import unstable_axis, unstable_spin
 from core.rotation.torque_free import inherited_notices
-from core.systems.system import Floats
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
 Absent = Mapping[str, str]

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties, PrincipalInertia, Symmetry
 from core.bodies.principal_inertia import ROUNDED_ONCE
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
@@ -27,7 +28,6 @@ from core.rotation.precession.figures import OUT_OF_RANGE, oriented
 from core.rotation.stability.classification import REST, Attitude, Kind, classify_equilibrium
 from core.rotation.stability.linearised import LinearRates, linear_rates
 from core.rotation.torque_free import inherited_notices
-from core.systems.system import Floats
 
 Eigenvalue = tuple[float, float]
 

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.closed_form.principal_frame import PrincipalFrame
-from core.systems.system import Floats
 from core.work import spend
 
 Faces = NDArray[np.int64]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties
 from core.errors import BudgetExceeded, InvalidParameter
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
-from core.systems.system import Floats
 from core.work import spend
 
 MOST = 1_000_000

@@ -19,6 +19,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from core.arrays import Floats
 from core.bodies.mass_properties import MassProperties, PrincipalInertia
 from core.double_double import Scaled, sc_div, sc_mul, sc_pair, sc_sqrt, scaled
 from core.errors import BudgetExceeded, InvalidParameter
@@ -26,7 +27,6 @@ from core.rotation.closed_form.circulation import REST, SEPARATRIX, STEADY
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession.figures import OUT_OF_RANGE, stated
 from core.rotation.surfaces.energy_surface import EnergyEllipsoid
-from core.systems.system import Floats
 from core.work import spend
 
 MOST_POINTS = 100_000

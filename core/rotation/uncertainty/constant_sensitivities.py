@@ -16,13 +16,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from core.arrays import Floats
 from core.compiled import kernel
 from core.elliptic.integrals import one_less_e_over_k
-
-Floats = NDArray[np.float64]
 
 (
     AMPLITUDE_C, AMPLITUDE_B, AMPLITUDE_D, PHASE, RATE, FREQUENCY, MODULUS, START_A, START_B, START_C, FORCE,

@@ -11,16 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
 from core.rotation.closed_form.circulation import SEPARATRIX, STEADY
 from core.rotation.closed_form.constants_of_motion import Motion
 from core.rotation.uncertainty import constant_sensitivities as at
 from core.rotation.uncertainty.phase_sensitivities import largest_until
 from core.rotation.uncertainty.sensitivities import FIRST_ORDER, Sensitivities
-
-Floats = NDArray[np.float64]
 
 WHOLE_TURN = math.pi
 """An error of the attitude, as the angle (rad) of the turn that takes one attitude to the other, is never larger."""

@@ -15,11 +15,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.compiled import kernel
-
-Floats = NDArray[np.float64]
 
 STEPS = 32
 """Phases to either side of the start, over half a period."""

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.rotation.closed_form.circulation import PERIODIC, SEPARATRIX, STEADY
 from core.rotation.closed_form.constants_of_motion import Motion
 from core.rotation.uncertainty import constant_sensitivities as at
 from core.rotation.uncertainty.phase_sensitivities import LARGEST_MODULUS, phase_errors
 from core.rotation.uncertainty.projected_sensitivities import given_moment_sensitivities, projected_sensitivities
-
-Floats = NDArray[np.float64]
 
 FIRST_ORDER = 0.1
 """Beyond this a first derivative no longer bounds an error, or the relative change of a constant."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from core.arrays import Floats
 from core.errors import NotApplicable
 from core.quantities import check
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Family, Integration
-from core.systems.system import Floats, InitialValueProblem
+from core.systems.system import InitialValueProblem
 from core.systems.trajectory import Work
 from core.work import spend
 

@@ -15,13 +15,14 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import two_sum
 from core.errors import NotApplicable
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
-from core.systems.system import DISCRETE_STEP, Floats, InitialValueProblem, Integers
+from core.systems.system import DISCRETE_STEP, InitialValueProblem
 
 
 @kernel(steps_by(DISCRETE_STEP))

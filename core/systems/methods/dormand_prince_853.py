@@ -26,6 +26,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from numba import types
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import two_sum
 from core.errors import InvalidParameter
@@ -34,7 +35,7 @@ from core.systems.methods.dormand_prince_tableau import ERROR_3 as E3
 from core.systems.methods.dormand_prince_tableau import ERROR_5 as E5
 from core.systems.methods.dormand_prince_tableau import INTERPOLANT, STAGES, A, B, C
 from core.systems.methods.method import PROJECTED, Family, Leg, Marching, Units
-from core.systems.system import PROJECTION, VECTOR_FIELD, Floats, InitialValueProblem, Integers, unconstrained
+from core.systems.system import PROJECTION, VECTOR_FIELD, InitialValueProblem, unconstrained
 
 SMALLEST_TOLERANCE = 1e-16
 """Below this the estimate sees nothing but round-off; the samples stop improving from about 1e-15 on."""

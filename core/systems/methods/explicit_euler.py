@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import ONE_STEP, FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family
-from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
+from core.systems.system import VECTOR_FIELD, InitialValueProblem
 
 
 @kernel(steps_by(VECTOR_FIELD))

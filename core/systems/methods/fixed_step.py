@@ -23,21 +23,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numba import types
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import two_prod
 from core.errors import InvalidParameter
 from core.quantities import Duration
 from core.systems.methods.method import Leg, Marching, Units
-from core.systems.system import (
-    DISCRETE_STEP,
-    PART_FLOW,
-    PROJECTION,
-    VECTOR_FIELD,
-    Floats,
-    InitialValueProblem,
-    Integers,
-    unconstrained,
-)
+from core.systems.system import DISCRETE_STEP, PART_FLOW, PROJECTION, VECTOR_FIELD, InitialValueProblem, unconstrained
 
 _doubles = types.float64[::1]
 _integers = types.int64[::1]

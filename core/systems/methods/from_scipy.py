@@ -18,10 +18,11 @@ from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 
+from core.arrays import Floats
 from core.errors import InvalidParameter
 from core.quantities import Quantity
 from core.systems.methods.method import Leg, Marching, Units
-from core.systems.system import Floats, InitialValueProblem
+from core.systems.system import InitialValueProblem
 
 SMALLEST_TOLERANCE = 2.3e-14
 """SciPy works with no relative tolerance below 100 units of round-off."""

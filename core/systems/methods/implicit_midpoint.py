@@ -15,12 +15,13 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.double_double import two_sum
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import NO_CONVERGENCE, OUT_OF_BUDGET, FixedStep, steps_by
 from core.systems.methods.method import PROJECTED, Family, Invariance
-from core.systems.system import VECTOR_FIELD, Floats, InitialValueProblem, Integers
+from core.systems.system import VECTOR_FIELD, InitialValueProblem
 
 ITERATIONS = 100
 

@@ -10,10 +10,11 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from numba import types
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.systems.budget import Budget
-from core.systems.system import PROJECTION, Floats, InitialValueProblem, unconstrained
+from core.systems.system import PROJECTION, InitialValueProblem, unconstrained
 from core.systems.trajectory import Work
 from core.work import WorkLimitReached, remaining, spend
 

@@ -12,12 +12,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+from core.arrays import Floats, Integers
 from core.compiled import kernel
 from core.errors import NotApplicable
 from core.quantities import Duration, check
 from core.systems.methods.fixed_step import FixedStep, steps_by
 from core.systems.methods.method import Family, Invariance
-from core.systems.system import PART_FLOW, Floats, InitialValueProblem, Integers, Splitting
+from core.systems.system import PART_FLOW, InitialValueProblem, Splitting
 
 
 @kernel(steps_by(PART_FLOW))

@@ -21,7 +21,7 @@ from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncert
 from core.assessment.results import reference_views, submission_view
 from core.errors import InvalidParameter, Path
 from core.formulas import is_name
-from core.multibody.numerals import member
+from core.multibody.language.numerals import member
 from core.notices import Notice
 from core.quantities import Quantity, Uncertainty
 from core.systems.budget import Budget

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from core.certified.adaptive_precision import check_digits
-from core.multibody.proven_answer import PROVEN_OUTPUTS, proven_answer
+from core.multibody.proven.proven_answer import PROVEN_OUTPUTS, proven_answer
 from core.systems.budget import Budget
 from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants
 from service.requests.described_scene import SceneDescription

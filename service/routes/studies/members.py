@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.assessment.figures import steps_of, value_at
 from core.assessment.propagation import changed
 from core.errors import MechanicsError, Path
-from core.studies.study_input import Floats
 from service.problems import code_of
 from service.routes.assessments.route_source import Refused, RouteSource
 from service.routing import Answer, Columns

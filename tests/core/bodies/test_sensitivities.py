@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from core.arrays import Floats
 from core.bodies.composite import Composite, Part
 from core.bodies.measured import InertiaTensor, PointMasses
 from core.bodies.mesh import Mesh
 from core.bodies.sensitivities import tensor_sensitivities
 from core.bodies.solids import Ball, Cone, Cuboid, Torus
-from core.systems.system import Floats
 from tests.oracles.uncertain_bodies import FACES, KINDS, REGIMES, uncertain
 
 STEP = Fraction(1, 10**12)

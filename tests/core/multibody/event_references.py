@@ -23,7 +23,7 @@ from typing import Any
 import mpmath
 from mpmath import mpf
 
-from core.multibody.reading import scene_from
+from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
 from core.systems.trajectory import MotionEvent
 

@@ -17,18 +17,19 @@ from typing import Any
 
 import numpy as np
 
+from core.arrays import Floats
 from core.balls import precision
 from core.double_double import dd_sub
 from core.errors import MechanicsError, NotApplicable
-from core.multibody.assembly import assemble_places, assemble_rates
-from core.multibody.description import described
-from core.multibody.dynamics import accelerations, parts, restricted
-from core.multibody.numerical import Numerical
-from core.multibody.packed import Floats, state, two_to
-from core.multibody.passes import reduced
-from core.multibody.polynomials import BITS
-from core.multibody.series import DONE, FULL
-from core.multibody.series_pairs import advance_pairs, moved_pairs
+from core.multibody.algebra.polynomials import BITS
+from core.multibody.equations.assembly import assemble_places, assemble_rates
+from core.multibody.equations.dynamics import accelerations, parts, restricted
+from core.multibody.equations.packed import state, two_to
+from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.series import DONE, FULL
+from core.multibody.motion.series_pairs import advance_pairs, moved_pairs
+from core.multibody.reduction.passes import reduced
+from core.multibody.table.description import described
 from tests.core.multibody.random_scenes import any_scene, attracted_or_rolling
 from tests.core.multibody.worked_examples import read
 

@@ -11,7 +11,7 @@ import pytest
 
 from core.balls import precision
 from core.errors import AccuracyUnreachable, BudgetExceeded, InvalidParameter, NotApplicable
-from core.multibody.polynomials import BITS
+from core.multibody.algebra.polynomials import BITS
 from core.multibody.solve import solve_scene
 from core.scenes.unwinding_shafts import UnwindingShafts
 from tests.core.multibody.oracles import integrated

@@ -6,8 +6,8 @@ import json
 from typing import Any
 
 from core.multibody.answer import SceneAnswer
-from core.multibody.language import Scene
-from core.multibody.reading import scene_from
+from core.multibody.language.reading import scene_from
+from core.multibody.language.scene import Scene
 
 MASSIVE_PULLEY = """{"gravity":[0,-9.81],"bodies":{"a":{"mass":1,"at":[-0.1,-1]},"b":{"mass":2,"at":[0.1,-1]},
 "wheel":{"mass":0.5,"radius":0.1,"inertia":0.0025,"at":[0,0]}},"connections":[{"kind":"pin","a":"wheel","b":[0,0]},

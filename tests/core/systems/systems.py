@@ -10,20 +10,11 @@ from typing import Any
 import numpy as np
 from scipy.special import ellipj
 
+from core.arrays import Floats
 from core.compiled import kernel
 from core.systems.question import MotionQuestion
 from core.systems.state_motion import state_motion
-from core.systems.system import (
-    DISCRETE_STEP,
-    PART_FLOW,
-    VECTOR_FIELD,
-    ClosedForm,
-    Floats,
-    Model,
-    Range,
-    Splitting,
-    Structure,
-)
+from core.systems.system import DISCRETE_STEP, PART_FLOW, VECTOR_FIELD, ClosedForm, Model, Range, Splitting, Structure
 from core.systems.trajectory import Trajectory
 
 MODEL = Model("test system", "regular", "the test asks for it", 1)

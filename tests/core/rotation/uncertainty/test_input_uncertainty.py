@@ -12,6 +12,7 @@ from hypothesis import assume, example, settings
 from hypothesis import given as drawn
 from hypothesis import strategies as st
 
+from core.arrays import Floats
 from core.bodies.mass_properties import diagonal
 from core.bodies.measured import InertiaTensor, PointMasses, PrincipalMoments
 from core.bodies.solids import Cylinder
@@ -21,7 +22,6 @@ from core.rotation.free_rotation import FreeRotation
 from core.rotation.torque_free import TorqueFree
 from core.rotation.uncertainty.sensitivities import growth_factor
 from core.systems.solve import solve
-from core.systems.system import Floats
 from tests.oracles.cases import T_HANDLE
 from tests.oracles.perturbed import ATTITUDE, Perturbed
 from tests.oracles.uncertain_bodies import KINDS, REGIMES, Uncertain, of_moments, of_points, uncertain

@@ -1,0 +1,44 @@
+"""Unit vectors along a direction that a description gives and across it, and the cross product, in balls."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.errors import InvalidParameter, Path
+from core.multibody.algebra.polynomials import ONE, Ball, is_zero
+
+
+def unit(vector: Sequence[Ball], path: Path) -> list[Ball]:
+    """Return a vector over its length.
+
+    Raises
+    ------
+    InvalidParameter
+        If it has none.
+    """
+    square = sum((x * x for x in vector), ONE - ONE)
+    if not square > 0:
+        raise InvalidParameter(path, "have a direction: not all zero")
+    # A vector along an axis stays exactly along it.
+    single = [i for i, x in enumerate(vector) if not is_zero(x)]
+    if len(single) == 1:
+        positive = vector[single[0]] > 0
+        return [(ONE if positive else -ONE) if i == single[0] else ONE - ONE for i in range(len(vector))]
+    size = square.sqrt()
+    return [x / size for x in vector]
+
+
+def perpendicular(along: Sequence[Ball], path: Path) -> list[list[Ball]]:
+    """Return the unit vectors that complete a direction: one in the plane, two in space."""
+    t = unit(along, path)
+    if len(t) == 2:
+        return [[-t[1], t[0]]]
+    k = min(range(3), key=lambda i: abs(float(t[i])))
+    e = [ONE if i == k else ONE - ONE for i in range(3)]
+    first = unit(cross(t, e), path)
+    return [first, cross(t, first)]
+
+
+def cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
+    """Return the cross product a x b of two vectors with three components."""
+    return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]

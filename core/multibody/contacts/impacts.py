@@ -1,0 +1,283 @@
+"""Impacts: Newton's law of restitution, with impulses of friction.
+
+Where more than one contact takes an impulse, rigid bodies do not say whether they do so together or one after another:
+all orders are tried, and if they disagree the outcome is undecided unless the client orders them.
+
+References
+----------
+T. R. Kane, "A dynamics puzzle" (1984): with friction, Newton's law may add energy; such an outcome is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import permutations
+
+from flint import arb, arb_mat
+
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.contacts.contact_responses import (
+    Forces,
+    Responses,
+    across_rate,
+    gap_rate,
+    require_few,
+    responses,
+    slip_rate,
+)
+from core.multibody.contacts.contact_states import Problem, phase_table
+from core.multibody.contacts.impulses import LIMIT, Rates, alike, impulses_at_once, likest, rates_after
+from core.multibody.contacts.slip_directions import along_slip
+from core.multibody.equations.dynamics import kinetic
+from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.table import Table
+
+_MOST_IN_TURN = 400
+"""Impacts one after another before an order is given up."""
+_MOST_ORDERED = 4
+"""Contacts of which every order is tried."""
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What happens at an impact.
+
+    Attributes
+    ----------
+    v : list of ball
+        Rates afterwards.
+    impulses : mapping of int to (ball, ball, ball)
+        Of every measure that takes one: along its gap, and along its slip, of which there are two in space.
+    works : mapping of int to ball
+        Of these impulses (J): they add up to the change of kinetic energy.
+    unilateral : sequence of Unilateral
+        The measures, those that slip in space turned into the direction in which they did.
+    change : list of ball
+        Of all rates.
+    together : bool
+        Whether several take impulses at once.
+    shared : set of int
+        Measures of which other impulses have the same outcome: friction of places that stick side by side.
+    """
+
+    v: list[Ball]
+    impulses: dict[int, tuple[Ball, Ball, Ball]]
+    works: dict[int, Ball]
+    unilateral: Sequence[Unilateral]
+    change: list[Ball]
+    together: bool = False
+    shared: set[int] = field(default_factory=set)
+
+
+@dataclass(frozen=True)
+class _Outcome:
+    """Impulses by line, and the work of each measure that gives them."""
+
+    impulses: Forces
+    works: dict[int, Ball]
+
+
+def _outcome(group: Sequence[int], impulses: Forces, rates: Rates, found: Responses) -> _Outcome:
+    """Return impulses at once with their works: each times the mean of its rates before and after.
+
+    References
+    ----------
+    W. Thomson, P. G. Tait, "Treatise on Natural Philosophy" (1867), section 309.
+    """
+    after, works = rates_after(impulses, rates, found), {}
+    for i in group:
+        lines = [found.normal[i], *found.grip(i)]
+        work = sum((impulses[a] * (rates[a] + after[a]) / 2 for a in lines if a in impulses), ZERO)
+        works[i] = ZERO if is_zero(work) else work
+    return _Outcome(impulses, works)
+
+
+def approaching(unilateral: Sequence[Unilateral], touching: Sequence[int], q: list[Ball], v: list[Ball]) -> list[int]:
+    """Return the touching measures whose gaps would become negative."""
+    rates = {i: gap_rate(unilateral[i], q, v) for i in touching}
+    return [i for i, x in rates.items() if not is_zero(x) and x < 0]
+
+
+def impact(
+    base: Table,
+    measures: Sequence[Unilateral],
+    touching: Sequence[int],
+    q: list[Ball],
+    v: list[Ball],
+    *,
+    settled: Impact | None = None,
+) -> Impact | Problem:
+    """Return the outcome of an impact of the touching measures, or why it is undecided.
+
+    If it is `settled` which outcome is the only possible one, as far as the state is known, its like is returned.
+
+    Raises
+    ------
+    BudgetExceeded
+        For more than eight touching contacts that push one another.
+    """
+    table = phase_table(base, (), (), q, v).table
+    unilateral = along_slip(measures, touching, q, v)
+    found = responses(table, unilateral, touching)
+    normal, slips, across = found.normal, found.slips, found.across
+    before = kinetic(table)
+    after, impulses, works, together = list(v), {}, {}, False
+    shared: set[int] = set()
+    for group in found.clusters():
+        if not approaching(unilateral, group, q, v):
+            continue
+        require_few(unilateral, group, "contacts in one impact")
+        outcome = _group(unilateral, group, q, v, found, settled=settled)
+        if isinstance(outcome, Problem):
+            return outcome
+        works.update(outcome.works)
+        for b, x in outcome.impulses.items():
+            if x != 0:
+                after = [a + x * y for a, y in zip(after, found.columns[b], strict=True)]
+        taking = [i for i in group if outcome.impulses.get(normal[i], ZERO) != 0]
+        together = together or len(taking) > 1
+        if len(taking) > 1 and _shares(unilateral, taking, q, after, found):
+            shared.update(taking)
+        rubs = [[outcome.impulses.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
+        impulses.update({i: (outcome.impulses[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
+    loss = before - kinetic(replace(table, v=after))
+    if not is_zero(loss) and loss < 0 and settled is None:
+        return Problem(
+            "energy-gain",
+            f"Newton's law of restitution with friction would add {float(-loss):.6g} J to the motion",
+            tuple(unilateral[i].name for i in impulses),
+            decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
+        )
+    change = [x - y for x, y in zip(after, v, strict=True)]
+    return Impact(after, impulses, works, unilateral, change, together, shared)
+
+
+def _shares(
+    unilateral: Sequence[Unilateral], taking: Sequence[int], q: list[Ball], after: list[Ball], found: Responses
+) -> bool:
+    """Return whether contacts that stick after an impact could share its impulses otherwise."""
+    if not any(unilateral[i].slips and is_zero(slip_rate(unilateral[i], q, after)) for i in taking):
+        return False
+    lines = [line for i in taking for line in (found.normal[i], *found.grip(i))]
+    return bool(arb_mat([[found.matrix[a][b] for b in lines] for a in lines]).det().contains(0))
+
+
+def _group(
+    unilateral: Sequence[Unilateral],
+    group: Sequence[int],
+    q: list[Ball],
+    v: list[Ball],
+    found: Responses,
+    *,
+    settled: Impact | None,
+) -> _Outcome | Problem:
+    """Return the impulses of contacts that push one another, or why they are undecided."""
+    normal = found.normal
+    rates = {a: ZERO if is_zero(x) else x for a, x in _rates(unilateral, group, q, v, found).items()}
+    names = tuple(unilateral[i].name for i in group)
+    given = [i for i in group if unilateral[i].order is not None]
+    if len(given) == len(group) > 1:
+        ordered = sorted(given, key=lambda i: (float(unilateral[i].order or ZERO), i))
+        in_turn = _in_turn(unilateral, ordered, rates, found)
+        return in_turn if in_turn is not None else _endless(names)
+    if settled is not None:
+        return _outcome(group, likest(unilateral, group, rates, settled.change, found), rates, found)
+    impulses = impulses_at_once(unilateral, group, rates, found)
+    if isinstance(impulses, Problem):
+        return impulses
+    at_once = _outcome(group, impulses, rates, found)
+    taking = [i for i in group if impulses.get(normal[i], ZERO) != 0]
+    # A taut string passes on what pulls it at once.
+    apart = [i for i in taking if rates[normal[i]] != 0 or unilateral[i].closes != "taut"]
+    if len(apart) <= 1 and sum(rates[normal[i]] < 0 for i in group) <= 1:
+        return at_once
+    outcomes: list[tuple[str, Forces]] = [("together", impulses)]
+    if len(group) <= _MOST_ORDERED:
+        middle = _without_width(rates, found)
+        for order in permutations(group):
+            in_turn = _in_turn(unilateral, order, *middle)
+            if in_turn is not None:
+                outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn.impulses))
+    first = rates_after(impulses, rates, found)
+    in_order = [rates_after(one, rates, found) for _, one in outcomes[1:]]
+    if len(group) <= _MOST_ORDERED and all(alike(first, then, rates) for then in in_order):
+        return at_once
+    different: list[tuple[str, Rates]] = []
+    for told, one in outcomes:
+        then = rates_after(one, rates, found)
+        if not any(alike(then, other, rates) for _, other in different):
+            different.append((told, then))
+    return Problem(
+        "simultaneous-impacts",
+        "several contacts take impulses at once, and rigid bodies do not say in which order",
+        names,
+        tuple(
+            {"order": told} | {unilateral[i].name: _told(unilateral[i], normal[i], then) for i in group}
+            for told, then in different
+        ),
+        'the order in which they happen, as "order" of the contacts',
+    )
+
+
+def _without_width(rates: Rates, found: Responses) -> tuple[Rates, Responses]:
+    """Return the middle of what is known of rates and responses.
+
+    Impacts in turn may come to their outcome as a limit only, while the width of balls grows with every one of them: it
+    would hide what is left before the limit is reached.
+    """
+    matrix = [[ZERO if is_zero(x) else arb(x.mid()) for x in line] for line in found.matrix]
+    return {a: arb(x.mid()) for a, x in rates.items()}, replace(found, matrix=matrix)
+
+
+def _rates(
+    unilateral: Sequence[Unilateral], group: Sequence[int], q: list[Ball], v: list[Ball], found: Responses
+) -> Rates:
+    """Return the rates along all lines of a group."""
+    rates: Rates = {}
+    for i in group:
+        one = unilateral[i]
+        lines = [found.normal[i], *found.grip(i)]
+        rates.update(zip(lines, (gap_rate(one, q, v), slip_rate(one, q, v), across_rate(one, q, v)), strict=False))
+    return rates
+
+
+def _told(one: Unilateral, line: int, after: Rates) -> str:
+    """Return in words how a gap changes after an impact; what is left of a zero by rounding is zero."""
+    rate = float(after[line])
+    if abs(rate) <= LIMIT * max(abs(float(x)) for x in after.values()):
+        return "stays closed"
+    return f"opens at {rate:.10g} {'rad/s' if one.unit == 'N m' else 'm/s'}"
+
+
+def _endless(names: tuple[str, ...]) -> Problem:
+    return Problem("simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order")
+
+
+def _in_turn(
+    unilateral: Sequence[Unilateral],
+    order: Sequence[int],
+    rates: Rates,
+    found: Responses,
+) -> _Outcome | None:
+    """Return the sum of the impulses if the first that approaches always comes first; None if that does not end."""
+    total: Forces = {}
+    works: dict[int, Ball] = {}
+    normal = found.normal
+    now = dict(rates)
+    # Impacts that only come ever nearer to an end have come to it here.
+    least = LIMIT * max((float(abs(x)) for x in rates.values()), default=0.0) * 2.0**-24
+    for _ in range(_MOST_IN_TURN):
+        hit = next((i for i in order if now[normal[i]] < -least), None)
+        if hit is None:
+            return _Outcome(total, works)
+        one = impulses_at_once(unilateral, [hit], now, found)
+        if isinstance(one, Problem):
+            return None
+        work = _outcome([hit], one, now, found).works[hit] + works.get(hit, ZERO)
+        works[hit] = ZERO if is_zero(work) else work
+        for b, x in one.items():
+            total[b] = total.get(b, ZERO) + x
+        now = rates_after(total, rates, found)
+        now = {a: ZERO if is_zero(x) else x for a, x in now.items()}
+    return None

@@ -1,0 +1,43 @@
+"""A state put onto the measures and rates of a table, in balls: rows hold as they would in exact numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from flint import arb
+
+from core.multibody.algebra.polynomials import Ball, evaluated
+from core.multibody.algebra.rank import independent
+from core.multibody.contacts.contact_responses import rate_along
+from core.multibody.equations.assembly import least_change
+from core.multibody.table.table import Table
+
+_ROUNDS = 3
+"""Of Newton's method, from a state that is right to a pair of doubles at least."""
+HELD = 2.0**-240
+"""Share of the largest coordinate to which a state is put onto its rows."""
+
+
+def project(table: Table, around: Sequence[Ball]) -> None:
+    """Put the state of a table onto its rows, by the least change: places first, then rates at the new places.
+
+    Rows are redundant if they are within `around`, the places with the width to which they are known: beside the
+    measures, redundant rows differ by what the places miss, and a change that undoes both has no bound.
+    """
+    held = [row for row in table.rows if row.measure is not None]
+    chosen = independent(row.line(around) for row in held)
+    for _ in range(_ROUNDS):
+        lines = [held[i].line(table.q) for i in chosen]
+        residuals = [arb(evaluated(held[i].measure or {}, table.q).mid()) for i in chosen]
+        step = least_change(table, lines, residuals)
+        table.q = [arb((q - d).mid()) for q, d in zip(table.q, step, strict=True)]
+    chosen = independent(row.line(around) for row in table.rows)
+    lines = [row.line(table.q) for row in table.rows]
+    for _ in range(_ROUNDS):
+        residuals = [rate_along(lines[i], table.v) - table.rows[i].rate for i in chosen]
+        step = least_change(table, [lines[i] for i in chosen], residuals)
+        table.v = [arb((v - d).mid()) for v, d in zip(table.v, step, strict=True)]
+    # What is left over is far below this: rows hold, and squares complete, as they would in exact numbers.
+    for vector in (table.q, table.v):
+        scale = max((abs(float(x)) for x in vector), default=0.0)
+        vector[:] = [arb(x.mid(), HELD * scale) for x in vector]

@@ -1,0 +1,170 @@
+"""The state at the start: positions that meet every measure, velocities that meet every connection."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from flint import arb, arb_mat
+
+from core.errors import InvalidParameter, NotApplicable, Path
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
+from core.multibody.algebra.rank import Elimination, Line, independent
+from core.multibody.table.frames import Given
+from core.multibody.table.measures import CLOSE
+from core.multibody.table.table import Row, Table
+
+CLOSE_RATE = 1e-9
+_ROUNDS = 40
+
+
+def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
+    """Move the coordinates onto the measures, as little as possible; return what had to be moved.
+
+    Newton's method in balls on W W^T. A position that is right to the precision of balls is not touched.
+
+    Raises
+    ------
+    InvalidParameter
+        If the positions contradict a connection by more than rounding, with the connection and by how much.
+    """
+    rows = [row for row in table.rows if row.measure is not None]
+    residuals = [evaluated(row.measure or {}, table.q) for row in rows]
+    if all(is_zero(x) for x in residuals):
+        return []
+    moved: list[str] = []
+    for row, residual in zip(rows, residuals, strict=True):
+        if is_zero(residual):
+            continue
+        scale = size(row.measure or {}, table.q)
+        if not abs(residual) < CLOSE * scale:
+            raise InvalidParameter(
+                paths.get(row.name, ()),
+                f'agree with the positions: "{row.name}" misses them by {float(abs(residual)):.3g}'
+                f" ({float(abs(residual) / scale):.2g} of its terms)",
+                remedy="move the bodies so that what is connected meets",
+            )
+        if row.name not in moved:
+            moved.append(row.name)
+    _newton(table, paths)
+    return moved
+
+
+def _newton(table: Table, paths: Mapping[str, Path]) -> None:
+    rows = [row for row in table.rows if row.measure is not None]
+    for _ in range(_ROUNDS):
+        table.q = [q.mid() for q in table.q]
+        lines = [row.line(table.q) for row in rows]
+        chosen = independent(lines)
+        residuals = [evaluated(rows[i].measure or {}, table.q) for i in chosen]
+        step = least_change(table, [lines[i] for i in chosen], residuals)
+        table.q = [q - d for q, d in zip(table.q, step, strict=True)]
+        scale = max(float(abs(q)) for q in table.q)
+        if max(float(abs(d)) for d in step) <= 2.0**-150 * scale:
+            # Quadratic convergence: what is left is far below the last step.
+            table.q = [arb(q.mid(), max(float(abs(d)), 2.0**-280 * scale)) for q, d in zip(table.q, step, strict=True)]
+            break
+    for row in rows:
+        residual = evaluated(row.measure or {}, table.q)
+        if not is_zero(residual) and not abs(residual) < 1e-60 * size(row.measure or {}, table.q):
+            raise InvalidParameter(
+                paths.get(row.name, ()), f'agree with the other connections: "{row.name}" cannot hold beside them'
+            )
+
+
+def least_change(table: Table, lines: Sequence[Line], residuals: Sequence[Ball]) -> list[Ball]:
+    """Return the smallest change that undoes residuals to first order."""
+    count = len(lines)
+    if not count:
+        return [ZERO] * len(table.q)
+    gram = arb_mat(
+        [
+            [sum((x * lines[b][j] for j, x in lines[a].items() if j in lines[b]), ZERO) for b in range(count)]
+            for a in range(count)
+        ]
+    )
+    try:
+        weights = gram.solve(arb_mat([[x] for x in residuals])).entries()
+    except ZeroDivisionError:
+        raise NotApplicable(
+            "lengths or masses are so far apart that 320 bits cannot tell which connections hold",
+            path=("connections",),
+            remedy="leave out what is negligibly small",
+        ) from None
+    step = [ZERO] * len(table.q)
+    for line, weight in zip(lines, weights, strict=True):
+        for j, x in line.items():
+            step[j] = step[j] + x * weight
+    return step
+
+
+def assemble_rates(
+    table: Table, given: Sequence[Given], paths: Mapping[str, Path], wished: Sequence[Row] = ()
+) -> list[str]:
+    """Set the rates at the start: those given, and of the others those of least kinetic energy.
+
+    The rows `wished` hold as far as the others leave them open.
+
+    Raises
+    ------
+    InvalidParameter
+        If a given velocity contradicts the connections, with the value that goes with them.
+    """
+    if all(is_zero(entry.value) for entry in given) and all(row.rate == 0 for row in table.rows):
+        return []
+    elimination = Elimination()
+    noticed: list[str] = []
+    for row in table.rows:
+        left = elimination.add(row.line(table.q), row.rate)
+        if left is not None and not is_zero(left):
+            raise InvalidParameter(
+                paths.get(row.name, ()), f'agree with the other connections: the rates that "{row.name}" holds do not'
+            )
+    scale = max((float(abs(entry.value)) for entry in given), default=0.0)
+    for entry in given:
+        left = elimination.add(entry.line, entry.value)
+        if left is None or is_zero(left):
+            continue
+        if not float(abs(left)) <= CLOSE_RATE * scale:
+            follows = entry.value - left
+            raise InvalidParameter(
+                entry.path,
+                f"agree with the connections and the velocities before it, from which {float(follows):.10g} follows",
+                remedy="leave it out, or change what it contradicts",
+            )
+        noticed.append("/".join(map(str, entry.path)))
+    for row in wished:
+        elimination.add(row.line(table.q), row.rate)
+    table.v = _least_energy(table, elimination)
+    return noticed
+
+
+def _least_energy(table: Table, elimination: Elimination) -> list[Ball]:
+    count = len(table.q)
+    start = elimination.solution(range(count))
+    free = [j for j in range(count) if j not in elimination.pivots]
+    momenta = table.inertial(start)
+    if not free or all(is_zero(p) for p in momenta):
+        return start
+    modes: list[Line] = []
+    for f in free:
+        mode = {f: ONE}
+        for j, (line, _) in elimination.pivots.items():
+            if f in line:
+                mode[j] = -line[f]
+        modes.append(mode)
+    pushed = []
+    for mode in modes:
+        dense = [ZERO] * count
+        for j, x in mode.items():
+            dense[j] = x
+        pushed.append(table.inertial(dense))
+    least = Elimination()
+    for mode in modes:
+        line = {b: sum((x * pushed[b][j] for j, x in mode.items()), ZERO) for b in range(len(modes))}
+        least.add(
+            {b: x for b, x in line.items() if not is_zero(x)}, -sum((x * momenta[j] for j, x in mode.items()), ZERO)
+        )
+    for mode, weight in zip(modes, least.solution(range(len(modes))), strict=True):
+        for j, x in mode.items():
+            start[j] = start[j] + weight * x
+    return start

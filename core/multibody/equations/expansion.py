@@ -1,0 +1,300 @@
+"""The motion of a table about one state as a Taylor polynomial in balls: it decides signs and locates events."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from operator import mul
+
+from flint import arb_mat
+
+from core.multibody.algebra.polynomials import ZERO, Ball, Poly, entry, is_zero
+from core.multibody.algebra.rank import independent
+from core.multibody.equations.dynamics import weightless
+from core.multibody.table.table import Rates, Row, Table
+
+Series = list[Ball]
+"""Coefficients of powers of time, lowest first."""
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """Taylor coefficients at a state.
+
+    Attributes
+    ----------
+    places : list of Series
+        Of every coordinate.
+    multipliers : list of Series
+        Of every row, those of rows that follow from others zero; two coefficients fewer than the places.
+    """
+
+    places: list[Series]
+    multipliers: list[Series]
+
+    @property
+    def order(self) -> int:
+        """Highest power of the places."""
+        return len(self.places[0]) - 1 if self.places else 1
+
+    def of(self, poly: Poly) -> Series:
+        """Return a polynomial of the coordinates as a series."""
+        size = self.order + 1
+        total = [ZERO] * size
+        for key, x in poly.items():
+            if not key:
+                total[0] = total[0] + x
+            elif len(key) == 1:
+                total = _added(total, x, self.places[key[0]])
+            else:
+                part = product(self.places[key[0]], self.places[key[1]])
+                total = _added(total, x, part)
+        return total
+
+    def of_rates(self, rates: Rates) -> Series:
+        """Return a linear form in the rates as a series, one coefficient shorter than the places."""
+        total = [ZERO] * self.order
+        for j, poly in rates.items():
+            rate = [(k + 1) * self.places[j][k + 1] for k in range(self.order)]
+            part = product(self.of(poly)[: self.order], rate)
+            total = [a + b for a, b in zip(total, part, strict=True)]
+        return total
+
+
+def _added(total: Series, factor: Ball, series: Sequence[Ball]) -> Series:
+    """Return a sum with a multiple of a series of the same length."""
+    return [a if b == 0 else a + factor * b for a, b in zip(total, series, strict=True)]
+
+
+def product(first: Sequence[Ball], second: Sequence[Ball]) -> Series:
+    """Return the product of two series of one length, cut off there."""
+    size = len(first)
+    total = [ZERO] * size
+    # Motions with constant accelerations have exact zeros beyond the square of time; what may be zero is not left out.
+    others = [(b, y) for b, y in enumerate(second) if not y.is_zero()]
+    for a, x in enumerate(first):
+        if x == 0:
+            continue
+        for b, y in others:
+            if a + b >= size:
+                break
+            total[a + b] = total[a + b] + x * y
+    return total
+
+
+def value(series: Sequence[Ball], time: Ball) -> Ball:
+    """Return a series at a time."""
+    total = ZERO
+    for x in reversed(series):
+        total = total * time + x
+    return total
+
+
+def slope(series: Sequence[Ball]) -> Series:
+    """Return the derivative of a series."""
+    return [k * series[k] for k in range(1, len(series))]
+
+
+def saddle(table: Table, chosen: Sequence[int]) -> arb_mat:
+    """Return the matrix [M -(W + X)^T; W 0] of chosen rows at the state of a table."""
+    size = len(table.names) + len(chosen)
+    entries = [[ZERO] * size for _ in range(size)]
+    for (i, j), x in _entries(table, chosen).items():
+        entries[i][j] = x
+    return arb_mat(entries)
+
+
+def _entries(table: Table, chosen: Sequence[int]) -> dict[tuple[int, int], Ball]:
+    """Return the entries of the saddle matrix that are not zero."""
+    count = len(table.names)
+    found: dict[tuple[int, int], Ball] = {}
+    for (i, j), x in table.mass.items():
+        found[i, j] = found[j, i] = x
+    for k, r in enumerate(chosen):
+        found.update({(count + k, j): x for j, x in table.rows[r].line(table.q).items()})
+        found.update({(j, count + k): -x for j, x in table.rows[r].pushed(table.q).items()})
+    return found
+
+
+def saddle_solved(table: Table, chosen: Sequence[int], right: Sequence[Sequence[Ball]]) -> list[list[Ball]]:
+    """Return the solutions of the saddle's equations for the columns of a right side.
+
+    Parts that no entry ties to one another are solved apart, each for the columns that it sees: what a scene of many
+    bodies costs grows with their number, and not with its cube.
+
+    Raises
+    ------
+    ZeroDivisionError
+        Where the matrix is singular.
+    """
+    entries = _entries(table, chosen)
+    found = [[ZERO] * len(line) for line in right]
+    for part in _parts_apart(len(right), entries):
+        seen = [b for b in range(len(right[0])) if not all(right[i][b].is_zero() for i in part)]
+        matrix = arb_mat([[entry(entries, (i, j)) for j in part] for i in part])
+        solved = matrix.solve(arb_mat([[right[i][b] for b in seen] for i in part]))
+        for a, i in enumerate(part):
+            for c, b in enumerate(seen):
+                found[i][b] = solved[a, c]
+    return found
+
+
+def _parts_apart(size: int, entries: Iterable[tuple[int, int]]) -> list[list[int]]:
+    """Return the groups of unknowns that entries tie to one another."""
+    group = [[i] for i in range(size)]
+    for i, j in entries:
+        if group[i] is not group[j]:
+            larger, smaller = sorted((group[i], group[j]), key=len, reverse=True)
+            larger.extend(smaller)
+            for k in smaller:
+                group[k] = larger
+    return [members for i, members in enumerate(group) if members[0] == i]
+
+
+def expansion(start: Table, order: int) -> Expansion:
+    """Return the Taylor coefficients of the motion of a table from its state.
+
+    Friction in space turns with the slip s: its line is -mu (s/|s|) times the two lines of the slip, and the series of
+    s/|s| is found to one power with that of s.
+
+    Raises
+    ------
+    InvalidParameter
+        If something without mass can move by itself.
+    """
+    table = start.oriented()
+    count = len(table.names)
+    lines = [row.line(table.q) for row in table.rows]
+    chosen = independent(lines)
+    try:
+        inverse = saddle(table, chosen).inv() if count + len(chosen) else arb_mat(0, 0)
+    except ZeroDivisionError:
+        raise weightless(table, range(count), lines) from None
+    places: list[Series] = [[q, v] for q, v in zip(table.q, table.v, strict=True)]
+    found: list[Series] = [[] for _ in chosen]
+    rates: list[Series] = [[v] for v in table.v]
+    # Entries of W and of W + X that vary, as series.
+    varying = [_varying(table.rows[r].rates, places) for r in chosen]
+    pushing = [_joined(varying[k], _dragging(table, table.rows[r], places, rates)) for k, r in enumerate(chosen)]
+    for k in range(order - 1):
+        right = [ZERO] * (count + len(chosen))
+        if k == 0:
+            for i, x in table.load.items():
+                right[i] = right[i] + x
+        for (i, j), x in table.stiffness.items():
+            right[i] = right[i] - x * places[j][k]
+        for (i, j), x in table.damping.items():
+            right[i] = right[i] - x * rates[j][k]
+        for (i, j, m), x in table.gyration.items():
+            right[i] = right[i] + x * _convolved(places[j][: k + 1], rates[m])
+        for n in range(len(chosen)):
+            for j, series in pushing[n].items():
+                right[j] = right[j] + _convolved(found[n], series.varying(k))
+            total = ZERO
+            for j, series in varying[n].items():
+                total = total + _convolved(series.varying(k + 1), rates[j])
+            right[count + n] = right[count + n] - (k + 1) * total
+        solved = (inverse * arb_mat([[x] for x in right])).entries() if right else []
+        for i in range(count):
+            places[i].append(solved[i] / ((k + 1) * (k + 2)))
+            rates[i].append(solved[i] / (k + 1))
+        for n in range(len(chosen)):
+            found[n].append(solved[count + n])
+    multipliers = [[ZERO] * (order - 1) for _ in table.rows]
+    for n, r in enumerate(chosen):
+        multipliers[r] = found[n]
+    return Expansion(places, multipliers)
+
+
+class _Turning:
+    """The direction s/|s| of a slip along a motion whose own coefficients are still being found."""
+
+    def __init__(self, lines: Sequence[Rates], rates: Sequence[Series]) -> None:
+        self._lines, self._rates = lines, rates
+        self._slip: tuple[Series, Series] = ([], [])
+        self._size: Series = []
+        self.units: tuple[Series, Series] = ([], [])
+
+    def at(self, power: int) -> tuple[Ball, Ball]:
+        """Return the coefficients of the two components."""
+        while len(self._size) <= power:
+            k = len(self._size)
+            for slip, line in zip(self._slip, self._lines, strict=True):
+                slip.append(sum((poly[()] * self._rates[j][k] for j, poly in line.items()), ZERO))
+            square = sum((_convolved(s, s) for s in self._slip), ZERO)
+            # |s|^2 and s = |s| u, power by power.
+            inner = _convolved(self._size[1:], self._size[1:])
+            self._size.append(square.sqrt() if k == 0 else (square - inner) / (2 * self._size[0]))
+            for unit, slip in zip(self.units, self._slip, strict=True):
+                unit.append((slip[k] - _convolved(unit, self._size[1:])) / self._size[0])
+        return self.units[0][power], self.units[1][power]
+
+
+class _Entry:
+    """An entry of a line that varies, along a motion whose own coefficients are still being found."""
+
+    def __init__(self, coefficient: Callable[[int], Ball]) -> None:
+        self._coefficient = coefficient
+        self._known: Series = []
+
+    def varying(self, power: int) -> Series:
+        """Return the coefficients from that of time to that of a power of it."""
+        while len(self._known) < power:
+            self._known.append(self._coefficient(len(self._known) + 1))
+        return self._known[:power]
+
+
+def _convolved(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
+    """Return the sum of the products of which the last of a series of equal length meets the first of the other."""
+    return sum(map(mul, first, reversed(second)), ZERO)
+
+
+def _varying(line: Rates, places: Sequence[Series]) -> dict[int, _Entry]:
+    found = {}
+    for j, poly in line.items():
+        slopes = [(key[0], x) for key, x in poly.items() if key]
+        if slopes:
+            found[j] = _Entry(partial(_along, slopes, places))
+    return found
+
+
+def _along(slopes: Sequence[tuple[int, Ball]], places: Sequence[Series], power: int) -> Ball:
+    """Return a coefficient of an affine polynomial."""
+    return sum((x * places[i][power] for i, x in slopes), ZERO)
+
+
+def _dragging(table: Table, row: Row, places: Sequence[Series], rates: Sequence[Series]) -> dict[int, _Entry]:
+    """Return the entries of the line of friction of a row that vary."""
+    if row.slide is None or not any(not is_zero(x) for x in table.slip_of(row)):
+        return _varying(row.drag, places)
+    factor, along, across = row.slide
+    turning = _Turning((along, across), rates)
+
+    def rubbed(first: Ball, second: Ball, power: int) -> Ball:
+        units = turning.at(power)
+        return first * units[0] + second * units[1]
+
+    return {
+        j: _Entry(partial(rubbed, *(factor * line.get(j, {}).get((), ZERO) for line in (along, across))))
+        for j in {*along, *across}
+    }
+
+
+def _joined(first: Mapping[int, _Entry], second: Mapping[int, _Entry]) -> dict[int, _Entry]:
+    found = dict(first)
+    for j, more in second.items():
+        found[j] = _Entry(partial(_sum, found[j], more)) if j in found else more
+    return found
+
+
+def _sum(first: _Entry, second: _Entry, power: int) -> Ball:
+    return first.varying(power)[-1] + second.varying(power)[-1]
+
+
+def leading_sign(series: Sequence[Ball]) -> int:
+    """Return the sign just after the start of a series: that of its first coefficient that is not zero, else 0."""
+    for x in series:
+        if not is_zero(x):
+            return 1 if x > 0 else -1
+    return 0

@@ -1,0 +1,247 @@
+"""A table as arrays of doubles and their tails, in units of its own, for the compiled kernels.
+
+Lengths, times and masses are scaled by powers of two, which is exact, so that coordinates, their changes and the
+multipliers are of the order of one whatever the scene's units: nothing overflows at 1e100 m, and every tolerance is
+relative to the scene.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from core.arrays import Floats, Integers
+from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.table.table import Table
+
+GROUPS = {"1": 0, "m": 1, "rad": 2, "1/m": 3, "s": 4}
+"""Coordinates of one unit share the scale by which steps are chosen."""
+
+
+class Packed(NamedTuple):
+    """A table for the kernels; the last axis of every array of numbers is (value, tail).
+
+    Attributes
+    ----------
+    mass : (n, n, 2)
+    load : (n, 2)
+    stiff, stiff_at : (p, 2) and (p, 2)
+        Entries of K and their row and column.
+    damp, damp_at : the same for D
+    gyre, gyre_at : (p, 2) and (p, 3)
+        Entries of B.
+    lines, lines_at : (e, 2) and (e, 2)
+        Entries of W that are not identically zero: constant part, row and column; after them those of X.
+    slopes, slopes_at : (p, 2) and (p, 2)
+        Their dependence on the coordinates: factor, entry, coordinate.
+    offset : (m, 2)
+        Constants of the measures.
+    held : (m,)
+        1 for a measure, 0 for a rate row.
+    rate : (m, 2)
+    group : (n,)
+    binds : (e,)
+        1 for an entry of W, 0 for one of X.
+    """
+
+    mass: Floats
+    load: Floats
+    stiff: Floats
+    stiff_at: Integers
+    damp: Floats
+    damp_at: Integers
+    gyre: Floats
+    gyre_at: Integers
+    lines: Floats
+    lines_at: Integers
+    slopes: Floats
+    slopes_at: Integers
+    offset: Floats
+    held: Integers
+    rate: Floats
+    group: Integers
+    binds: Integers
+
+
+@dataclass(frozen=True)
+class Units:
+    """Exponents of two: a coordinate is 2^length[i] times its number in the kernels, and so on.
+
+    Attributes
+    ----------
+    lengths : list of int
+        Of each coordinate.
+    time, action : int
+        Of time, and of M times the square of a coordinate.
+    rows : list of int
+        Of each row: the kernels' row is the table's times 2^rows[r].
+    """
+
+    lengths: list[int]
+    time: int
+    action: int
+    rows: list[int]
+
+    def multiplier(self, row: int) -> int:
+        """Return the exponent of a multiplier."""
+        return self.action - 2 * self.time + self.rows[row]
+
+
+def exponent(ball: Ball) -> int | None:
+    """Return the exponent of two of a number, None of zero."""
+    if 0 in ball:
+        return None
+    mantissa, power = ball.mid().man_exp()
+    return int(power) + int(abs(mantissa)).bit_length()
+
+
+def pair(ball: Ball, power: int) -> tuple[float, float]:
+    """Return a number times a power of two as an unevaluated sum of two doubles."""
+    middle = (ball * _two(power) if power else ball).mid()
+    high = float(middle)
+    return high, float(middle - high)
+
+
+def nearest(ball: Ball) -> float:
+    """Return the double nearest to the middle of a ball."""
+    high, low = pair(ball, 0)
+    return high + low
+
+
+@lru_cache(maxsize=4096)
+def _two(power: int) -> Ball:
+    return (ZERO + 2) ** power
+
+
+def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
+    """Return units in which coordinates, rates and masses are of the order of one."""
+    sizes = [exponent(x) for i, x in enumerate(table.q) if table.units[i] == "m"]
+    rates = [exponent(x) for i, x in enumerate(table.v) if table.units[i] == "m"]
+    turns = [exponent(x) for i, x in enumerate(table.v) if table.units[i] in ("1", "rad")]
+    pulls = [exponent(x) for i, x in enumerate(acceleration) if table.units[i] == "m"]
+    spins = [exponent(x) for i, x in enumerate(acceleration) if table.units[i] in ("1", "rad")]
+    size, rate, pull = _most(sizes), _most(rates), _most(pulls)
+    turn, spin = _most(turns), _most(spins)
+    times = []
+    if turn is not None:
+        times.append(-turn)
+    if spin is not None:
+        times.append(-(spin // 2))
+    if size is None:
+        # What starts at the origin is measured by how far it comes until it turns back, or something else has turned.
+        ways = []
+        if rate is not None and pull is not None:
+            ways.append(2 * rate - pull)
+        if times and (rate is not None or pull is not None):
+            ways.append(rate + min(times) if rate is not None else (pull or 0) + 2 * min(times))
+        size = min(ways, default=None)
+    size = 0 if size is None else size
+    if rate is not None:
+        times.append(size - rate)
+    if pull is not None:
+        times.append((size - pull) // 2)
+    lengths = [{"1": 0, "rad": 0, "m": size, "1/m": -size, "s": 0}[unit] for unit in table.units]
+    masses = [e + lengths[i] + lengths[j] for (i, j), x in table.mass.items() if (e := exponent(x)) is not None]
+    stiff = _most(
+        [e + lengths[i] + lengths[j] for (i, j), x in table.stiffness.items() if (e := exponent(x)) is not None]
+    )
+    if masses and stiff is not None:
+        # Beside an equilibrium neither rates nor accelerations tell how fast springs swing.
+        times.append((max(masses) - stiff) // 2)
+    time = min(times, default=0)
+    lengths = [time if unit == "s" else length for unit, length in zip(table.units, lengths, strict=True)]
+    rows = []
+    for row in table.rows:
+        terms = [
+            e + lengths[j] + (lengths[key[0]] if key else 0)
+            for j, poly in row.rates.items()
+            for key, x in poly.items()
+            if (e := exponent(x)) is not None
+        ]
+        rows.append(-max(terms, default=0))
+    return Units(lengths, time, max(masses, default=0), rows)
+
+
+def _most(exponents: Sequence[int | None]) -> int | None:
+    return max((e for e in exponents if e is not None), default=None)
+
+
+def packed(table: Table, chosen: Sequence[int], units: Units) -> Packed:
+    """Return the arrays of a table with the rows chosen, in the units given."""
+    n, s, t, w = len(table.names), units.lengths, units.time, units.action
+    mass = np.zeros((n, n, 2))
+    for (i, j), x in table.mass.items():
+        mass[i, j] = mass[j, i] = pair(x, s[i] + s[j] - w)
+    load = np.zeros((n, 2))
+    for i, x in table.load.items():
+        load[i] = pair(x, s[i] + 2 * t - w)
+    stiff = [pair(x, s[i] + s[j] + 2 * t - w) for (i, j), x in table.stiffness.items()]
+    damp = [pair(x, s[i] + s[j] + t - w) for (i, j), x in table.damping.items()]
+    gyre = [pair(x, s[i] + s[j] + s[k] + t - w) for (i, j, k), x in table.gyration.items()]
+    lines, lines_at, slopes, slopes_at = [], [], [], []
+    offset, rate, held = np.zeros((len(chosen), 2)), np.zeros((len(chosen), 2)), np.zeros(len(chosen), np.int64)
+    for number, r in enumerate(chosen):
+        row, up = table.rows[r], units.rows[r]
+        for j, poly in row.rates.items():
+            lines.append(pair(poly.get((), ZERO), s[j] + up))
+            lines_at.append((number, j))
+            for key, x in poly.items():
+                if key:
+                    slopes.append(pair(x, s[j] + s[key[0]] + up))
+                    slopes_at.append((len(lines) - 1, key[0]))
+        if row.measure is not None:
+            held[number] = 1
+            offset[number] = pair(row.measure.get((), ZERO), up)
+        rate[number] = pair(row.rate, up + t)
+    binding = len(lines)
+    for number, r in enumerate(chosen):
+        row, up = table.rows[r], units.rows[r]
+        for j, poly in row.drag.items():
+            lines.append(pair(poly.get((), ZERO), s[j] + up))
+            lines_at.append((number, j))
+            slopes.extend(pair(x, s[j] + s[key[0]] + up) for key, x in poly.items() if key)
+            slopes_at.extend((len(lines) - 1, key[0]) for key in poly if key)
+    return Packed(
+        mass,
+        load,
+        _numbers(stiff),
+        _indices(list(table.stiffness), 2),
+        _numbers(damp),
+        _indices(list(table.damping), 2),
+        _numbers(gyre),
+        _indices(list(table.gyration), 3),
+        _numbers(lines),
+        _indices(lines_at, 2),
+        _numbers(slopes),
+        _indices(slopes_at, 2),
+        offset,
+        held,
+        rate,
+        np.array([GROUPS[unit] for unit in table.units], dtype=np.int64),
+        (np.arange(len(lines)) < binding).astype(np.int64),
+    )
+
+
+def state(table: Table, units: Units) -> tuple[Floats, Floats]:
+    """Return coordinates and rates at the start, each of shape (n, 2)."""
+    q = [pair(x, -units.lengths[i]) for i, x in enumerate(table.q)]
+    v = [pair(x, units.time - units.lengths[i]) for i, x in enumerate(table.v)]
+    return _numbers(q), _numbers(v)
+
+
+def two_to(power: int) -> float:
+    """Return a power of two as a double, infinite or zero beyond their range."""
+    return math.ldexp(1.0, power) if -1074 <= power <= 1023 else (math.inf if power > 0 else 0.0)
+
+
+def _numbers(values: Sequence[tuple[float, float]]) -> Floats:
+    return np.array(values, dtype=np.float64).reshape(-1, 2)
+
+
+def _indices(values: Sequence[tuple[int, ...]], width: int) -> Integers:
+    return np.array(values, dtype=np.int64).reshape(-1, width)

@@ -1,0 +1,1 @@
+"""What a client writes: bodies, places, connections and numbers, as frozen dataclasses."""

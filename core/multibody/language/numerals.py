@@ -1,0 +1,229 @@
+"""Numbers as a client writes them, read exactly: decimal text, formulas over names, degrees.
+
+A decimal is the rational number that its digits say, never the double nearest to it: 0.9 + 0.1 = 1 holds, so that what
+is exactly dependent or parallel in a description is found to be. Formulas are evaluated in balls.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite
+from typing import Any, Literal
+
+from flint import arb, fmpq
+
+from core.errors import InvalidParameter, Path
+from core.formulas import FUNCTIONS, LARGEST_EXPONENT, Arithmetic, Formula, is_name
+from core.multibody.algebra.polynomials import Ball, is_zero
+
+MOST_DIGITS = 200
+LARGEST_POWER = 100
+"""To which something is raised in a formula."""
+SHIFT = 2.0**-70
+"""Share of itself by which a number is moved, to see what depends on it."""
+MOST_NAMES = 100
+
+LONGEST_NAME = 64
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
+"""What bodies, places, connections and numbers may be called."""
+
+
+def member(path: Path, name: object) -> Path:
+    """Return the path of a member of an object; of the object, if its name is longer than names are."""
+    return (*path, str(name)) if len(str(name)) <= LONGEST_NAME else path
+
+
+@dataclass(frozen=True)
+class Numerals:
+    """Evaluates numbers, with the names that the description introduces.
+
+    Attributes
+    ----------
+    let : mapping of str to ball
+        Named numbers.
+    doubles : bool
+        Whether a number that arrives as a double is that double exactly, and not the shortest decimal that reads as it.
+    moved : collection of paths
+        Numbers that are read as larger by the share `share` of themselves.
+    instead : mapping of path to ball
+        Numbers in place of those that are written.
+    read : dict
+        Filled with the numbers other than zero by their paths, as they are read; formulas are none.
+    every : dict
+        Filled with all numbers by their paths, formulas too.
+    """
+
+    let: Mapping[str, Ball]
+    doubles: bool = False
+    moved: Collection[Path] = ()
+    share: float = SHIFT
+    instead: Mapping[Path, Ball] = field(default_factory=dict)
+    read: dict[Path, Ball] = field(default_factory=dict, repr=False)
+    every: dict[Path, Ball] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        let: Any,
+        numbers: Literal["decimals", "doubles"] = "decimals",
+        moved: Collection[Path] = (),
+        share: float = SHIFT,
+        instead: Mapping[Path, Ball] | None = None,
+    ) -> Numerals:
+        """Evaluate a list of definitions, each of which may use those before it.
+
+        Raises
+        ------
+        InvalidParameter
+            For a name that is not plain, or a formula that cannot be evaluated.
+        """
+        if numbers not in ("decimals", "doubles"):
+            raise InvalidParameter("numbers", 'be "decimals" or "doubles"')
+        if not isinstance(let, Mapping):
+            raise InvalidParameter("let", "be an object of names and numbers")
+        if len(let) > MOST_NAMES:
+            raise InvalidParameter("let", f"have at most {MOST_NAMES} names, not {len(let)}")
+        known: dict[str, Ball] = {}
+        found = cls(known, numbers == "doubles", moved, share, instead or {})
+        for name, number in let.items():
+            if not is_name(name):
+                raise InvalidParameter(member(("let",), name), "be a name of letters, digits and _, and no function")
+            known[name] = found.number(number, ("let", name))
+        return found
+
+    def number(self, value: Any, path: Path) -> Ball:
+        """Return a number as a ball.
+
+        Raises
+        ------
+        InvalidParameter
+            If it is none, not finite, or too long, or divides by zero.
+        """
+        found = self.instead[path] if path in self.instead else self._written(value, path)
+        self.every[path] = found
+        return found
+
+    def _written(self, value: Any, path: Path) -> Ball:
+        if isinstance(value, str):
+            return self._formula(value, path)
+        if isinstance(value, Mapping):
+            if set(value) != {"degrees"}:
+                raise InvalidParameter(path, 'be a number, a formula or {"degrees": number}')
+            inner = value["degrees"]
+            if isinstance(inner, Mapping):
+                raise InvalidParameter((*path, "degrees"), "be a number or a formula")
+            return self.number(inner, (*path, "degrees")) * arb.pi() / 180
+        plain = isinstance(value, float) and isfinite(value) and not self.doubles
+        found = _decimal(repr(value)) if plain else _ball(_exact(value, path))
+        if found != 0:
+            self.read[path] = found
+        return found + found * self.share if path in self.moved else found
+
+    def _formula(self, text: str, path: Path) -> Ball:
+        try:
+            found = Formula.read(text, self.let).value(self.let, BALLS)
+        except InvalidParameter as fault:
+            raise fault.inside(*path) from None
+        if not found.is_finite():
+            raise InvalidParameter(path, "be finite")
+        return found
+
+    def angle(self, value: Any, path: Path) -> tuple[Ball, Ball]:
+        """Return cosine and sine of an angle; multiples of 30 and 45 degrees come out exactly as zeros and ones do."""
+        if isinstance(value, Mapping) and set(value) == {"degrees"} and not isinstance(value["degrees"], Mapping):
+            turns = self.number(value["degrees"], (*path, "degrees")) / 180
+            sine, cosine = turns.sin_cos_pi()
+            return cosine, sine
+        sine, cosine = self.number(value, path).sin_cos()
+        return cosine, sine
+
+    def vector(self, value: Any, path: Path, dimension: int) -> tuple[Ball, ...]:
+        """Return a vector, in the plane also as ``{"polar": [r, angle]}``."""
+        if isinstance(value, Mapping) and set(value) == {"polar"} and dimension == 2:
+            polar = value["polar"]
+            if isinstance(polar, str) or not isinstance(polar, Sequence) or len(polar) != 2:
+                raise InvalidParameter((*path, "polar"), "be a distance and an angle")
+            r = self.number(polar[0], (*path, "polar", 0))
+            cosine, sine = self.angle(polar[1], (*path, "polar", 1))
+            return r * cosine, r * sine
+        if isinstance(value, (str, Mapping)) or not isinstance(value, Sequence):
+            raise InvalidParameter(path, f"be a list of {dimension} numbers")
+        if len(value) != dimension:
+            raise InvalidParameter(path, f"have {dimension} entries, not {len(value)}")
+        return tuple(self.number(entry, (*path, i)) for i, entry in enumerate(value))
+
+
+def _exact(value: Any, path: Path) -> Fraction:
+    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, Fraction)):
+        raise InvalidParameter(path, "be a number")
+    if isinstance(value, Fraction):
+        return value
+    if isinstance(value, int):
+        if value.bit_length() > 4 * LARGEST_EXPONENT:
+            raise InvalidParameter(path, f"have an exponent between -{LARGEST_EXPONENT} and {LARGEST_EXPONENT}")
+        return Fraction(value)
+    if not isfinite(value):
+        raise InvalidParameter(path, "be finite")
+    if isinstance(value, float):
+        return Fraction(value)
+    if abs(value.adjusted()) > LARGEST_EXPONENT or len(value.as_tuple().digits) > MOST_DIGITS:
+        raise InvalidParameter(path, f"have at most {MOST_DIGITS} digits and a moderate exponent")
+    return Fraction(value)
+
+
+def _ball(value: Fraction) -> Ball:
+    if value.denominator == 1:
+        return arb(value.numerator)
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _decimal(text: str) -> Ball:
+    """Return the rational number of decimal digits, in one rounding."""
+    digits, _, exponent = text.lower().partition("e")
+    whole, _, part = digits.partition(".")
+    power = int(exponent or 0) - len(part)
+    number = int(whole + part)
+    return arb(number * 10**power) if power >= 0 else arb(fmpq(number, 10**-power))
+
+
+def _quotient(one: Ball, other: Ball) -> Ball:
+    if is_zero(other):
+        raise InvalidParameter((), "divide by something other than zero")
+    return one / other
+
+
+def _power(one: Ball, exponent: Ball) -> Ball:
+    if not abs(exponent) <= LARGEST_POWER:
+        raise InvalidParameter((), f"have powers between -{LARGEST_POWER} and {LARGEST_POWER}")
+    return _quotient(arb(1), one**-exponent) if exponent < 0 else one**exponent
+
+
+def _root(argument: Ball) -> Ball:
+    if argument < 0:
+        raise InvalidParameter((), "take the root of something that is not negative")
+    return arb(0) if is_zero(argument) else argument.sqrt()
+
+
+def _of_a_sine(inverse: Callable[[Ball], Ball]) -> Callable[[Ball], Ball]:
+    """Return an inverse function that takes what cannot be told from -1 and 1 as these."""
+
+    def found(argument: Ball) -> Ball:
+        near = argument.sgn()
+        return inverse(near if is_zero(argument - near) else argument)
+
+    return found
+
+
+BALLS = Arithmetic[Ball](
+    _decimal,
+    arb.pi,
+    _quotient,
+    _power,
+    {name: abs if name == "abs" else getattr(arb, name) for name in FUNCTIONS}
+    | {"sqrt": _root, "asin": _of_a_sine(arb.asin), "acos": _of_a_sine(arb.acos)},
+)
+"""Formulas in balls of the precision of the context."""

@@ -1,0 +1,70 @@
+"""From JSON to the dataclasses of the language: fields that exist, kinds that exist, nothing missing."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import MISSING, fields
+from typing import Any
+
+from core.errors import InvalidParameter, Path
+from core.multibody.language.connections import KINDS, NOT_YET
+from core.multibody.language.numerals import member
+from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene, SceneBody
+from core.near_names import did_you_mean
+
+
+def scene_from(description: Any) -> Scene:
+    """Return the scene that an object of JSON describes.
+
+    Raises
+    ------
+    InvalidParameter
+        For fields that are missing or unknown, kinds that do not exist, and names that clash.
+    """
+    given = _object(description, (), Scene)
+    bodies = given.get("bodies")
+    if isinstance(bodies, Mapping):
+        if len(bodies) > MOST_BODIES:
+            raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(bodies)}")
+        given["bodies"] = {
+            name: SceneBody(**_object(body, member(("bodies",), name), SceneBody)) for name, body in bodies.items()
+        }
+    connections = given.get("connections", ())
+    if isinstance(connections, Sequence) and not isinstance(connections, str):
+        if len(connections) > MOST_CONNECTIONS:
+            raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(connections)}")
+        given["connections"] = tuple(_connection(entry, ("connections", i)) for i, entry in enumerate(connections))
+    return Scene(**given)
+
+
+def _connection(entry: Any, path: Path) -> Any:
+    if not isinstance(entry, Mapping):
+        raise InvalidParameter(path, "be an object")
+    kind = entry.get("kind")
+    if kind in NOT_YET:
+        raise InvalidParameter(
+            (*path, "kind"), "be a connection that holds, pushes, pulls or drives; blows are not answered yet"
+        )
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise InvalidParameter((*path, "kind"), f"be one of {', '.join(KINDS)}", remedy=did_you_mean(kind, KINDS))
+    rest = {key: value for key, value in entry.items() if key != "kind"}
+    return KINDS[kind](**_object(rest, path, KINDS[kind]))
+
+
+def _object(value: Any, path: Path, cls: type[Any]) -> dict[str, Any]:
+    if not isinstance(value, Mapping):
+        raise InvalidParameter(path or ("scene",), "be an object")
+    known = {entry.name: entry for entry in fields(cls)}
+    for key in value:
+        if key not in known:
+            raise unknown_field(key, known, path)
+    for name, entry in known.items():
+        if name not in value and entry.default is MISSING and entry.default_factory is MISSING:
+            raise InvalidParameter((*path, name), "be given")
+    return dict(value)
+
+
+def unknown_field(key: str, known: Collection[str], path: Path) -> InvalidParameter:
+    """Return the fault of a field that does not exist in the object at a path."""
+    rule = f"be left out; the fields here are {', '.join(known)}"
+    return InvalidParameter(member(path, key), rule, remedy=did_you_mean(key, known))

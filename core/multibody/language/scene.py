@@ -1,0 +1,143 @@
+"""The language of described scenes: bodies, places, connections, as frozen dataclasses that hold what was written.
+
+Four nouns suffice. A *body* has mass, a *place* is a point of a body or of the ground, a *connection* ties places or
+turns, and a *question* (outputs, times) is put to the whole. Numbers are stored as they were written and read exactly
+by `core.multibody.language.numerals`; what they mean is checked where the table is built, with the path to the fault.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, Literal
+
+from core.errors import InvalidParameter, Path
+from core.multibody.language.connections import GROUND, Connection, Number, Vector
+from core.multibody.language.numerals import LONGEST_NAME, NAME, member
+
+MOST_BODIES = 100
+MOST_CONNECTIONS = 400
+
+
+@dataclass(frozen=True)
+class SceneBody:
+    """What has mass: a particle, a rigid body of the plane or of space, a symmetric top.
+
+    Attributes
+    ----------
+    mass : number
+        In kg; 0 where something else moves with the body.
+    at : vector
+        Centre of mass (m).
+    velocity : vector, optional
+        Of the centre of mass (m/s); what is left out follows from the connections.
+    inertia : number, optional
+        In the plane: about the centre of mass (kg m^2). Without it the body is a particle.
+    moments : vector, optional
+        In space: principal moments about the centre of mass, in body axes (kg m^2).
+    tensor : three vectors, optional
+        In space: tensor of inertia about the centre of mass, in body axes (kg m^2).
+    body : Body of core.bodies, optional
+        In space, in place of `mass` and `moments`: its mass properties, about its centre of mass.
+    radius : number, optional
+        Of the rim on which it rolls and around which strings wind (m).
+    angle : number, optional
+        In the plane: of the body's first axis, counter-clockwise (rad).
+    axes : three vectors, optional
+        In space: directions of the body axes; the identity if left out.
+    angular_velocity : number or vector, optional
+        Rad/s; in space in body axes.
+    places : mapping of str to vector
+        Points of the body, in body axes from its centre of mass (m).
+    """
+
+    at: Vector
+    mass: Number | None = None
+    velocity: Vector | None = None
+    inertia: Number | None = None
+    moments: Vector | None = None
+    tensor: Sequence[Vector] | None = None
+    body: Any = None
+    radius: Number | None = None
+    angle: Number | None = None
+    axes: Sequence[Vector] | None = None
+    angular_velocity: Number | Vector | None = None
+    places: Mapping[str, Vector] = field(default_factory=lambda: MappingProxyType({}))
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Bodies and what connects them.
+
+    Attributes
+    ----------
+    bodies : mapping of str to SceneBody
+    connections : sequence of Connection
+    gravity : vector, optional
+        Acceleration of free fall (m/s^2), of two or three components; it decides plane or space. None without one.
+    let : mapping of str to number
+        Named numbers that formulas may use.
+    numbers : {"decimals", "doubles"}
+        Whether 0.1 is the decimal or the double nearest to it.
+    """
+
+    bodies: Mapping[str, SceneBody]
+    connections: Sequence[Connection] = ()
+    gravity: Vector | None = None
+    let: Mapping[str, Number] = field(default_factory=lambda: MappingProxyType({}))
+    numbers: Literal["decimals", "doubles"] = "decimals"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.bodies, Mapping) or not self.bodies:
+            raise InvalidParameter("bodies", "name at least one body")
+        if len(self.bodies) > MOST_BODIES:
+            raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(self.bodies)}")
+        if isinstance(self.connections, (str, Mapping)) or not isinstance(self.connections, Sequence):
+            raise InvalidParameter("connections", "be a list")
+        if len(self.connections) > MOST_CONNECTIONS:
+            raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(self.connections)}")
+        for name, body in self.bodies.items():
+            check_name(name, member(("bodies",), name))
+            if not isinstance(body, SceneBody):
+                raise InvalidParameter(("bodies", name), "be a body")
+            if not isinstance(body.places, Mapping):
+                raise InvalidParameter(("bodies", name, "places"), "be an object of names and vectors")
+            for place in body.places:
+                check_name(place, member(("bodies", name, "places"), place))
+        for i, connection in enumerate(self.connections):
+            if not isinstance(connection, Connection):
+                raise InvalidParameter(("connections", i), "be a connection")
+        self.names()
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the connections: those given, else kind and number."""
+        found: dict[str, int] = {}
+        for i, connection in enumerate(self.connections):
+            given: Any = getattr(connection, "name", None)
+            if given is not None:
+                check_name(given, ("connections", i, "name"))
+            name = f"{connection.kind}-{i + 1}" if given is None else given
+            if name in found or name in self.bodies:
+                raise InvalidParameter(
+                    ("connections", i, "name"),
+                    f'be a name of its own; "{name}" has another owner',
+                    remedy=f'call it "{_unlike(name, {*found, *self.bodies})}", say',
+                )
+            found[name] = i
+        return tuple(found)
+
+
+def _unlike(name: str, others: set[str]) -> str:
+    """Return a name followed by the first number that makes it another."""
+    return next(new for k in range(2, len(others) + 3) if (new := f"{name[: LONGEST_NAME - 5]}-{k}") not in others)
+
+
+def check_name(name: object, path: Path) -> None:
+    """Raise `InvalidParameter` unless something may be called so."""
+    if not isinstance(name, str) or not NAME.fullmatch(name) or name == GROUND:
+        rule = (
+            f'have a name of at most {LONGEST_NAME} letters, digits, "-" and "_" '
+            f'that begins with a letter and is not "{GROUND}"'
+        )
+        raise InvalidParameter(path, rule)

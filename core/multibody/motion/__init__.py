@@ -1,0 +1,1 @@
+"""Models of the motion of a part, from rest to the Taylor series, and the whole scene put together."""

@@ -1,0 +1,175 @@
+"""From a description to the motion of its parts: the table, its passes, and the smallest model of each part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.balls import precision
+from core.errors import InvalidParameter, NotApplicable
+from core.multibody.algebra.polynomials import BITS, ZERO, Ball, is_zero
+from core.multibody.equations.assembly import assemble_places, assemble_rates
+from core.multibody.equations.dynamics import accelerations, parts, restricted, singular_row
+from core.multibody.language.numerals import Numerals
+from core.multibody.language.scene import Scene
+from core.multibody.motion.euler_poisson import EulerPoisson
+from core.multibody.motion.free_body import freely_turning
+from core.multibody.motion.generic_equation import SceneSystem, scene_system
+from core.multibody.motion.kepler import keplerian
+from core.multibody.motion.modes import Modes
+from core.multibody.motion.motion import Motion, Rest
+from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.periods import repeating
+from core.multibody.motion.turning import turning
+from core.multibody.motion.turning_body import turning_body
+from core.multibody.motion.uniform import Uniform
+from core.multibody.motion.vertical_symmetry import precessing
+from core.multibody.motion.whole import Whole
+from core.multibody.reduction.passes import reduced
+from core.multibody.table.description import Described, described
+from core.multibody.table.table import Table
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a reduced table that the others do not see.
+
+    Attributes
+    ----------
+    indices : list of int
+        Its coordinates.
+    table : Table
+    acceleration : list of balls
+        At the start.
+    chosen : list of int
+        Its independent rows.
+    """
+
+    indices: list[int]
+    table: Table
+    acceleration: list[Ball]
+    chosen: list[int]
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom."""
+        return len(self.table.names) - len(self.chosen)
+
+
+@dataclass(frozen=True)
+class Modelled:
+    """A scene with its models.
+
+    Attributes
+    ----------
+    described : Described
+    whole : Whole
+    pieces : list of Piece
+        In the order of ``whole.parts``.
+    moved, fitted : list of str
+        Connections for which positions, and velocities that were, taken as rounded.
+    """
+
+    described: Described
+    whole: Whole
+    pieces: list[Piece]
+    moved: list[str]
+    fitted: list[str]
+
+
+def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
+    """Return the models of a scene, whose numbers may be read in another way; the precision of balls is the caller's.
+
+    Raises
+    ------
+    InvalidParameter
+        For a scene that cannot be, with the path to the fault; `SlackAtStart` where a string is too long to be taut.
+    NotApplicable
+        For a scene with contacts.
+    """
+    found = described(scene, numerals)
+    table = found.measures.table
+    if found.measures.unilateral:
+        raise NotApplicable(
+            "contacts change the equations of motion at every event: such a scene is answered by its own phases alone",
+            path=("connections", found.paths[found.measures.unilateral[0].name][-1]),
+            remedy="leave out the method, or hold what touches by a connection of another kind",
+        )
+    moved = assemble_places(table, found.paths)
+    fitted = assemble_rates(table, found.measures.coordinates.given, found.paths)
+    return models_of(found, moved, fitted)
+
+
+def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
+    """Return the models of a table whose start meets its rows."""
+    small = reduced(found.measures.table, pinning=True)
+    pieces = [_piece(found, small.table, indices) for indices in parts(small.table)]
+    gains: list[Ball] = [ZERO] * len(small.table.names)
+    for piece in pieces:
+        for i, x in zip(piece.indices, piece.acceleration, strict=True):
+            gains[i] = x
+    full = [sum((c * gains[key[0]] for key, c in e.items() if key), ZERO) for e in small.expressions]
+    motions = [(piece.indices, _motion(piece)) for piece in pieces]
+    dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
+    whole = Whole(found.measures, small, full, gains, motions, dropped)
+    return Modelled(found, whole, pieces, moved, fitted)
+
+
+def system_of(scene: Scene) -> SceneSystem:
+    """Return a scene as a system that methods can run.
+
+    Raises
+    ------
+    InvalidParameter
+        As `modelled`.
+    NotApplicable
+        If nothing moves.
+    """
+    with precision(BITS):
+        return scene_system(modelled(scene).whole)
+
+
+def _piece(found: Described, table: Table, indices: list[int]) -> Piece:
+    part = restricted(table, indices)
+    gain, chosen = accelerations(part)
+    singular = singular_row(part, chosen)
+    if singular is not None:
+        raise InvalidParameter(
+            found.paths.get(singular.name, ("connections",)),
+            f'leave the motion determined: the start is a singular place, where "{singular.name}" and the connections '
+            "around it lose their hold, and several motions are possible",
+            remedy="start elsewhere",
+        )
+    return Piece(indices, part, gain, chosen)
+
+
+def _motion(piece: Piece) -> Motion:
+    """Return the smallest model of a part."""
+    part, gain, chosen = piece.table, piece.acceleration, piece.chosen
+    if all(is_zero(x) for x in part.v) and all(is_zero(x) for x in gain):
+        return Rest(part)
+    linear = all(row.constant for row in part.rows)
+    if linear and not part.stiffness and not part.damping and not part.gyration:
+        return Uniform(part, gain)
+    if linear and not part.gyration:
+        return Modes.of(part, chosen)
+    rubs = any(row.drag for row in part.rows)
+    free_turn = turning(part, chosen)
+    if free_turn is not None:
+        return free_turn
+    body = None if rubs else turning_body(part)
+    if body is not None:
+        about = freely_turning(part, body) or EulerPoisson.about(part, body, gain)
+        if about is not None:
+            return about
+    found: Motion | None = None
+    if not rubs:
+        found = keplerian(part) or repeating(part, gain, chosen) or precessing(part, gain, chosen)
+    if found is not None:
+        return found
+    free = piece.freedom
+    why = (
+        "one degree of freedom that does not return soon, or is driven or damped"
+        if free == 1
+        else f"{free} degrees of freedom are coupled by quadratic terms"
+    )
+    return Numerical.of(part, gain, chosen, why)

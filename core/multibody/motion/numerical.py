@@ -1,0 +1,249 @@
+"""The motion of a part by its Taylor series: doubles, judged by pairs of doubles, or the pairs themselves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.arrays import Floats, Integers
+from core.errors import AccuracyUnreachable, BudgetExceeded
+from core.multibody.algebra.polynomials import Ball
+from core.multibody.equations.packed import Packed, Units, packed, state, two_to, units_of
+from core.multibody.motion.motion import States
+from core.multibody.motion.series import DONE, FULL, LOST, advance, placed, sampled
+from core.multibody.motion.series_pairs import advance_pairs, sampled_pairs
+from core.multibody.table.table import Table
+
+MOST_STEPS = 20000
+"""Steps that one part of a scene may take in one direction of time."""
+
+_SAME_PLACE = 1e-3
+"""Relative difference of the times at which doubles and pairs may meet one singular place."""
+
+_SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
+"""Largest error of a judge's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
+
+_CHUNK = 2**21
+"""Bytes for the first steps of a run; memory that is not used is not touched."""
+# A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
+# motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
+ORDER, TOLERANCE = 24, 2.0**-56
+JUDGE_ORDER, JUDGE_TOLERANCE = 28, 2.0**-72
+FINE_ORDER, FINE_TOLERANCE = 32, 2.0**-100
+CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
+
+
+@dataclass
+class Run:
+    """Steps in one direction: where they start, their coefficients, and whether a singular place ended them."""
+
+    starts: Floats
+    series: Floats
+    singular: bool = False
+
+    @property
+    def end(self) -> float:
+        """Time reached."""
+        return float(self.starts[-1, 0])
+
+    def which(self, times: Floats) -> Integers:
+        """Return the step in which each time lies."""
+        starts = self.starts[:, 0]
+        forward = starts[-1] >= starts[0]
+        found = np.searchsorted(starts if forward else -starts, times if forward else -times, side="right") - 1
+        return np.clip(found, 0, len(self.series) - 1).astype(np.int64)
+
+
+@dataclass
+class Numerical:
+    """A part that has no closed form."""
+
+    table: Table
+    arrays: Packed
+    units: Units
+    name: str = "Taylor series"
+    why: str = "several degrees of freedom are coupled by quadratic terms"
+    how: str = "measured against pairs"
+    period: Ball | None = None
+    lost_to_doubles: bool = False
+    _runs: dict[tuple[str, int], Run] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, table: Table, acceleration: Sequence[Ball], chosen: Sequence[int], why: str) -> Numerical:
+        """Return the motion of a table in its own units."""
+        units = units_of(table, acceleration)
+        return cls(table, packed(table, chosen, units), units, why=why)
+
+    def run(self, kind: str, end: float) -> Run:
+        """Return steps to a time in the units of the arrays: "doubles", "judge", "fine" or "check"."""
+        key = (kind, 1 if end >= 0.0 else -1)
+        found = self._runs.get(key)
+        if found is not None and (abs(found.end) >= abs(end) or found.singular):
+            return found
+        self._runs[key] = self.steps(kind, end)
+        return self._runs[key]
+
+    def steps(self, kind: str, end: float) -> Run:
+        """Take steps to a time in the units of the arrays."""
+        return integrate(self.table, self.arrays, self.units, kind, end)
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the states, and how far they are from a run in pairs."""
+        names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "judge")
+        (q, v), (other, rate) = (self.by(kind, times) for kind in names)
+        share = _SHARE if names[0] == "doubles" else _FINE_SHARE
+        q_error, v_error = (self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
+        if self.lost_to_doubles:
+            q_error, v_error = 16.0 * q_error, 16.0 * v_error
+        elif finer:
+            # Both runs are in pairs: the doubles tell how rounding grows.
+            coarse = self.states(times)
+            q_error = 4.0 * q_error + 2.0**-50 * coarse.q_error
+            v_error = 4.0 * v_error + 2.0**-50 * coarse.v_error
+        return States(q, v, q_error, v_error, (other, rate))
+
+    def _apart(self, first: Floats, second: Floats, share: float) -> Floats:
+        """Return differences of places or rates, shape (t, n), with a share of the largest of all coordinates."""
+        up = np.array([two_to(e) for e in self.units.lengths])
+        each = np.abs((first[..., 0] - second[..., 0]) + (first[..., 1] - second[..., 1]))
+        # Where the difference of one coordinate passes through zero, the judge's own error is larger.
+        found: Floats = each + share * np.max(each / up, axis=1, initial=0.0, keepdims=True) * up
+        return found
+
+    def by(self, kind: str, times: Floats) -> tuple[Floats, Floats]:
+        """Return coordinates and rates by one kind of run, each of shape (t, n, 2)."""
+        n = len(self.table.names)
+        scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
+        q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
+        for way in (scaled >= 0.0, scaled < 0.0):
+            if np.any(way):
+                chosen = scaled[way]
+                run = self.run(kind, float(chosen[np.argmax(np.abs(chosen))]))
+                q[way], v[way] = evaluate(run, chosen)
+        up = np.array([two_to(e) for e in self.units.lengths])[None, :, None]
+        return q * up, v * up * two_to(-self.units.time)
+
+    def places(self, times: Floats) -> Floats:
+        """Return coordinates alone, shape (t, n), without a judge: enough to count turns."""
+        scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
+        run = self.run("fine" if self.lost_to_doubles else "doubles", float(scaled[np.argmax(np.abs(scaled))]))
+        if run.series.ndim == 3:
+            q = np.empty((len(times), run.series.shape[1]))
+            placed(run.starts, run.series, np.ascontiguousarray(scaled), run.which(scaled), q)
+        else:
+            q = evaluate(run, scaled)[0][..., 0]
+        found: Floats = q * np.array([two_to(e) for e in self.units.lengths])
+        return found
+
+    def nodes(self, end: float) -> Floats:
+        """Return eight times a step."""
+        run = self.run("fine" if self.lost_to_doubles else "doubles", end * two_to(-self.units.time))
+        starts = run.starts[:, 0] * two_to(self.units.time)
+        if not np.isfinite(starts).all():
+            raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
+        starts = starts[np.abs(starts) <= abs(end) * (1 + 1e-15)]
+        fine = np.interp(np.arange(8 * (len(starts) - 1) + 1) / 8.0, np.arange(len(starts)), starts)
+        return fine if run.singular else np.append(fine[np.abs(fine) < abs(end)], end)
+
+    def reach(self, end: float) -> float | None:
+        """Return the time of a singular place before `end`, None without one.
+
+        Where doubles lose the connections and pairs do not, the place is not singular, and pairs answer instead.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            Where pairs lose them too, but elsewhere; or beside a collision, but that of Kepler's problem.
+        """
+        scaled = end * two_to(-self.units.time)
+        run = self.run("doubles", scaled)
+        if not run.singular:
+            return None
+        judge = self.run("judge", scaled)
+        if not judge.singular:
+            self.lost_to_doubles = True
+            return None
+        near = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
+        if near:
+            # A collision cannot be told from a pass so close that the connections are lost to rounding.
+            at = judge.end * two_to(self.units.time)
+            apart = 1.0 / float(np.max(np.abs(evaluate(judge, np.array([judge.end]))[0][0, near, 0])))
+            raise AccuracyUnreachable(
+                None,
+                np.inf,
+                f"bodies that attract or repel come within {apart * two_to(-self.units.lengths[near[0]]):.2g} m of one "
+                f"another at {at:.10g} s, where even pairs of doubles lose them",
+                path=("times",),
+                remedy="ask for earlier times",
+            )
+        if judge.end == 0.0 or abs(judge.end - run.end) > _SAME_PLACE * abs(judge.end):
+            raise AccuracyUnreachable(
+                None,
+                np.inf,
+                "masses or lengths are so unequal that the connections are lost to rounding, even in pairs of doubles",
+                path=("bodies",),
+            )
+        return judge.end * two_to(self.units.time)
+
+
+def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float) -> Run:
+    """Take steps to a time in the units of the arrays.
+
+    Raises
+    ------
+    BudgetExceeded
+        Where more steps would be needed than one part may take.
+    AccuracyUnreachable
+        Where the motion leaves the range of doubles.
+    """
+    order, tolerance = {
+        "doubles": (ORDER, TOLERANCE),
+        "judge": (JUDGE_ORDER, JUDGE_TOLERANCE),
+        "fine": (FINE_ORDER, FINE_TOLERANCE),
+        "check": (CHECK_ORDER, CHECK_TOLERANCE),
+    }[kind]
+    q, v = state(table, units)
+    clock = np.zeros(2)
+    starts, series = [], []
+    steps = 0
+    shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
+    many = max(16, _CHUNK // (8 * math.prod(shape)))
+    while True:
+        chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
+        take = advance if kind == "doubles" else advance_pairs
+        ended, count = take(arrays, q, v, clock, end, tolerance, chunk_starts, chunk)
+        starts.append(chunk_starts[:count])
+        series.append(chunk[:count])
+        steps += count
+        if ended != FULL:
+            break
+        if steps > MOST_STEPS:
+            raise BudgetExceeded("steps", steps, MOST_STEPS, path=("times",), remedy="ask for a shorter time")
+    if ended == LOST:
+        raise AccuracyUnreachable(None, np.inf, "the motion leaves the range of doubles", path=("times",))
+    starts.append(clock[None, :].copy())
+    if not steps:
+        # A run of no duration has one step, so that the start can be evaluated.
+        single = np.zeros((1, *shape))
+        single[0, :, 0], single[0, :, 1] = (q[:, 0], v[:, 0]) if kind == "doubles" else (q, v)
+        return Run(np.zeros((2, 2)), single, ended != DONE)
+    return Run(np.concatenate(starts), series[0] if len(series) == 1 else np.concatenate(series), ended != DONE)
+
+
+def evaluate(run: Run, times: Floats) -> tuple[Floats, Floats]:
+    """Return places and rates at times in the units of the arrays, as pairs of shape (t, n, 2)."""
+    n = run.series.shape[1]
+    which = run.which(times)
+    q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
+    if run.series.ndim == 3:
+        first, second = np.empty((len(times), n)), np.empty((len(times), n))
+        sampled(run.starts, run.series, np.ascontiguousarray(times), which, first, second)
+        q[..., 0], v[..., 0] = first, second
+    else:
+        paired = np.zeros((len(times), 2))
+        paired[:, 0] = times
+        sampled_pairs(run.starts, run.series, paired, which, q, v)
+    return q, v

@@ -1,0 +1,287 @@
+"""The Taylor series of a table's motion, step by step, in doubles: the kernel.
+
+At order k the unknowns x = (k+1)(k+2) q_{k+2} and the multipliers' coefficient solve
+
+    [M  -W_0^T; W_0  0] (x, lambda_k) = (F_k + sum_{a<k} lambda_a W_{k-a},  -(k+1) sum_{a>=1} W_a u_{k+1-a}),
+
+with u_k = (k+1) q_{k+1}: one inverse a step, and no reduction of the index. At the end of a step the
+place is put back on the measures by one weighted Newton correction, then the rates at the corrected place.
+
+References
+----------
+J. D. Pryce, N. S. Nedialkov, "Multibody dynamics in natural coordinates through automatic differentiation and
+high-index DAE solving", Acta Cybernetica 24 (2020).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from core.arrays import Floats, Integers
+from core.compiled import fma, kernel
+from core.double_double import dd_add, dd_add_d, dd_mul, two_prod, two_sum
+from core.lanes import WIDTH, alike, lanes_at, put_lanes
+from core.multibody.algebra.pair_arrays import gathered
+from core.multibody.equations.packed import Packed
+from core.multibody.equations.saddle import Saddle, inverted, saddle_space
+from core.multibody.motion.products import ROW, Products, products_of, spread, started, summed
+
+SHORTEST = 1e-12
+"""Shortest step, in the table's own unit of time or of the time reached: below it a place is singular."""
+
+
+DONE, FULL, SINGULAR, LOST = 0, 1, 2, 3
+"""How a run of steps ended: at its time, at the end of its arrays, at a singular place, out of the range of doubles."""
+
+
+@kernel()
+def entries_of_lines(table: Packed, q: Floats, lines: Floats) -> None:
+    """Fill in the entries of W at a place, shape (e,)."""
+    for e in range(lines.shape[0]):
+        lines[e] = table.lines[e, 0]
+    for p in range(table.slopes.shape[0]):
+        lines[table.slopes_at[p, 0]] += table.slopes[p, 0] * q[table.slopes_at[p, 1]]
+
+
+@kernel()
+def coefficients(table: Packed, space: Saddle, products: Products, since: int) -> None:
+    """Fill in the Taylor coefficients of the path from since + 2 on, in doubles, the earlier ones being taken up."""
+    n, m = table.load.shape[0], table.rate.shape[0]
+    at, factor, sums, columns = products.at, products.factor, products.sums[0], space.columns[0]
+    path, right, now, size = products.path[0], products.right[0], products.now[0], products.right.shape[1]
+    last = products.inverses.shape[0] - 3
+    for k in range(since, last + 1):
+        for b in range(0, size, WIDTH):
+            put_lanes(right, b, alike(0.0))
+        if k == 0:
+            for i in range(n):
+                right[i] = table.load[i, 0]
+        for p in range(table.stiff.shape[0]):
+            right[table.stiff_at[p, 0]] -= table.stiff[p, 0] * path[k * size + table.stiff_at[p, 1]]
+        for p in range(table.damp.shape[0]):
+            right[table.damp_at[p, 0]] -= table.damp[p, 0] * (k + 1) * path[(k + 1) * size + table.damp_at[p, 1]]
+        summed(products, k)
+        for p in range(at.shape[0]):
+            row = np.uintp(at[p, ROW])
+            right[row] = fma(factor[p, 0], sums[p], right[row])
+        for i in range(n, n + m):
+            right[i] *= -(k + 1.0)
+        for b in range(0, size, WIDTH):
+            total = alike(0.0)
+            for j in range(n + m):
+                if right[j] != 0.0:
+                    total = fma(lanes_at(columns, j * size + b), alike(right[j]), total)
+            second = total / alike((k + 1.0) * (k + 2.0))
+            put_lanes(now, b, second)
+            put_lanes(now, size + b, total / alike(k + 1.0))
+            put_lanes(now, 2 * size + b, total)
+            put_lanes(path, (k + 2) * size + b, second)
+        if k < last:
+            spread(table, products, k)
+
+
+@kernel()
+def step_size(q: Floats, group: Integers, tolerance: float) -> float:
+    """Return the step at which the last terms of the series are `tolerance` of what they are added to."""
+    n, order = q.shape[0], q.shape[1] - 1
+    best = np.inf
+    for g in range(4):
+        last, before, first, second, zeroth = 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(n):
+            if group[i] == g:
+                last = max(last, abs(q[i, order]))
+                before = max(before, abs(q[i, order - 1]))
+                zeroth = max(zeroth, abs(q[i, 0]))
+                first = max(first, abs(q[i, 1]))
+                second = max(second, abs(q[i, 2]))
+        # The logarithms of sizes and scales; that of zero is minus infinity.
+        rate, gain = math.log(first), math.log(second)
+        for power, number in ((order, last), (order - 1, before)):
+            if number > 0.0:
+                size = math.log(number)
+                scale = 0.0 if g == 2 else math.log(zeroth)
+                # What starts at zero is measured by how far it comes within the radius of convergence.
+                scale = max(scale, gain + 2.0 * (gain - size) / (power - 2))
+                scale = max(scale, rate + (rate - size) / (power - 1))
+                best = min(best, (math.log(tolerance) + scale - size) / power)
+    return math.exp(best)
+
+
+@kernel()
+def correct(table: Packed, space: Saddle, lines: Floats, q: Floats, v: Floats) -> None:
+    """Put a place back on the measures, and the rates onto the rows there.
+
+    Residuals are formed with the tails of the state and of the table, or their rounding would be the error of a step.
+
+    Parameters
+    ----------
+    lines : (e,)
+        Entries of W at the place; brought up to date.
+    q, v : (n, 2)
+    """
+    n, m = table.load.shape[0], table.rate.shape[0]
+    columns = space.columns[0]
+    residual = np.zeros((m, 2))
+    for r in range(m):
+        residual[r, 0], residual[r, 1] = -table.offset[r, 0], -table.offset[r, 1]
+    for e in range(lines.shape[0]):
+        r, j = table.lines_at[e, 0], table.lines_at[e, 1]
+        residual[r, 0], residual[r, 1] = gathered(
+            residual[r, 0], residual[r, 1], -table.lines[e, 0], -table.lines[e, 1], q[j, 0], q[j, 1]
+        )
+    for p in range(table.slopes.shape[0]):
+        e, i = table.slopes_at[p, 0], table.slopes_at[p, 1]
+        r, j = table.lines_at[e, 0], table.lines_at[e, 1]
+        if table.held[r] == 1:
+            ph, pl = dd_mul(q[i, 0], q[i, 1], q[j, 0], q[j, 1])
+            residual[r, 0], residual[r, 1] = gathered(
+                residual[r, 0], residual[r, 1], -0.5 * table.slopes[p, 0], -0.5 * table.slopes[p, 1], ph, pl
+            )
+    for i in range(n):
+        total = 0.0
+        for r in range(m):
+            if table.held[r] == 1:
+                total += columns[n + r, i] * (residual[r, 0] + residual[r, 1])
+        q[i, 0], q[i, 1] = dd_add_d(q[i, 0], q[i, 1], total)
+    entries_of_lines(table, q[:, 0], lines)
+    for r in range(m):
+        residual[r, 0], residual[r, 1] = table.rate[r, 0], table.rate[r, 1]
+    for e in range(lines.shape[0]):
+        r, j = table.lines_at[e, 0], table.lines_at[e, 1]
+        residual[r, 0], residual[r, 1] = gathered(
+            residual[r, 0], residual[r, 1], -table.lines[e, 0], -table.lines[e, 1], v[j, 0], v[j, 1]
+        )
+    for p in range(table.slopes.shape[0]):
+        e, i = table.slopes_at[p, 0], table.slopes_at[p, 1]
+        r, j = table.lines_at[e, 0], table.lines_at[e, 1]
+        ph, pl = dd_mul(q[i, 0], q[i, 1], v[j, 0], v[j, 1])
+        residual[r, 0], residual[r, 1] = gathered(
+            residual[r, 0], residual[r, 1], -table.slopes[p, 0], -table.slopes[p, 1], ph, pl
+        )
+    for i in range(n):
+        total = 0.0
+        for r in range(m):
+            total += columns[n + r, i] * (residual[r, 0] + residual[r, 1])
+        v[i, 0], v[i, 1] = dd_add_d(v[i, 0], v[i, 1], total)
+
+
+@kernel()
+def advance(
+    table: Packed,
+    q: Floats,
+    v: Floats,
+    clock: Floats,
+    end: float,
+    tolerance: float,
+    starts: Floats,
+    series: Floats,
+) -> tuple[int, int]:
+    """Take steps until the time `end` or until the arrays are full.
+
+    Parameters
+    ----------
+    q, v : (n, 2)
+        State and what its compensated sums left; moved along.
+    clock : (2,)
+        Time as a pair; moved along.
+    starts : (s + 1, 2)
+        Filled with the times at which steps start, and the last one's end.
+    series : (s, n, order + 1)
+        Filled with their coefficients.
+
+    Returns
+    -------
+    tuple of int
+        How it ended, and the number of steps.
+    """
+    n, m = table.load.shape[0], table.rate.shape[0]
+    order = series.shape[2] - 1
+    lines = np.empty(table.lines.shape[0])
+    space, products = saddle_space(table, 1), products_of(table, order, 1)
+    path, size = products.path[0], products.right.shape[1]
+    changes = np.empty((2, size))
+    place = q[:, 0].copy()
+    entries_of_lines(table, place, lines)
+    if not inverted(table, lines, space):
+        return SINGULAR, 0
+    way = 1.0 if end >= clock[0] else -1.0
+    for step in range(series.shape[0]):
+        starts[step, 0], starts[step, 1] = clock[0], clock[1]
+        left = (end - clock[0]) - clock[1]
+        if left * way <= 0.0:
+            return DONE, step
+        for i in range(n):
+            path[i], path[size + i] = q[i, 0], v[i, 0]
+        started(table, products)
+        coefficients(table, space, products, 0)
+        c = series[step]
+        for k in range(order + 1):
+            for i in range(n):
+                c[i, k] = path[k * size + i]
+        h = way * step_size(c, table.group, tolerance)
+        if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
+            return (SINGULAR if abs(h) >= 0.0 else LOST), step
+        if abs(h) >= abs(left):
+            h = left
+        for b in range(0, n, WIDTH):
+            moved, rate, by = alike(0.0), alike(0.0), alike(h)
+            for k in range(order, 2, -1):
+                own = lanes_at(path, k * size + b)
+                moved = (moved + own) * by
+                rate = fma(own, alike(float(k)), rate) * by
+            moved = (moved + lanes_at(path, 2 * size + b)) * by
+            put_lanes(changes, b, moved * by)
+            put_lanes(changes, size + b, rate * by)
+        for i in range(n):
+            # The largest terms, rate times step, are formed exactly; the rest is as much smaller as the step is short.
+            ph, pl = two_prod(v[i, 0], h)
+            q[i, 0], q[i, 1] = dd_add(q[i, 0], q[i, 1], ph, pl + changes[0, i] + v[i, 1] * h)
+            ph, pl = two_prod(2.0 * c[i, 2], h)
+            v[i, 0], v[i, 1] = dd_add(v[i, 0], v[i, 1], ph, pl + changes[1, i])
+            place[i] = q[i, 0]
+            if not (abs(q[i, 0]) < 1e150 and abs(v[i, 0]) < 1e150):
+                return LOST, step
+        entries_of_lines(table, place, lines)
+        if not inverted(table, lines, space):
+            return SINGULAR, step
+        if m > 0:
+            correct(table, space, lines, q, v)
+        sh, sl = two_sum(clock[0], h)
+        clock[0], clock[1] = two_sum(sh, sl + clock[1])
+        starts[step + 1, 0], starts[step + 1, 1] = clock[0], clock[1]
+        if h == left:
+            return DONE, step + 1
+    return FULL, series.shape[0]
+
+
+@kernel()
+def sampled(starts: Floats, series: Floats, times: Floats, which: Integers, q: Floats, v: Floats) -> None:
+    """Evaluate the series of the steps `which` at the times, into q and v of shape (t, n)."""
+    n, order = series.shape[1], series.shape[2] - 1
+    for s in range(times.shape[0]):
+        h = (times[s] - starts[which[s], 0]) - starts[which[s], 1]
+        c = series[which[s]]
+        for i in range(n):
+            moved, rate = 0.0, 0.0
+            for k in range(order, 0, -1):
+                moved = (moved + c[i, k]) * h
+            for k in range(order, 1, -1):
+                rate = (rate + k * c[i, k]) * h
+            q[s, i] = c[i, 0] + moved
+            v[s, i] = c[i, 1] + rate
+
+
+@kernel()
+def placed(starts: Floats, series: Floats, times: Floats, which: Integers, q: Floats) -> None:
+    """Evaluate the places alone, into q of shape (t, n)."""
+    n, order = series.shape[1], series.shape[2] - 1
+    for s in range(times.shape[0]):
+        h = (times[s] - starts[which[s], 0]) - starts[which[s], 1]
+        c = series[which[s]]
+        for i in range(n):
+            moved = c[i, order]
+            for k in range(order - 1, -1, -1):
+                moved = fma(moved, h, c[i, k])
+            q[s, i] = moved

@@ -1,0 +1,126 @@
+"""A body of the plane that nothing turns: its direction goes round at a constant rate, in closed form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.equations.packed import pair
+from core.multibody.motion.motion import States
+from core.multibody.table.table import Rates, Table
+
+_PER_RADIAN = 8
+_MOST_NODES = 100_000
+FEW_RADIANS = 64.0
+"""Up to which the sine of an angle in doubles is right to 2^-46."""
+
+
+@dataclass(frozen=True)
+class Turning:
+    """A direction (c, s), and its angle where that is a coordinate, at a constant rate.
+
+    Attributes
+    ----------
+    direction : tuple of int
+        Cosine and sine among the coordinates.
+    turn : int or None
+    rate : ball
+        Angular velocity (rad/s).
+    """
+
+    table: Table
+    direction: tuple[int, int]
+    turn: int | None
+    rate: Ball
+    name: str = "uniform rotation"
+    why: str = "nothing turns the body: it goes on at the rate it has"
+    how: str = "closed form"
+
+    @property
+    def period(self) -> Ball | None:
+        """The time of one turn, where the angle is no coordinate of its own."""
+        return None if self.turn is not None or is_zero(self.rate) else 2 * arb.pi() / abs(self.rate)
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the states, right to the last bit of a pair or so."""
+        n = len(self.table.q)
+        q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
+        c, s = self.direction
+        for k, t in enumerate(times):
+            angle = self.rate * arb(float(t))
+            sine, cosine = angle.sin_cos()
+            x = self.table.q[c] * cosine - self.table.q[s] * sine
+            y = self.table.q[s] * cosine + self.table.q[c] * sine
+            q[k, c], q[k, s] = pair(x, 0), pair(y, 0)
+            v[k, c], v[k, s] = pair(-self.rate * y, 0), pair(self.rate * x, 0)
+            if self.turn is not None:
+                q[k, self.turn], v[k, self.turn] = pair(self.table.q[self.turn] + angle, 0), pair(self.rate, 0)
+        return States(q, v, 2.0**-100 * np.abs(q[..., 0]), 2.0**-100 * np.abs(v[..., 0]))
+
+    def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
+        """Return coordinates and rates in doubles, None after so many radians that sines lose digits."""
+        rate = float(self.rate)
+        if abs(rate) * float(np.max(np.abs(times), initial=0.0)) > FEW_RADIANS:
+            return None
+        n = len(self.table.q)
+        q, v = np.empty((len(times), n)), np.empty((len(times), n))
+        c, s = self.direction
+        start = complex(float(self.table.q[c]), float(self.table.q[s]))
+        now = start * np.exp(1j * rate * times)
+        q[:, c], q[:, s] = now.real, now.imag
+        v[:, c], v[:, s] = -rate * now.imag, rate * now.real
+        if self.turn is not None:
+            q[:, self.turn], v[:, self.turn] = float(self.table.q[self.turn]) + rate * times, rate
+        return q, v
+
+    @property
+    def glanced_until(self) -> float:
+        """Time up to which `glance` answers (s), but for rounding."""
+        return 0.999 * FEW_RADIANS / abs(float(self.rate)) if float(self.rate) else math.inf
+
+    def nodes(self, end: float) -> Floats:
+        """Return eight times to a radian."""
+        count = min(_MOST_NODES, int(abs(float(self.rate) * end) * _PER_RADIAN))
+        return np.linspace(0.0, end, 33 + count)
+
+
+def turning(part: Table, chosen: Sequence[int]) -> Turning | None:
+    """Return the motion of a part that is a free direction, None if it is something else."""
+    if part.load or part.stiffness or part.damping or part.gyration or any(row.drag for row in part.rows):
+        return None
+    measures = [row for row in part.rows if row.measure is not None]
+    rates = [row for row in part.rows if row.measure is None]
+    if len(measures) != 1 or len(part.names) != 2 + len(rates) or len(rates) > 1 or len(chosen) != len(part.rows):
+        return None
+    measure = measures[0].measure or {}
+    squares = [key for key in measure if len(key) == 2]
+    if len(measure) != 3 or () not in measure or len(squares) != 2 or any(a != b for a, b in squares):
+        return None
+    c, s = squares[0][0], squares[1][0]
+    if set(part.mass) != {(c, c), (s, s)} or not is_zero(part.mass[(c, c)] - part.mass[(s, s)]):
+        return None
+    if not is_zero(measure[squares[0]] - measure[squares[1]]):
+        return None
+    square = part.q[c] * part.q[c] + part.q[s] * part.q[s]
+    rate = (part.q[c] * part.v[s] - part.q[s] * part.v[c]) / square
+    turn = None
+    if rates:
+        turn = next(i for i in range(3) if i not in (c, s))
+        line = rates[0].rates
+        # The angle's rate is that of the direction, of which squares add up to one.
+        expected: Rates = {turn: {(): ZERO + 1}, s: {(c,): ZERO - 1}, c: {(s,): ZERO + 1}}
+        factor = line.get(turn, {}).get((), ZERO)
+        if is_zero(factor) or not is_zero(square - 1) or rates[0].rate != 0 or set(line) != set(expected):
+            return None
+        for j, poly in expected.items():
+            mine = line[j]
+            if set(mine) != set(poly) or any(not is_zero(mine[key] / factor - x) for key, x in poly.items()):
+                # The other sense of the angle is the same with sine and cosine exchanged.
+                return None
+    return Turning(part, (c, s), turn, rate)

@@ -1,0 +1,89 @@
+"""Constant acceleration: no quadratic measures, no stiffness, no damping."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from core.arrays import Floats
+from core.compiled import kernel
+from core.double_double import dd_add, dd_mul_d
+from core.multibody.algebra.polynomials import ZERO, Ball, Poly, is_zero
+from core.multibody.equations.packed import pair
+from core.multibody.motion.motion import States
+from core.multibody.table.table import Table
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """q = q_0 + v_0 t + a t^2/2, evaluated in pairs."""
+
+    table: Table
+    acceleration: Sequence[Ball]
+    name: str = "constant acceleration"
+    why: str = "the geometry is linear and no force depends on place or velocity"
+    how: str = "closed form"
+    period: Ball | None = None
+
+    @cached_property
+    def _numbers(self) -> list[Floats]:
+        return [
+            np.array([pair(x, 0) for x in values]).reshape(-1, 2)
+            for values in (self.table.q, self.table.v, self.acceleration)
+        ]
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the states, right to the last bit of a pair or so."""
+        numbers = self._numbers
+        n = len(self.table.q)
+        q, v = np.empty((len(times), n, 2)), np.empty((len(times), n, 2))
+        start, rate, gain = numbers
+        _evaluate(start, rate, gain, np.ascontiguousarray(times, dtype=np.float64), q, v)
+        t = np.abs(times)[:, None]
+        place, fast, pull = (np.abs(x[:, 0])[None, :] for x in numbers)
+        q_error = 2.0**-100 * (place + fast * t + pull * t * t)
+        return States(q, v, q_error, 2.0**-100 * (fast + pull * t))
+
+    def nodes(self, end: float) -> Floats:
+        """Return enough times for what is at most quadratic in the state."""
+        return np.linspace(0.0, end, 33)
+
+
+def first_zero(length: Poly, table: Table, gains: Sequence[Ball], backwards: bool) -> Ball | None:
+    """Return the first time after the start, or before it, at which an affine polynomial is zero; None for never.
+
+    The coordinates move with constant accelerations `gains`, and the time is a root of a quadratic in balls.
+    """
+    c: Ball = length.get((), ZERO)
+    b = a = ZERO
+    for key, x in length.items():
+        if key:
+            c = c + x * table.q[key[0]]
+            b = b + x * table.v[key[0]]
+            a = a + x * gains[key[0]] / 2
+    if is_zero(a):
+        roots = [] if is_zero(b) else [-c / b]
+    else:
+        discriminant = b * b - 4 * a * c
+        if discriminant < 0:
+            return None
+        root = discriminant.sqrt() if discriminant > 0 else ZERO
+        s = -(b + root) / 2 if b > 0 else (root - b) / 2
+        roots = [s / a] + ([] if is_zero(s) else [c / s])
+    ahead = [r for r in roots if (r < 0 if backwards else r > 0)]
+    return min(ahead, key=lambda r: abs(float(r))) if ahead else None
+
+
+@kernel()
+def _evaluate(start: Floats, rate: Floats, gain: Floats, times: Floats, q: Floats, v: Floats) -> None:
+    for s in range(times.shape[0]):
+        t = times[s]
+        for i in range(start.shape[0]):
+            gh, gl = dd_mul_d(gain[i, 0], gain[i, 1], t)
+            v[s, i, 0], v[s, i, 1] = dd_add(rate[i, 0], rate[i, 1], gh, gl)
+            hh, hl = dd_add(rate[i, 0], rate[i, 1], 0.5 * gh, 0.5 * gl)
+            hh, hl = dd_mul_d(hh, hl, t)
+            q[s, i, 0], q[s, i, 1] = dd_add(start[i, 0], start[i, 1], hh, hl)

@@ -1,0 +1,273 @@
+"""The whole scene at many times: the states of its parts put together, and the multipliers that go with them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from core.arrays import Floats
+from core.compiled import kernel
+from core.double_double import dd_add, dd_mul
+from core.errors import AccuracyUnreachable
+from core.multibody.algebra.polynomials import Ball, Poly
+from core.multibody.algebra.rank import independent
+from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
+from core.multibody.motion.motion import Glanced, Motion
+from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.series_pairs import multipliers_pairs
+from core.multibody.reduction.reduction import Reduced
+from core.multibody.table.connection_effects import Force
+from core.multibody.table.measures import Measures
+
+
+@dataclass(frozen=True)
+class WholeStates:
+    """Every coordinate and rate of the table as described, in SI units.
+
+    Attributes
+    ----------
+    q, v : ndarray, shape (t, n, 2)
+    q_error, v_error : ndarray, shape (t, n)
+    reference : tuple of two ndarrays, or None
+    """
+
+    q: Floats
+    v: Floats
+    q_error: Floats
+    v_error: Floats
+    reference: tuple[Floats, Floats] | None
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A scene in motion.
+
+    Attributes
+    ----------
+    acceleration : sequence of balls
+        Of every coordinate as described, at the start; `gains`, of those of the reduced table.
+    parts : sequence of (coordinates of the reduced table, motion)
+    dropped : bool
+        Whether rows were left out because they followed from others at the start.
+    """
+
+    measures: Measures
+    reduced: Reduced
+    acceleration: Sequence[Ball]
+    gains: Sequence[Ball]
+    parts: Sequence[tuple[Sequence[int], Motion]]
+    dropped: bool = False
+
+    @cached_property
+    def _affine(self) -> tuple[Floats, Floats]:
+        count = len(self.reduced.table.names)
+        slopes = np.zeros((len(self.reduced.expressions), count, 2))
+        offsets = np.zeros((len(self.reduced.expressions), 2))
+        for i, expression in enumerate(self.reduced.expressions):
+            for key, value in expression.items():
+                if key:
+                    slopes[i, key[0]] = pair(value, 0)
+                else:
+                    offsets[i] = pair(value, 0)
+        return slopes, offsets
+
+    @cached_property
+    def _arrays(self) -> tuple[Packed, Units, list[int]]:
+        table, chosen = self.measures.table, self.independent_rows
+        units = units_of(table, self.acceleration)
+        return packed(table, chosen, units), units, chosen
+
+    @cached_property
+    def independent_rows(self) -> list[int]:
+        """The rows of the table that do not follow from those before them."""
+        table = self.measures.table
+        return independent(row.line(table.q) for row in table.rows)
+
+    @cached_property
+    def _glanced(self) -> list[tuple[int, Glanced]]:
+        # Whether a motion has a protocol takes longer to find out than what it then answers.
+        return [(k, motion) for k, (_, motion) in enumerate(self.parts) if isinstance(motion, Glanced)]
+
+    def motion_of(self, coordinates: Sequence[int]) -> Motion | None:
+        """Return the motion of the part that these coordinates of the scene follow, None where they stay."""
+        seen = {key[0] for i in coordinates for key in self.reduced.expressions[i] if key}
+        return next((motion for indices, motion in self.parts if seen & set(indices)), None)
+
+    def states(self, times: Floats, *, finer: bool = False) -> WholeStates:
+        """Return the states at times of shape (t,)."""
+        n, count = len(self.reduced.table.names), len(times)
+        z, w = np.zeros((count, n, 2)), np.zeros((count, n, 2))
+        z_error, w_error = np.zeros((count, n)), np.zeros((count, n))
+        other, rate = np.zeros((count, n, 2)), np.zeros((count, n, 2))
+        measured = False
+        for indices, motion in self.parts:
+            found = motion.states(times, finer=finer)
+            where = list(indices)
+            z[:, where], w[:, where] = found.q, found.v
+            z_error[:, where], w_error[:, where] = found.q_error, found.v_error
+            other[:, where], rate[:, where] = (found.q, found.v) if found.reference is None else found.reference
+            measured = measured or found.reference is not None
+        slopes, offsets = self._affine
+        size = np.abs(slopes[:, :, 0]).T
+        nothing = np.zeros_like(offsets)
+        reference = (_spread(slopes, offsets, other), _spread(slopes, nothing, rate)) if measured else None
+        return WholeStates(
+            _spread(slopes, offsets, z),
+            _spread(slopes, nothing, w),
+            z_error @ size,
+            w_error @ size,
+            reference,
+        )
+
+    def states_at(self, z: Floats, w: Floats) -> WholeStates:
+        """Return the states that go with coordinates and rates of the reduced table, each of shape (t, n)."""
+        slopes, offsets = self._affine
+        q = _spread(slopes, offsets, np.stack([z, np.zeros_like(z)], axis=2))
+        v = _spread(slopes, np.zeros_like(offsets), np.stack([w, np.zeros_like(w)], axis=2))
+        nothing = np.zeros(q.shape[:2])
+        return WholeStates(q, v, nothing, nothing, None)
+
+    def in_pairs(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
+        """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2).
+
+        The kind is that of the runs of parts without a closed form, "fine" or the coarser "check".
+        """
+        shape = (len(times), len(self.reduced.table.names), 2)
+        z, w = np.zeros(shape), np.zeros(shape)
+        for indices, motion in self.parts:
+            if isinstance(motion, Numerical):
+                z[:, list(indices)], w[:, list(indices)] = motion.by(kind, times)
+            else:
+                found = motion.states(times)
+                own = (found.q, found.v) if kind == "fine" or found.reference is None else found.reference
+                z[:, list(indices)], w[:, list(indices)] = own
+        slopes, offsets = self._affine
+        return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w)
+
+    def glance(self, times: Floats) -> tuple[Floats, Floats, bool]:
+        """Return the states as `in_pairs`, or faster to a few roundings of doubles, and whether it is the latter."""
+        found = {k: motion.glance(times) for k, motion in self._glanced}
+        if all(one is None for one in found.values()):
+            return *self.in_pairs(times), False
+        shape = (len(times), len(self.reduced.table.names), 2)
+        z, w = np.zeros(shape), np.zeros(shape)
+        for k, (indices, motion) in enumerate(self.parts):
+            where, fast = list(indices), found.get(k)
+            if fast is not None:
+                z[:, where, 0], w[:, where, 0] = fast
+            elif isinstance(motion, Numerical):
+                z[:, where], w[:, where] = motion.by("fine", times)
+            else:
+                states = motion.states(times)
+                z[:, where], w[:, where] = states.q, states.v
+        slopes, offsets = self._affine
+        return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w), True
+
+    def places(self, times: Floats) -> Floats:
+        """Return every coordinate at times of one sign, shape (t, n), to a few roundings of the answer's."""
+        z = np.zeros((len(times), len(self.reduced.table.names)))
+        for indices, motion in self.parts:
+            own = motion.places(times) if isinstance(motion, Numerical) else motion.states(times).q[..., 0]
+            z[:, list(indices)] = own
+        slopes, offsets = self._affine
+        found: Floats = offsets[:, 0] + z @ slopes[:, :, 0].T
+        return found
+
+    def misfit(self, q: Floats) -> float:
+        """Return by how much the measures are missed at most, relative to the sum of their terms."""
+        worst = 0.0
+        for row in self.measures.table.rows:
+            if row.measure is not None:
+                value, size = values(row.measure, q)
+                held = size > 0.0
+                worst = max(worst, float(np.max(np.abs(value[held]) / size[held], initial=0.0)))
+        return worst
+
+    def multipliers(self, q: Floats, v: Floats) -> Floats:
+        """Return the multipliers of every row, shape (t, rows), those of redundant rows zero.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            At a place where the connections lose their rank.
+        """
+        _, units, chosen = self._arrays
+        found = self._solved(q, v)[1]
+        total = np.zeros((len(q), len(self.measures.table.rows)))
+        for k, r in enumerate(chosen):
+            total[:, r] = found[:, k, 0] * two_to(units.multiplier(r))
+        return total
+
+    def largest_multipliers(self, multipliers: Floats) -> Floats:
+        """Return the largest of multipliers of shape (t, rows), in the units of the kernels, as one of each row."""
+        units = self._arrays[1]
+        powers = np.array([units.multiplier(row) for row in range(multipliers.shape[1])], dtype=np.int64)
+        largest = np.max(np.ldexp(np.max(np.abs(multipliers), axis=0, initial=0.0), -powers), initial=0.0)
+        found: Floats = np.ldexp(largest, powers)
+        return found
+
+    def accelerations(self, q: Floats, v: Floats) -> Floats:
+        """Return the acceleration of every coordinate at states, shape (t, n); it raises as `multipliers` does."""
+        units = self._arrays[1]
+        up = np.array([two_to(e - 2 * units.time) for e in units.lengths])
+        found: Floats = self._solved(q, v)[0][..., 0] * up
+        return found
+
+    def _solved(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+        arrays, units, chosen = self._arrays
+        down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
+        acceleration, found = np.zeros_like(q), np.zeros((len(q), len(chosen), 2))
+        done = multipliers_pairs(arrays, q * down, v * (down * two_to(units.time)), acceleration, found)
+        if done < len(q):
+            raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
+        return acceleration, found
+
+    def force(self, force: Force, q: Floats, v: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
+        """Return a force at every state, and the sum of the magnitudes of its terms, each of shape (t,)."""
+        total, size = values(force.of_state, q)
+        for j, value in force.of_rates.items():
+            term = float(value) * v[:, j, 0]
+            total, size = total + term, size + np.abs(term)
+        for j, value in force.of_squares.items():
+            term = float(value) * v[:, j, 0] ** 2
+            total, size = total + term, size + np.abs(term)
+        for row, poly in force.terms:
+            factor, factor_size = values(poly, q)
+            total = total + factor * multipliers[:, row]
+            size = size + factor_size * np.abs(multipliers[:, row])
+        return total, size
+
+
+def values(poly: Poly, q: Floats) -> tuple[Floats, Floats]:
+    """Return a polynomial at every place of shape (t, n, 2), and the sum of the magnitudes of its terms."""
+    total, size = np.zeros(len(q)), np.zeros(len(q))
+    for key, value in poly.items():
+        term = np.full(len(q), float(value))
+        for i in key:
+            term = term * q[:, i, 0]
+        total, size = total + term, size + np.abs(term)
+    return total, size
+
+
+@kernel()
+def _spread(slopes: Floats, offsets: Floats, z: Floats) -> Floats:
+    """Return offsets + slopes z in pairs for z of shape (t, n, 2)."""
+    count, n = slopes.shape[0], slopes.shape[1]
+    out = np.empty((z.shape[0], count, 2))
+    for s in range(z.shape[0]):
+        for i in range(count):
+            sh, sl = offsets[i, 0], offsets[i, 1]
+            size = abs(sh)
+            for j in range(n):
+                if slopes[i, j, 0] != 0.0:
+                    ph, pl = dd_mul(slopes[i, j, 0], slopes[i, j, 1], z[s, j, 0], z[s, j, 1])
+                    sh, sl = dd_add(sh, sl, ph, pl)
+                    size += abs(ph)
+            # What is below the rounding of its terms is zero: the velocity of a body beside that of its centre of mass.
+            if abs(sh) <= 2.0**-104 * size:
+                sh, sl = 0.0, 0.0
+            out[s, i, 0], out[s, i, 1] = sh, sl
+    return out

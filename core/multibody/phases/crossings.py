@@ -1,0 +1,73 @@
+"""The end of a phase with constant accelerations: what is watched is a quadratic in time, its roots found in balls."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.equations.expansion import Expansion, expansion, slope, value
+from core.multibody.equations.polynomial_roots import first_negative
+from core.multibody.motion.modelling import Modelled
+from core.multibody.motion.uniform import Uniform
+from core.multibody.phases.watches import Watch
+from core.multibody.table.table import Table
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """The end of a phase.
+
+    Attributes
+    ----------
+    time : ball
+        Since the start of the phase.
+    watch : Watch
+        What changed its sign.
+    q, v : list of ball
+        State there.
+    """
+
+    time: Ball
+    watch: Watch
+    q: list[Ball]
+    v: list[Ball]
+
+
+def is_uniform(model: Modelled) -> bool:
+    """Return whether nothing but constant accelerations is in a model."""
+    return all(isinstance(motion, Uniform) or motion.name == "rest" for _, motion in model.whole.parts)
+
+
+def uniform_motion(table: Table, model: Modelled) -> Expansion:
+    """Return a motion with constant accelerations as an exact expansion, its multipliers constant."""
+    places = [[q, v, a / 2, ZERO, ZERO] for q, v, a in zip(table.q, table.v, model.whole.acceleration, strict=True)]
+    # What is free has no multipliers to be found.
+    multipliers = expansion(table, 2).multipliers if table.rows else []
+    return Expansion(places, [[x[0], ZERO, ZERO] for x in multipliers])
+
+
+def state_of(motion: Expansion, time: Ball) -> tuple[list[Ball], list[Ball]]:
+    """Return coordinates and rates of an expansion at a time."""
+    return [value(x, time) for x in motion.places], [value(slope(x), time) for x in motion.places]
+
+
+def first_in_closed_form(
+    motion: Expansion, watched: Sequence[Watch], end: Ball
+) -> tuple[Crossing | None, list[tuple[Watch, Ball]]]:
+    """Return the first crossing before `end` of a motion with constant accelerations, and what only grazes zero."""
+    best: Ball = None
+    which: Watch | None = None
+    grazes: list[tuple[Watch, Ball]] = []
+    for watch in watched:
+        if watch.what in ("push", "grip"):
+            continue
+        series = watch.series(motion)
+        root, touched = first_negative(series, end)
+        grazes.extend((watch, t) for t in touched)
+        if root is not None and (best is None or root.mid() < best.mid()):
+            best, which = root, watch
+    if best is None or which is None:
+        return None, grazes
+    q, v = state_of(motion, best)
+    return Crossing(best, which, q, v), [(w, t) for w, t in grazes if t < best]

@@ -1,0 +1,181 @@
+"""A phase: a time in which nothing changes its state, with the smallest model of the scene that suffices in it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.contacts.complementarity import Decided
+from core.multibody.contacts.contact_start import ContactStart
+from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
+from core.multibody.contacts.projection import project
+from core.multibody.motion.modelling import Modelled, Piece, models_of
+from core.multibody.motion.motion import Motion
+from core.multibody.motion.numerical import Numerical
+from core.multibody.phases.accumulation import Accumulation
+from core.multibody.phases.crossings import is_uniform
+from core.multibody.phases.tracks import FLOOR, Track, Tracks
+from core.multibody.phases.turning_slip import ENDED, TurningSlip, turning_model
+from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.description import Described
+from core.systems.trajectory import MotionEvent
+
+
+@dataclass
+class Phase:
+    """A time in which nothing changes its state.
+
+    Attributes
+    ----------
+    tracks : list of Track
+        One where the state is exact, else two.
+    models : list of Modelled
+        One for each track.
+    tables : list of PhaseTable
+    states : list of State
+    unilateral : list of Unilateral
+        The measures; those that slide in space are turned into the direction in which they do at the start.
+    unknown : two lists of float, or None
+        By how much every coordinate and rate is wrong at the start on all tracks alike.
+    end : ball or None
+        None for the last.
+    bounces : Accumulation or None
+        In place of the models, where infinitely many impacts are in the phase.
+    settles : str
+        The measure that comes to rest at the end, after impacts that are not listed; empty where there are none.
+    """
+
+    tracks: list[Track]
+    models: list[Modelled]
+    tables: list[PhaseTable]
+    states: list[State]
+    unilateral: list[Unilateral]
+    unknown: tuple[list[float], list[float]] | None = None
+    end: Ball | None = None
+    bounces: Accumulation | None = None
+    settles: str = ""
+
+    @property
+    def start(self) -> Ball:
+        """Time at which it begins."""
+        return self.tracks[0].time
+
+    @property
+    def uniform(self) -> bool:
+        """Whether every acceleration is constant."""
+        return all(is_uniform(model) for model in self.models)
+
+    @property
+    def turning(self) -> bool:
+        """Whether friction turns with the slip."""
+        return any(isinstance(motion, TurningSlip) for _, motion in self.models[0].whole.parts)
+
+    @property
+    def share(self) -> float:
+        """Share of the largest rates by which what is known of its end is wrong at least."""
+        return ENDED if self.turning else FLOOR
+
+    @property
+    def still(self) -> list[bool]:
+        """Which coordinates are constants of its motion."""
+        return [not any(expression) for expression in self.models[0].whole.reduced.expressions]
+
+
+@dataclass
+class PhaseMotion:
+    """The motion of a scene through its phases.
+
+    Attributes
+    ----------
+    base : Described
+        The scene without its unilateral measures.
+    unilateral : sequence of Unilateral
+    phases : list of Phase
+    events : list of MotionEvent
+    noticed : list of str
+    problem : Problem or None
+        What ended the motion, where mechanics does not decide.
+    ended : MotionEvent or None
+        The event that ended it.
+    impacts : list of (int, str, ball or None)
+        Work of every impulse: the number of the phase that begins with it, the measure, and the work (J), None where
+        contacts could share it otherwise. A ball about zero is what bounces that are left out may take.
+    """
+
+    base: Described
+    unilateral: Sequence[Unilateral]
+    phases: list[Phase] = field(default_factory=list)
+    events: list[MotionEvent] = field(default_factory=list)
+    noticed: list[str] = field(default_factory=list)
+    problem: Problem | None = None
+    ended: MotionEvent | None = None
+    impacts: list[tuple[int, str, Ball | None]] = field(default_factory=list)
+
+
+def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:
+    """Return the phase that begins at the present state.
+
+    Parameters
+    ----------
+    turning : sequence of str
+        Contacts whose friction turns with their slip.
+
+
+    Where that is known from two tracks, each is put onto the rows of the phase: it came there by a series.
+    """
+    each, models, tables = [], [], []
+    for track in tracks.each:
+        phase = phase_table(base.measures.table, found.unilateral, found.states, track.q, track.v)
+        phase.table.rows = [row if row.name in turning else replace(row, slide=None) for row in phase.table.rows]
+        if not tracks.exact:
+            project(phase.table, tracks.wide()[0])
+            tracks.settle(phase.table.q, phase.table.v)
+            if track is tracks.first:
+                table = phase.table
+                # What is zero as far as it is known becomes zero on all tracks, which may then agree too well.
+                known = tracks.wide()
+                lost = [
+                    [_apart(x, y) for x, y in zip(*both, strict=True)]
+                    for both in zip((table.q, table.v), known, strict=True)
+                ]
+                tracks.lose(*lost)
+        models.append(_model(base, found, phase, start))
+        each.append(Track(track.time, phase.table.q, phase.table.v))
+        tables.append(phase)
+    unknown = tracks.lost if any(map(any, tracks.lost)) else None
+    return Phase(each, models, tables, found.states, found.unilateral, unknown)
+
+
+def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactStart) -> Modelled:
+    """Return the models of the table of a phase; a series runs in pairs, judged by a coarser one."""
+    measures = copy.copy(base.measures)
+    measures.table = phase.table
+    measures.forces = [*base.measures.forces, *forces_of(decided.unilateral, decided.states, phase)]
+    if any(row.slide is not None for row in phase.table.rows):
+        return turning_model(replace(base, measures=measures), decided.unilateral, phase.normal, start)
+    found = models_of(replace(base, measures=measures), start.moved, start.fitted)
+    parts: list[tuple[Sequence[int], Motion]] = []
+    for (indices, motion), piece in zip(found.whole.parts, found.pieces, strict=True):
+        own = motion
+        if isinstance(motion, Numerical):
+            own = Numerical.of(piece.table, _pulls(piece), piece.chosen, motion.why)
+            own.lost_to_doubles = True
+        parts.append((indices, own))
+    return replace(found, whole=replace(found.whole, parts=parts))
+
+
+def _apart(now: Ball, known: Ball) -> float:
+    """Return how far a number is at most from what is known of it."""
+    return abs(float((now - known).mid())) + float(known.rad())
+
+
+def _pulls(piece: Piece) -> list[Ball]:
+    """Return how fast a part may come to move: beside an equilibrium its accelerations say nothing of that."""
+    found = []
+    for i, x in enumerate(piece.acceleration):
+        load, mass = piece.table.load.get(i), piece.table.mass.get((i, i))
+        free: Ball = ZERO if load is None or mass is None else abs(load / mass)
+        found.append(free if float(free) > abs(float(x)) else x)
+    return found

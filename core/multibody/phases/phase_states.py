@@ -1,0 +1,128 @@
+"""States and columns of a phase, at times since the start of the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
+from core.multibody.algebra.polynomials import Ball
+from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
+from core.multibody.equations.packed import pair
+from core.multibody.motion.whole import WholeStates
+from core.multibody.phases.phase import Phase
+from core.multibody.phases.tracks import FLOOR, TOLD
+from core.multibody.trajectory.columns import Columns, Unknown
+from core.systems.trajectory import Column, How
+
+Times = Floats | Sequence[Ball]
+"""Doubles, or balls where a time is known to more digits."""
+
+
+def in_closed_form(phase: Phase) -> bool:
+    """Return whether the motion of a phase, and what came before it, is known without a series."""
+    return len(phase.tracks) == 1 and all(part.how == "closed form" for _, part in phase.models[0].whole.parts)
+
+
+def phase_at(phases: Sequence[Phase], time: float) -> int:
+    """Return in which phase a time is; at an event it is in the one that begins."""
+    low, high = 0, len(phases) - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if arb(time) < phases[middle].start:
+            high = middle - 1
+        else:
+            low = middle
+    return low
+
+
+def states_in(phase: Phase, times: Times) -> WholeStates:
+    """Return the states of a phase, with what its tracks differ by."""
+    if phase.bounces is not None:
+        return _bouncing(phase, times)
+    found = [_of_track(phase, k, times) for k in range(len(phase.tracks))]
+    first = found[0]
+    floor_q, floor_v = (
+        FLOOR * np.max(np.abs(x[..., 0]), axis=1, initial=0.0, keepdims=True) for x in (first.q, first.v)
+    )
+    q_error, v_error = first.q_error + floor_q, first.v_error + floor_v
+    unknown = _unknown(phase, times)
+    if unknown is not None:
+        q_error, v_error = q_error + unknown[0], v_error + unknown[1]
+    reference = first.reference
+    if len(found) > 1:
+        other = found[1]
+        reference = (other.q, other.v) if other.reference is None else other.reference
+        q_error = q_error + TOLD * np.abs((first.q - reference[0]).sum(axis=2))
+        v_error = v_error + TOLD * np.abs((first.v - reference[1]).sum(axis=2))
+    return WholeStates(first.q, first.v, q_error, v_error, reference)
+
+
+def _unknown(phase: Phase, times: Times) -> Unknown | None:
+    """Return by how much coordinates and rates are wrong on all tracks alike, None where they are not."""
+    if phase.unknown is None or phase.bounces is not None:
+        return None
+    moves = np.array([not still for still in phase.still])
+    places, rates = np.array(phase.unknown[0]), np.array(phase.unknown[1]) * moves
+    late = np.array([max(float(arb(t) - phase.start), 0.0) for t in times])
+    return places + np.outer(late, rates), np.broadcast_to(rates, (len(times), len(rates)))
+
+
+def _of_track(phase: Phase, k: int, times: Times) -> WholeStates:
+    """Return the states of one track at times since the start of the scene."""
+    whole, start = phase.models[k].whole, phase.tracks[k].time
+    pairs = [pair(arb(t) - start, 0) for t in times]
+    late = np.maximum(np.array([p[0] for p in pairs]), 0.0) if pairs else np.zeros(0)
+    rest = np.array([p[1] if p[0] > 0.0 else 0.0 for p in pairs])
+    states = whole.states(late)
+    if not np.any(rest):
+        return states
+    q, v = _later(phase, k, states.q, states.v, rest)
+    reference = None if states.reference is None else _later(phase, k, *states.reference, rest)
+    return WholeStates(q, v, states.q_error, states.v_error, reference)
+
+
+def _later(phase: Phase, k: int, q: Floats, v: Floats, rest: Floats) -> tuple[Floats, Floats]:
+    """Return states later by the tails of times: so small that one term of the Taylor series is right to pairs."""
+    gain = phase.models[k].whole.accelerations(q, v)
+    return _added(q, rest[:, None] * v[..., 0]), _added(v, rest[:, None] * gain)
+
+
+def _added(pairs: Floats, more: Floats) -> Floats:
+    """Return pairs of doubles with something small added."""
+    high = pairs[..., 0] + more
+    # What the first sum rounds off (Knuth), with the tail.
+    part = high - pairs[..., 0]
+    low = (pairs[..., 0] - (high - part)) + (more - part) + pairs[..., 1]
+    total = high + low
+    return np.stack([total, low - (total - high)], axis=-1)
+
+
+def _bouncing(phase: Phase, times: Times) -> WholeStates:
+    assert phase.bounces is not None
+    count = len(phase.tracks[0].q)
+    q, v = np.zeros((len(times), count, 2)), np.zeros((len(times), count, 2))
+    errors = np.zeros((2, len(times), count))
+    for s, t in enumerate(times):
+        late: Ball = arb(t) - phase.start
+        for k, (vector, out) in enumerate(zip(phase.bounces.at(late), (q, v), strict=True)):
+            for i, x in enumerate(vector):
+                out[s, i] = pair(x, 0)
+                errors[k, s, i] = float(x.rad()) + FLOOR * abs(float(x))
+    return WholeStates(q, v, errors[0], errors[1], None)
+
+
+def columns_in(
+    phase: Phase, times: Times, states: WholeStates, how: How, outputs: Sequence[object]
+) -> dict[str, Column]:
+    """Return the columns of some outputs; forces that the phase does not determine are left out."""
+    model = phase.models[0]
+    determined: Sequence[bool] = ()
+    if "forces-in-time" in outputs:
+        measures = model.described.measures
+        multipliers = multipliers_at_start(measures, model.whole.acceleration)
+        determined = [force.value is not None for force in forces_at_start(measures, multipliers)]
+    since = np.array([float(t) for t in times])
+    return Columns(model.whole, since, states, how, unknown=_unknown(phase, times)).chosen(outputs, determined)

@@ -1,0 +1,342 @@
+"""A scene with unilateral measures: from phase to phase, through the events between them.
+
+In a phase every contact is closed, sticks, slides or is open, and the scene is a table like any other. At its end what
+approaches collides, then the states of what touches are decided, and the next phase begins; infinitely many bounces are
+summed up.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from flint import arb
+
+from core.balls import precision
+from core.errors import AccuracyUnreachable, InvalidParameter
+from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero
+from core.multibody.contacts.complementarity import LOOKED, Decided, decided
+from core.multibody.contacts.contact_responses import gap_rate, slip_rate
+from core.multibody.contacts.contact_start import assemble_contacts
+from core.multibody.contacts.contact_states import Problem, State, change_of, phase_table
+from core.multibody.contacts.impacts import Impact, approaching, impact
+from core.multibody.equations.dynamics import kinetic
+from core.multibody.equations.packed import nearest
+from core.multibody.language.numerals import Numerals
+from core.multibody.language.scene import Scene
+from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
+from core.multibody.phases.phase_ends import Undecided, crossings_of
+from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
+from core.multibody.phases.sampled_crossings import SingularPlace
+from core.multibody.phases.tracks import FLOOR, Track, Tracks
+from core.multibody.phases.turning_slip import turns
+from core.multibody.table.description import Described, described
+from core.multibody.table.measures import COMPONENTS
+from core.systems.trajectory import MotionEvent
+
+MOST_EVENTS = 500
+"""Events that one question may have: what bounces elastically never ends."""
+SLOW = 2.0**-42
+"""Share of the largest rate below which several contacts that bounce in turn come to rest."""
+OFTEN = 3
+"""Impacts among the last ones by which a contact shows that it bounces in turn with others."""
+PRECISIONS = (480, 1280)
+"""Precisions of a motion: the second where, in closed form, balls have become wide. An impact takes three bits."""
+EXACT = 2.0**-130
+"""Share up to which the width of a state in balls is nothing."""
+_STILL = 60
+"""Events at one time before no motion is seen in them."""
+
+
+def one_sided(scene: Scene) -> bool:
+    """Return whether a scene has anything that pushes and does not pull, or a string of which a jerk is foreseen."""
+    return any(
+        connection.kind == "contact" or getattr(connection, "restitution", None) is not None
+        for connection in scene.connections
+    )
+
+
+def motion_in_phases(scene: Scene, end: float, numerals: Callable[[], Numerals] | None = None) -> PhaseMotion:
+    """Return the phases of a scene up to a time, whose numbers may be read in another way.
+
+    Raises
+    ------
+    InvalidParameter
+        For a scene that cannot be.
+    AccuracyUnreachable
+        If the first event cannot be located; a later one ends the motion.
+    """
+    for bits in PRECISIONS:
+        with precision(bits):
+            read = None if numerals is None else numerals()
+            run = _Run(described(scene, read, one_sided=True), end, last=bits == PRECISIONS[-1])
+            try:
+                run.go()
+            except _TooWide:
+                continue
+            return run.motion
+    raise AssertionError("the last precision goes on without exact balls")
+
+
+class _TooWide(Exception):
+    """The balls of a motion in closed form have become wide: more bits keep them exact for longer."""
+
+
+class _Run:
+    def __init__(self, base: Described, end: float, *, last: bool) -> None:
+        self.base, self.end, self.last = base, end, last
+        self.unilateral = base.measures.unilateral
+        self.motion = PhaseMotion(base, self.unilateral)
+        self.start = assemble_contacts(base)
+        self.touching = self.start.touching
+        table = base.measures.table
+        self.tracks = Tracks(table.units, table.q, table.v)
+        self.states = [State.OPEN] * len(self.unilateral)
+        self.decided = Decided(self.states, list(self.unilateral))
+        self.turning: list[str] = []
+        self.bounced: dict[int, int] = {}
+
+    def go(self) -> None:
+        """Go through the phases until the end, or until mechanics does not decide."""
+        try:
+            self._follow()
+        except InvalidParameter:
+            if self.tracks.exact or not self.motion.phases:
+                raise
+            # The description is not at fault: what is known of the state does not tell any more what holds it.
+            explanation = "the error of the motion has grown as large as the motion, and what holds it cannot be told"
+            self._stop(Problem("lost-event", explanation, (), decided_by="an answer up to an earlier time"))
+
+    def _follow(self) -> None:
+        still, last = 0, -1.0
+        while True:
+            if not self._collide():
+                return
+            problem = self._decide()
+            if problem is not None:
+                self._stop(problem)
+                return
+            phase = phase_of(self.base, self.decided, self.turning, self.tracks, self.start)
+            self.motion.phases.append(phase)
+            if self._accumulate(phase):
+                continue
+            try:
+                if not self._advance(phase):
+                    return
+            except AccuracyUnreachable as lost:
+                if len(self.motion.phases) == 1:
+                    raise
+                self._stop(Problem("lost-event", lost.detail, (), decided_by="an answer up to an earlier time"))
+                return
+            now = float(self.tracks.time)
+            still, last = (still + 1, last) if now <= last else (0, now)
+            if still > _STILL:
+                self._stop(Problem("no-progress", "events follow one another without any time between them", ()))
+                return
+            if len(self.motion.events) >= MOST_EVENTS:
+                explanation = f"{MOST_EVENTS} events are as many as one question may have, and more would follow"
+                decided_by = "another question, from the state that is answered last"
+                self._stop(Problem("event-limit", explanation, (), decided_by=decided_by))
+                return
+
+    def _stop(self, problem: Problem) -> None:
+        """End the motion where mechanics does not decide."""
+        self.motion.problem = problem
+        self.motion.ended = self._event(problem.code, ", ".join(problem.contacts))
+
+    def _event(self, kind: str, name: str) -> MotionEvent:
+        """Add an event at the present time."""
+        event = MotionEvent(kind, name, nearest(self.tracks.time), self.tracks.late())
+        self.motion.events.append(event)
+        return event
+
+    def _collide(self) -> bool:
+        """Resolve what approaches; return whether that is decided."""
+        table, tracks = self.base.measures.table, self.tracks
+        for _ in range(_STILL):
+            q, v = tracks.wide()
+            hit = approaching(self.unilateral, self.touching, q, v)
+            if not hit:
+                return True
+            unilateral, share = self.unilateral, self._slowness(hit)
+            if share > 0.0:
+                # What still bounces so little comes to rest in no time; the tracks are moved apart by what that omits.
+                unilateral = [replace(one, restitution=ZERO) for one in self.unilateral]
+                tracks.floor = max(tracks.floor, share)
+                tracks.part(self.motion.phases[-1].still, share)
+                tracks.delay(share * tracks.own_time())
+                tracks.lose(*([share * x for x in scales] for scales in tracks.scales()))
+                q, v = tracks.wide()
+                # What is within that of another contact touches it.
+                near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
+                self.touching = sorted({*self.touching, *near})
+                # What each of them takes of the bounces left out is not known, only that it is not more than all take.
+                left_out = arb(0, kinetic(replace(table, q=q, v=v)).rad())
+                names = [self.unilateral[i].name for i in self.touching]
+                self.motion.impacts.extend((len(self.motion.phases), name, left_out) for name in names)
+            outcome = impact(table, unilateral, self.touching, q, v)
+            if isinstance(outcome, Problem):
+                self._stop(outcome)
+                return False
+            self._record(hit, outcome)
+            rates = [outcome.v]
+            if not tracks.exact:
+                rates = []
+                for track in tracks.each:
+                    alike = impact(table, unilateral, self.touching, track.q, track.v, settled=outcome)
+                    if isinstance(alike, Problem):
+                        self._stop(alike)
+                        return False
+                    rates.append(alike.v)
+            tracks.each = [replace(track, v=v) for track, v in zip(tracks.each, rates, strict=True)]
+        self._stop(Problem("no-progress", "impacts follow one another without end", ()))
+        return False
+
+    def _slowness(self, hit: Sequence[int]) -> float:
+        """Return what is left of bounces that are slow, as a share of the largest rate, if there were many; else 0."""
+        names = Counter(event.name for event in self.motion.events[-2 * LISTED :])
+        if len(self.motion.events) < LISTED or any(names[self.unilateral[i].name] < OFTEN for i in hit):
+            return 0.0
+        share = max(self._share(i) for i in hit)
+        if not share < SLOW:
+            return 0.0
+        # All bounces that would follow, each less than the one before by the restitution, and as much again.
+        bounciest = max(float(self.unilateral[i].restitution) for i in hit)
+        return 2.0 * share / (1.0 - bounciest) if bounciest < 1.0 else 0.0
+
+    def _share(self, i: int) -> float:
+        """Return the rate of a gap as a share of the largest rate so far of its unit."""
+        one, first = self.unilateral[i], self.tracks.first
+        fastest = self.tracks.fastest("rad" if one.unit == "N m" else "m")
+        return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf
+
+    def _record(self, hit: Sequence[int], outcome: Impact) -> None:
+        """Add the events of an impact, each with the energy that its connection takes."""
+        self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
+        for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
+            one, (push, rub, beside) = outcome.unilateral[i], outcome.impulses[i]
+            impulses = {"normal": nearest(push)}
+            if one.tangents is not None:
+                for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
+                    impulses[f"friction.{axis}"] = nearest(rub * x + beside * y)
+            elif one.slip is not None:
+                impulses["friction"] = nearest(rub)
+            time, late = nearest(self.tracks.time), self.tracks.late()
+            work = outcome.works[i]
+            known = None if i in outcome.shared else work
+            self.motion.impacts.append((len(self.motion.phases), one.name, known))
+            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, nearest(ZERO - work)))
+
+    def _decide(self) -> Problem | None:
+        """Find the states of what touches, and what changes by them."""
+        q, v = self.tracks.wide()
+        table = self.base.measures.table
+        found = decided(table, self.unilateral, self.touching, q, v)
+        if isinstance(found, Problem):
+            return found
+        now = phase_table(table, found.unilateral, found.states, q, v)
+        self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
+        for one in found.unilateral:
+            if one.name in self.turning and is_zero(slip_rate(one, q, v)):
+                return Problem(
+                    "turning-onset",
+                    "what begins to slide in space would turn the direction of its friction from the first moment on",
+                    (one.name,),
+                    decided_by="a velocity with which it slides already",
+                )
+        for one, old, new in zip(self.unilateral, self.states, found.states, strict=True):
+            kind = change_of(one, old, new)
+            if kind and self.motion.phases:
+                self._event(kind, one.name)
+            if old is not new:
+                self.bounced = {}
+        self.decided, self.states = found, found.states
+        return None
+
+    def _advance(self, phase: Phase) -> bool:
+        """Go to the end of a phase; return whether anything comes after it."""
+        left = arb(self.end) - phase.start
+        if not left > 0:
+            return False
+        try:
+            crossings = crossings_of(self.base, phase, left, self.motion.noticed)
+        except Undecided as undecided:
+            phase.end = phase.start + undecided.graze.time
+            self.tracks.each = [replace(track, time=phase.end) for track in self.tracks.each]
+            name = undecided.graze.watch.one.name
+            self._stop(
+                Problem(
+                    "grazing-contact",
+                    f"whether {name} is reached is not known: the gap turns back at zero, to the width of its error",
+                    (name,),
+                    ({name: "touches, and bounces at less than is known"}, {name: "is passed by"}),
+                    "a start from which it is clearly reached or missed",
+                )
+            )
+            return False
+        except SingularPlace as place:
+            phase.end = phase.start + place.time
+            event = MotionEvent("singular", "", float(phase.end), 1e-9 * float(phase.end))
+            self.motion.events.append(event)
+            self.motion.ended = event
+            return False
+        if not crossings:
+            return False
+        first, tracks = crossings[0], self.tracks
+        tracks.lived(float(first.time), phase.tracks[0].q, first.q, phase.models[0].whole.acceleration)
+        before = phase.tracks if len(phase.tracks) == len(crossings) else phase.tracks * len(crossings)
+        tracks.each = [Track(t.time + x.time, x.q, x.v) for t, x in zip(before, crossings, strict=True)]
+        wide = tracks.exact and tracks.width() > EXACT
+        if wide and not self.last:
+            raise _TooWide
+        if wide or not tracks.exact:
+            tracks.part(phase.still, phase.share, FLOOR)
+        phase.end = tracks.time
+        self._meet(phase, first.watch.number)
+        return True
+
+    def _meet(self, phase: Phase, ending: int) -> None:
+        """Find what touches at the end of a phase: what was closed, what ended it, and what is met there as well."""
+        q, _ = self.tracks.wide()
+        closed = [i for i, state in enumerate(phase.states) if state is not State.OPEN]
+        met = []
+        for i, one in enumerate(self.unilateral):
+            gap = evaluated(one.gap, q)
+            if i not in closed and (i == ending or is_zero(gap) or bool(gap < 0)):
+                met.append(i)
+        self.touching = sorted({*closed, *met})
+        if len(met) > 1:
+            self.motion.noticed.append(
+                f"{', '.join(self.unilateral[i].name for i in met)} touch at one time, as far as that is known"
+            )
+
+    def _accumulate(self, phase: Phase) -> bool:
+        """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
+        for i, count in self.bounced.items():
+            own_time = self.tracks.own_time()
+            few = len(self.motion.events) >= MANY or self._share(i) < SMALL
+            listed = count >= (LATER_LISTED if few else LISTED)
+            found = recurring(self.unilateral, i, phase, own_time, arb(self.end), listed=listed)
+            if found is None:
+                continue
+            length = found.tails[0].length
+            phase.end, phase.settles = phase.start + length, self.unilateral[i].name
+            if found.exact:
+                phase.bounces = found.tails[0]
+            self.tracks.each = [
+                Track(track.time + tail.length, *tail.limit())
+                for track, tail in zip(phase.tracks, found.tails, strict=True)
+            ]
+            if not (self.tracks.exact and found.exact):
+                # Over the bounces the acceleration changes in proportion to their length.
+                part = 0.0 if found.exact else float(length) / own_time
+                self.tracks.part(phase.still, max(FLOOR, part**2), max(FLOOR, part**3))
+                if part:
+                    self.tracks.delay(own_time * part**2)
+            self.touching = sorted({*(j for j, s in enumerate(phase.states) if s is not State.OPEN), i})
+            self._event("settle", self.unilateral[i].name)
+            self.bounced = {}
+            return True
+        return False

@@ -1,0 +1,192 @@
+"""Whether the bounces that follow an impact are all alike, so that they may be summed up (`Accumulation`).
+
+They are if the acceleration between them is constant, if the same impulse follows every arc with the same ratio of
+friction, if whatever else is closed stays so under every impulse, and if nothing else is met until they end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from flint import arb
+
+from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero
+from core.multibody.contacts.contact_responses import (
+    Responses,
+    across_rate,
+    gap_rate,
+    rate_along,
+    responses,
+    slip_rate,
+)
+from core.multibody.contacts.contact_states import State, grips
+from core.multibody.contacts.slip_directions import along_slip
+from core.multibody.phases.accumulation import Accumulation
+from core.multibody.phases.crossings import is_uniform
+from core.multibody.phases.phase import Phase
+from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.table import Row, Table
+
+SHORT = 2.0**-30
+"""Share of a scene's own time in which the bounces that are left are alike, where they are not exactly so."""
+LISTED, LATER_LISTED = 12, 3
+"""Bounces of one contact that are listed before the rest is summed up: at first; after `MANY` events, or if small."""
+MANY = 60
+SMALL = 2.0**-20
+"""Share of the largest rate below which bounces are small."""
+
+
+@dataclass(frozen=True)
+class Recurring:
+    """Bounces of one measure that are alike until they end.
+
+    Attributes
+    ----------
+    tails : list of Accumulation
+        On every track.
+    exact : bool
+        Whether they are alike exactly, and not only in the limit.
+    """
+
+    tails: list[Accumulation]
+    exact: bool
+
+
+def recurring(
+    unilateral: Sequence[Unilateral], i: int, phase: Phase, own_time: float, end: Ball, *, listed: bool
+) -> Recurring | None:
+    """Return the bounces of a measure that follow the start of a phase, None where they do not end as they are.
+
+    Parameters
+    ----------
+    own_time : float
+        Time in which the scene moves by its own size (s).
+    end : ball
+        Time up to which the motion is wanted (s).
+    listed : bool
+        Whether enough bounces are listed, so that those that are alike exactly may be summed up.
+    """
+    one = unilateral[i]
+    if phase.states[i] is not State.OPEN or not 0 < one.restitution < 1:
+        return None
+    exact = is_uniform(phase.models[0]) and len(one.gap) > 0 and all(len(key) < 2 for key in one.gap)
+    if exact and not listed:
+        return None
+    found: list[Accumulation] = []
+    for k in range(len(phase.tracks)):
+        tail = _tail(unilateral, i, phase, k, None if exact or k else SHORT * own_time)
+        if tail is None:
+            return None
+        found.append(tail)
+    if phase.start + found[0].length > end or not _alone(unilateral, i, phase, found[0]):
+        return None
+    return Recurring(found, exact)
+
+
+def _tail(unilateral: Sequence[Unilateral], i: int, phase: Phase, k: int, most: float | None) -> Accumulation | None:
+    """Return the bounces of a measure as they follow the start of a track of a phase, None where they are not alike.
+
+    Nor where they last for `most` seconds, if that is given.
+    """
+    track, table = phase.tracks[k], phase.tables[k].table
+    one = along_slip(unilateral, [i], track.q, track.v)[i]
+    acceleration = list(phase.models[k].whole.acceleration)
+    opening = gap_rate(one, track.q, track.v)
+    closing = -_acceleration(table, Row.held(one.name, one.gap), acceleration)
+    if not opening > 0 or not closing > 0:
+        return None
+    if most is not None and not 2 * opening / closing / (1 - one.restitution) < most:
+        return None
+    found = responses(table, [one], [0])
+    ratio: Ball | None = ZERO
+    if one.slip is not None:
+        gain = _acceleration(table, Row(one.name, None, one.slip), acceleration)
+        ratio = _ratio(one, found, opening, closing, gain, slip_rate(one, track.q, track.v))
+        if ratio is None:
+            return None
+    if one.across is not None and not _straight(one, found, table, track.q, track.v, acceleration):
+        return None
+    push, yields = list(found.columns[0]), found.matrix[0][0]
+    if one.slip is not None:
+        push = [x + ratio * y for x, y in zip(push, found.columns[1], strict=True)]
+        yields = yields + ratio * found.matrix[0][1]
+    if not yields > 0 or not _pressed(unilateral, phase, k, found, ratio):
+        return None
+    return Accumulation(track.q, track.v, acceleration, push, yields, opening, closing, one.restitution)
+
+
+def _acceleration(table: Table, row: Row, acceleration: list[Ball]) -> Ball:
+    """Return the acceleration along a row, with what its change of direction adds."""
+    return rate_along(row.line(table.q), acceleration) - table.convective(row)
+
+
+def _straight(
+    one: Unilateral, found: Responses, table: Table, q: list[Ball], v: list[Ball], acceleration: list[Ball]
+) -> bool:
+    """Return whether the slip of bounces in space stays along one direction."""
+    gain = _acceleration(table, Row(one.name, None, one.across or {}), acceleration)
+    beside = (across_rate(one, q, v), gain, found.matrix[2][0], found.matrix[2][1])
+    return all(is_zero(x) for x in beside)
+
+
+def _ratio(one: Unilateral, found: Responses, opening: Ball, closing: Ball, gain: Ball, slip: Ball) -> Ball | None:
+    """Return the ratio of friction to push that every impulse has, None where it is not always the same.
+
+    Parameters
+    ----------
+    opening, closing : ball
+        Rate w of the gap after the impact, and gamma at which that falls.
+    gain, slip : ball
+        Acceleration of the slip during an arc, and its rate at the start.
+    """
+    e = one.restitution
+    (nn, nt), (tn, tt) = (line[:2] for line in found.matrix[:2])
+    if is_zero(slip):
+        # It slips during an arc, and stops at its end: by as much less, every time, as the arc is shorter.
+        share = 2 * gain / (closing * (1 + e))
+        ratio = -(tn + share * nn) / (tt + share * nt)
+        return ratio if abs(ratio) < one.static else None
+    ratio = -one.kinetic if slip > 0 else one.kinetic
+    total = (1 + e) * opening / ((nn + ratio * nt) * (1 - e))
+    length = 2 * opening / (closing * (1 - e))
+    return ratio if abs(slip) > abs(gain) * length + abs((tn + ratio * tt) * total) else None
+
+
+def _pressed(unilateral: Sequence[Unilateral], phase: Phase, k: int, found: Responses, ratio: Ball) -> bool:
+    """Return whether what is closed takes its share of every impulse as it is: it is pressed, and sticks."""
+    reactions = dict(found.reactions[0])
+    if ratio != 0:
+        for r, x in found.reactions[1].items():
+            reactions[r] = reactions[r] + ratio * x
+    # The row's multiplier answers an acceleration; an impulse is answered alike.
+    for j, (one, row) in enumerate(zip(unilateral, phase.tables[k].normal, strict=True)):
+        push: Ball = ZERO if row is None else reactions.get(row, ZERO)
+        if not is_zero(push) and push < 0:
+            return False
+        rubs = [reactions.get(slip, ZERO) for slip in phase.tables[k].grip(j)]
+        if any(not is_zero(rub) for rub in rubs) and not all(x > 0 for x in grips(one.static * push, rubs)):
+            return False
+    return True
+
+
+def _alone(unilateral: Sequence[Unilateral], i: int, phase: Phase, tail: Accumulation) -> bool:
+    """Return whether nothing else can happen until the bounces end: all else is too far away, or slips too fast."""
+    length, total = tail.length, tail.total
+    reach = [
+        length * (abs(v) + abs(a) * length + abs(r) * total) for v, a, r in zip(tail.v, tail.a, tail.push, strict=True)
+    ]
+    here = phase.tracks[0].q
+    around = [arb(x.mid(), float(y.upper())) for x, y in zip(here, reach, strict=True)]
+    for j, (one, state) in enumerate(zip(unilateral, phase.states, strict=True)):
+        if j == i:
+            continue
+        if state is State.OPEN and not evaluated(one.gap, around) > 0:
+            return False
+        if state.sense:
+            # A contact whose slip the impulses do not stop.
+            along = Row(one.name, None, one.slip or {}).line(here)
+            change, jerk = rate_along(along, tail.a), rate_along(along, tail.push)
+            if not abs(slip_rate(one, here, tail.v)) > abs(change) * length + abs(jerk) * total:
+                return False
+    return True

@@ -1,0 +1,128 @@
+"""A motion through phases as stretches on which it is smooth: the phases themselves, and the arcs of bounces in them.
+
+At an event a rate may jump, and so do forces: a stretch has its own values at both of its ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
+from core.errors import BudgetExceeded
+from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.equations.packed import pair
+from core.multibody.motion.whole import WholeStates
+from core.multibody.phases.accumulation import Accumulation
+from core.multibody.phases.phase import Phase, PhaseMotion
+from core.multibody.phases.phase_states import columns_in, states_in
+from core.multibody.phases.tracks import TOLD
+from core.multibody.trajectory.along import watched_times
+from core.systems.trajectory import Column, How
+
+MOST_ARCS = 2000
+"""Bounces, of those that accumulate, that are followed one by one."""
+_GONE = 2.0**-60
+"""Share of the first of them below which a bounce is nothing."""
+_EARLY = 2.0 ** -np.arange(8.0, 0.0, -1.0)
+"""Shares of the first interval at which a stretch is looked at: what begins at a value may come back to it soon."""
+_ROUNDED = 2.0**-51
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of a phase on which the motion is smooth.
+
+    Attributes
+    ----------
+    number : int
+        Of the phase.
+    phase : Phase
+    start : ball
+        Since the start of the scene.
+    length : float
+        Seconds.
+    late : float
+        Error of the start (s).
+    arc : tuple of three lists of ball, or None
+        State at the start of an arc, and its constant accelerations.
+    """
+
+    number: int
+    phase: Phase
+    start: Ball
+    length: float
+    late: float
+    arc: tuple[Sequence[Ball], Sequence[Ball], Sequence[Ball]] | None = None
+
+    def states(self, times: Floats) -> WholeStates:
+        """Return the states at times since the start of the stretch, shape (t,)."""
+        within = np.clip(times, 0.0, self.length)
+        if self.arc is None:
+            return states_in(replace(self.phase, bounces=None), [self.start + float(t) for t in within])
+        q, v, a = (np.array([pair(x, 0) for x in vector]) for vector in self.arc)
+        gain = a[:, 0]
+        gone, won = within[:, None] * (v[:, 0] + 0.5 * within[:, None] * gain), within[:, None] * gain
+        sizes = np.abs(q[:, 0]) + np.abs(within[:, None] * v[:, 0]) + np.abs(gone), np.abs(v[:, 0]) + np.abs(won)
+        states = [np.stack([x[:, 0] + y, x[:, 1] + 0.0 * y], axis=-1) for x, y in ((q, gone), (v, won))]
+        return WholeStates(states[0], states[1], _ROUNDED * sizes[0], _ROUNDED * sizes[1], None)
+
+    def columns(self, times: Floats, how: How, group: str) -> dict[str, Column]:
+        """Return the columns of one output at times since the start of the stretch."""
+        phase = replace(self.phase, bounces=None)
+        return columns_in(phase, [self.start + float(t) for t in times], self.states(times), how, [group])
+
+    def grid(self, every: int = 1) -> Floats:
+        """Return times from zero to the length between which nothing turns twice."""
+        if self.arc is not None:
+            return np.linspace(0.0, self.length, 5)
+        found = watched_times(self.phase.models[0].whole, self.length, every)
+        if len(found) < 2:
+            return found
+        return np.unique(np.concatenate([found, _EARLY * found[1]]))
+
+
+def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:
+    """Yield the stretches of a motion up to a time, in their order."""
+    for number, phase in enumerate(motion.phases):
+        until = arb(end)
+        if phase.end is not None and phase.end < until:
+            until = phase.end
+        # What happens at the start belongs to the first.
+        if number and not until > phase.start:
+            return
+        late = float(phase.start.rad())
+        late += TOLD * max((abs(float(one.time - phase.start)) for one in phase.tracks), default=0.0)
+        if phase.bounces is None:
+            yield Stretch(number, phase, phase.start, float(until - phase.start), late)
+        else:
+            yield from _arcs(number, phase, phase.bounces, until, late)
+
+
+def _arcs(number: int, phase: Phase, bounces: Accumulation, until: Ball, late: float) -> Iterator[Stretch]:
+    """Yield the arcs of bounces, and in one what is left of them where that is next to nothing."""
+    reach = until - phase.start
+    for n in range(MOST_ARCS):
+        begins, power = bounces.begins(n), bounces.restitution**n
+        if not begins < reach:
+            return
+        if float(power) < _GONE:
+            q, v = bounces.limit()
+            left = bounces.length - begins
+            before = [x - left * y for x, y in zip(q, v, strict=True)]
+            arc = before, v, [ZERO] * len(v)
+            yield Stretch(number, phase, phase.start + begins, float(reach - begins), late, arc)
+            return
+        ends = bounces.begins(n + 1)
+        length = float((ends if ends < reach else reach) - begins)
+        yield Stretch(number, phase, phase.start + begins, length, late, (*bounces.state(begins, power), bounces.a))
+    raise BudgetExceeded(
+        "bounces that are followed one by one",
+        MOST_ARCS,
+        MOST_ARCS,
+        path=("outputs",),
+        remedy="ask for earlier times, or without what is summed up or searched along the way",
+    )

@@ -1,0 +1,265 @@
+"""What is summed up along a motion through events: works of every connection, friction and impacts, and paths.
+
+Between events they are integrals, as in any other motion. A contact that slides takes the power mu N |slip|; an impact
+takes at once what its impulse times the mean rate is. Of bounces that accumulate the impacts take what all else leaves
+over of the change of kinetic energy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats, Integers
+from core.errors import NotApplicable
+from core.multibody.contacts.contact_states import force_names
+from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
+from core.multibody.equations.packed import pair
+from core.multibody.phases.phase import Phase, PhaseMotion
+from core.multibody.phases.sampled_crossings import rates_along
+from core.multibody.phases.stretches import Stretch
+from core.multibody.start import energy_of
+from core.multibody.table.connection_effects import Unilateral, Work
+from core.multibody.table.momenta import work_of_potential
+from core.multibody.trajectory.along import State, path_speeds, power_of, watched_times
+from core.multibody.trajectory.integrals import integrated
+from core.systems.trajectory import Column, How
+
+_SMALL = 2.0**-50
+_TELL = 4.0
+_PARTS = 8
+FRICTION, IMPACTS = "friction.work", "impacts.work"
+
+Power = Callable[[State], tuple[Floats, Floats]]
+"""From states to summands, and how large their terms are."""
+
+
+@dataclass
+class _Sum:
+    """One sum at the samples so far, and what it has come to at the start of a stretch, each with an error."""
+
+    values: Floats
+    errors: Floats
+    carried: float = 0.0
+    error: float = 0.0
+
+    def add(self, value: float, error: float) -> None:
+        """Add what happens at one time."""
+        self.carried, self.error = self.carried + value, self.error + error
+
+
+class SumsInPhases:
+    """Sums along a motion at some times.
+
+    Parameters
+    ----------
+    motion : PhaseMotion
+    pieces : sequence of Stretch
+        Up to the latest time.
+    times : ndarray, shape (t,)
+    how : str
+    """
+
+    def __init__(self, motion: PhaseMotion, pieces: Sequence[Stretch], times: Floats, how: How) -> None:
+        self.motion, self.pieces, self.times, self.how = motion, pieces, times, how
+        starts = [piece.start for piece in pieces]
+        self.where = np.array([_last_before(starts, float(t)) for t in times], dtype=np.int64)
+
+    def paths(self) -> dict[str, Column]:
+        """Return the lengths of the paths of centres of mass (m)."""
+        frames = self.motion.base.measures.coordinates.frames
+        sums = {f"{name}.path": self._sum() for name in frames}
+        for number, piece in enumerate(self.pieces):
+            for name, speed in path_speeds(frames).items():
+                self._integrate(sums[f"{name}.path"], number, piece, _sized(speed))
+        return {name: self._column(one, "m") for name, one in sums.items()}
+
+    def works(self) -> dict[str, Column]:
+        """Return the works of laws, and of friction and impacts of everything that touches (J).
+
+        What rigid bodies do not determine is left out.
+
+        Raises
+        ------
+        NotApplicable
+            Where a motor holds a rate through impacts, of which it takes a share.
+        """
+        measures = self.motion.base.measures
+        if self.motion.impacts and any(work.rows for work in measures.works):
+            raise NotApplicable(
+                "works are not answered where something is driven through impacts: what holds the rate takes a share",
+                path=("outputs",),
+                remedy="ask for energy-in-time: what it and the energy_loss of the events leave over is that share",
+            )
+        found = {f"{work.name}.work": self._sum() for work in measures.works}
+        for one in self.motion.unilateral:
+            found |= {f"{one.name}.{FRICTION}": self._sum()} if one.slip is not None else {}
+            found[f"{one.name}.{IMPACTS}"] = self._sum()
+        unknown: set[str] = set()
+        phase = -1
+        for number, piece in enumerate(self.pieces):
+            if piece.number != phase:
+                phase = piece.number
+                self._impacts(found, unknown, phase)
+            for work in measures.works:
+                name = f"{work.name}.work"
+                if work.potential is not None:
+                    self._by_potential(found[name], number, piece, work)
+                else:
+                    self._integrate(found[name], number, piece, _sized(power_of(piece.phase.models[0].whole, work)))
+            for i, one in enumerate(piece.phase.unilateral):
+                if one.slip is not None:
+                    self._rub(found, unknown, i, one, number, piece)
+                self._put(found[f"{one.name}.{IMPACTS}"], *_nothing(*self._local(number, piece)))
+            if piece.phase.settles:
+                if unknown:
+                    unknown.add(f"{piece.phase.settles}.{IMPACTS}")
+                if piece.arc is not None:
+                    self._bounce(found, number, piece)
+                elif number + 1 < len(self.pieces):
+                    self._come_to_rest(found[f"{piece.phase.settles}.{IMPACTS}"], piece, self.pieces[number + 1])
+        return {name: self._column(one, "J") for name, one in found.items() if name not in unknown}
+
+    def _sum(self) -> _Sum:
+        return _Sum(np.zeros(len(self.times)), np.zeros(len(self.times)))
+
+    def _column(self, one: _Sum, unit: str) -> Column:
+        error = float(np.max(one.errors + _SMALL * np.abs(one.values), initial=0.0))
+        return Column(one.values, unit, error, self.how)
+
+    def _local(self, number: int, piece: Stretch) -> tuple[Integers, Floats]:
+        """Return which samples are in a stretch, and their times since its start, with that of its end."""
+        mine = np.flatnonzero(self.where == number)
+        late = [pair(arb(float(self.times[k])) - piece.start, 0)[0] for k in mine]
+        return mine, np.append(np.clip(np.array(late, dtype=np.float64), 0.0, piece.length), piece.length)
+
+    def _put(self, one: _Sum, mine: Integers, values: Floats, errors: Floats) -> None:
+        """Take the values of a sum on a stretch, at its samples and its end."""
+        one.values[mine], one.errors[mine] = one.carried + values[:-1], one.error + errors[:-1]
+        one.add(float(values[-1]), float(errors[-1]))
+
+    def _integrate(self, one: _Sum, number: int, piece: Stretch, function: Power) -> None:
+        mine, times = self._local(number, piece)
+
+        def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
+            states = piece.states(times)
+            own, size = function((states.q, states.v))
+            return own, own if states.reference is None else function(states.reference)[0], size
+
+        if piece.arc is None:
+            nodes = watched_times(piece.phase.models[0].whole, piece.length, _PARTS)
+        else:
+            nodes = np.array([0.0, piece.length])
+        values, errors = integrated(integrand, nodes, times)
+        # An event that comes later or earlier changes what is summed up by as much as the summands on either side.
+        ends = np.abs(integrand(np.array([0.0, piece.length]))[0])
+        one.error += piece.late * float(ends[0])
+        self._put(one, mine, values, errors)
+        one.error += (piece.late + 2.0**-53 * piece.length) * float(ends[1])
+
+    def _by_potential(self, one: _Sum, number: int, piece: Stretch, work: Work) -> None:
+        mine, times = self._local(number, piece)
+        states = piece.states(times)
+        start = np.array([pair(x, 0) for x in self.motion.phases[0].tracks[0].q])
+        done, size = work_of_potential(work.potential or {}, start, states.q)
+        errors = _SMALL * size
+        other = states.q.copy()
+        # The first double of a pair would swallow an error smaller than its rounding.
+        other[..., 1] += states.q_error
+        errors = errors + np.abs(work_of_potential(work.potential or {}, start, other)[0] - done)
+        # It is a function of the place: nothing is carried over.
+        one.carried, one.error = 0.0, 0.0
+        self._put(one, mine, done, errors)
+
+    def _impacts(self, found: dict[str, _Sum], unknown: set[str], phase: int) -> None:
+        """Add the works of the impacts with which a phase begins."""
+        for number, name, work in self.motion.impacts:
+            if number != phase:
+                continue
+            if work is None:
+                unknown.add(f"{name}.{IMPACTS}")
+            else:
+                found[f"{name}.{IMPACTS}"].add(float(work), float(work.rad()) + 2.0**-52 * abs(float(work)))
+
+    def _rub(
+        self, found: dict[str, _Sum], unknown: set[str], i: int, one: Unilateral, number: int, piece: Stretch
+    ) -> None:
+        """Add the work of the friction of a contact."""
+        phase, name = piece.phase, f"{one.name}.{FRICTION}"
+        row = phase.tables[0].normal[i]
+        if row is None or not phase.states[i].sense:
+            self._put(found[name], *_nothing(*self._local(number, piece)))
+            return
+        if not _determined(phase, force_names(one)[0]):
+            unknown.add(name)
+            return
+        whole = phase.models[0].whole
+
+        def power(state: State) -> tuple[Floats, Floats]:
+            q, v = state
+            slips = [rates_along(line, q, v) for line in one.slips]
+            speed = np.abs(slips[0][0]) if len(slips) == 1 else np.hypot(slips[0][0], slips[1][0])
+            push = float(one.kinetic) * whole.multipliers(q, v)[:, row]
+            # The slip is what the rates of a place and of a turn leave of one another.
+            return -push * speed, np.abs(push) * sum(size for _, size in slips)
+
+        self._integrate(found[name], number, piece, power)
+
+    def _bounce(self, found: dict[str, _Sum], number: int, piece: Stretch) -> None:
+        """Give the impacts that are not listed what all else leaves over of the change of kinetic energy."""
+        mine, times = self._local(number, piece)
+        settling = f"{piece.phase.settles}.{IMPACTS}"
+        kinetic = piece.columns(times, self.how, "energy-in-time")["energy.kinetic"]
+        others = [one for name, one in found.items() if name != settling]
+        values = kinetic.values - energy_of(self.motion.base).kinetic
+        left = np.append(values[:-1] - sum(one.values[mine] for one in others), values[-1])
+        left[-1] -= sum(one.carried for one in others)
+        errors = np.append(sum(one.errors[mine] for one in others), sum(one.error for one in others))
+        one = found[settling]
+        one.carried, one.error = 0.0, 0.0
+        # Arcs are evaluated in doubles: their rates may be wrong by two roundings of each of their terms.
+        self._put(one, mine, left, errors + 8.0 * kinetic.error)
+
+    def _come_to_rest(self, one: _Sum, piece: Stretch, following: Stretch) -> None:
+        """Add what impacts take that are over in next to no time: their loss is that at the end of the stretch."""
+        ends = piece.columns(np.array([piece.length]), self.how, "energy-in-time")["energy.kinetic"]
+        starts = following.columns(np.zeros(1), self.how, "energy-in-time")["energy.kinetic"]
+        one.add(float(starts.values[0] - ends.values[0]), starts.error + ends.error)
+
+
+def _last_before(starts: Sequence[arb], time: float) -> int:
+    """Return in which stretch a time is; at an event it is in the one that begins."""
+    low, high = 0, len(starts) - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if arb(time) < starts[middle]:
+            high = middle - 1
+        else:
+            low = middle
+    return low
+
+
+def _sized(function: Callable[[State], Floats]) -> Power:
+    """Return a function whose terms are as large as itself."""
+
+    def sized(state: State) -> tuple[Floats, Floats]:
+        found = function(state)
+        return found, np.abs(found)
+
+    return sized
+
+
+def _nothing(mine: Integers, times: Floats) -> tuple[Integers, Floats, Floats]:
+    return mine, np.zeros(len(times)), np.zeros(len(times))
+
+
+def _determined(phase: Phase, force: str) -> bool:
+    """Return whether the scene determines a force in a phase."""
+    model = phase.models[0]
+    measures = model.described.measures
+    known = forces_at_start(measures, multipliers_at_start(measures, model.whole.acceleration))
+    number = next(k for k, one in enumerate(measures.forces) if one.name == force)
+    return known[number].value is not None

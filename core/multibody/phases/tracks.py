@@ -1,0 +1,193 @@
+"""What is known of the state of a scene from phase to phase.
+
+As long as phases have closed forms the state is exact, in balls: one track. From the first phase that has none on there
+are two, run by series of different order and tolerance in pairs of doubles. Their difference says how right the state
+is, and every sign at an event is decided in balls of that width.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from flint import arb
+
+from core.multibody.algebra.polynomials import ZERO, Ball
+
+TOLD = 16.0
+"""The difference of the two tracks, times this, is what a state is taken to be wrong by."""
+FLOOR = 2.0**-96
+"""Share of the largest coordinate of its unit that a state is wrong by at least, once it is not exact."""
+NOUGHT = 2.0**-180
+"""Share of the largest rate of its unit below which a rate is what is left of an exact zero."""
+
+Vector = list[Ball]
+
+
+@dataclass(frozen=True)
+class Track:
+    """One computation of the motion: its time and state at the start of a phase."""
+
+    time: Ball
+    q: Vector
+    v: Vector
+
+    def bare(self) -> Track:
+        """Return the track without the width of its balls."""
+        return Track(arb(self.time.mid()), [arb(x.mid()) for x in self.q], [arb(x.mid()) for x in self.v])
+
+
+class Tracks:
+    """The present state on one track or two, and the sizes by which its errors are measured.
+
+    Parameters
+    ----------
+    units : sequence of str
+        Of the coordinates.
+    q, v : list of ball
+        The exact state at time zero.
+
+    Attributes
+    ----------
+    each : list of Track
+    floor : float
+        Share of the largest coordinate of its unit that the state is wrong by at least.
+    lost : two lists of float
+        By how much coordinates and rates are wrong on all tracks alike: what was taken to be zero, or left out.
+    """
+
+    def __init__(self, units: Sequence[str], q: Sequence[Ball], v: Sequence[Ball]) -> None:
+        self.units = units
+        self.each = [Track(ZERO, list(q), list(v))]
+        self.floor = FLOOR
+        self.lost = [0.0] * len(q), [0.0] * len(q)
+        self._largest: tuple[dict[str, float], dict[str, float]] = ({}, {})
+        self.scales()
+
+    @property
+    def first(self) -> Track:
+        """The track that is answered."""
+        return self.each[0]
+
+    @property
+    def time(self) -> Ball:
+        """The present time."""
+        return self.each[0].time
+
+    @property
+    def exact(self) -> bool:
+        """Whether the balls of the only track hold the state."""
+        return len(self.each) == 1
+
+    def wide(self) -> tuple[Vector, Vector]:
+        """Return the state as balls that hold what is known of it."""
+        first = self.first
+        if self.exact:
+            return first.q, first.v
+        q_scales, v_scales = self.scales()
+        second = self.each[1]
+        return self._around(first.q, second.q, q_scales), self._around(first.v, second.v, v_scales)
+
+    def _around(self, first: Vector, second: Vector, scales: Sequence[float]) -> Vector:
+        return [
+            arb(x.mid(), TOLD * float(abs(x - y).mid()) + self.floor * scale)
+            for x, y, scale in zip(first, second, scales, strict=True)
+        ]
+
+    def scales(self) -> tuple[list[float], list[float]]:
+        """Return the largest coordinate and rate so far of the unit of each."""
+        found = []
+        for largest, vector in zip(self._largest, (self.first.q, self.first.v), strict=True):
+            for unit, x in zip(self.units, vector, strict=True):
+                largest[unit] = max(largest.get(unit, 0.0), abs(float(x.mid())))
+            found.append([largest[unit] for unit in self.units])
+        return found[0], found[1]
+
+    def fastest(self, unit: str) -> float:
+        """Return the largest rate so far of a unit."""
+        return self._largest[1].get(unit, 0.0)
+
+    def own_time(self) -> float:
+        """Return the time in which the scene moves by its own size."""
+        place, rate = (largest.get("m", 0.0) for largest in self._largest)
+        return place / rate if rate > 0.0 else 1.0
+
+    def lived(self, time: float, before: Sequence[Ball], after: Sequence[Ball], acceleration: Sequence[Ball]) -> None:
+        """Take account of how large coordinates and rates were during a phase, as far as its ends tell."""
+        self.lost = [x + time * y for x, y in zip(*self.lost, strict=True)], self.lost[1]
+        for i, unit in enumerate(self.units):
+            pull = abs(float(acceleration[i].mid()))
+            moved = abs(float((after[i] - before[i]).mid()))
+            # A phase may be shorter than the least double.
+            rate = moved / time if time > 0.0 else 0.0
+            for largest, x in zip(self._largest, (pull * time * time, max(pull * time, rate)), strict=True):
+                largest[unit] = max(largest.get(unit, 0.0), x)
+
+    def late(self) -> float:
+        """Return what the present time is wrong by."""
+        time = self.time
+        error = float(time.rad()) + 2.0**-53 * abs(float(time))
+        if not self.exact:
+            error += TOLD * abs(float(time - self.each[1].time)) + FLOOR * abs(float(time))
+        return error
+
+    def width(self) -> float:
+        """Return the largest width of the balls of the first track, relative to the scales."""
+        return max(
+            (
+                float(x.rad()) / scale
+                for vector, each in zip((self.first.q, self.first.v), self.scales(), strict=True)
+                for x, scale in zip(vector, each, strict=True)
+                if scale > 0.0
+            ),
+            default=0.0,
+        )
+
+    def lose(self, places: Sequence[float], rates: Sequence[float]) -> None:
+        """Take account of changes of which the difference of the tracks says nothing."""
+        q, v = ([x + y for x, y in zip(*both, strict=True)] for both in zip(self.lost, (places, rates), strict=True))
+        self.lost = q, v
+
+    def settle(self, q: Vector, v: Vector) -> None:
+        """Make exact zeros of what a projection leaves of numbers that the rows hold at zero."""
+        # What hardly turns has no scale of its own.
+        turning = 1.0 / self.own_time()
+        for largest, vector, least in zip(self._largest, (q, v), (0.0, turning), strict=True):
+            for i, (unit, x) in enumerate(zip(self.units, vector, strict=True)):
+                own = largest.get(unit, 0.0)
+                if abs(float(x)) <= NOUGHT * (own if unit == "m" else max(own, least)):
+                    vector[i] = ZERO
+
+    def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float | None = None) -> None:
+        """Go on with two tracks, the second moved by a share of the largest, so that the growth of errors is seen.
+
+        Parameters
+        ----------
+        still : sequence of bool
+            Which coordinates are constants of the last phase on both: these remain the same.
+        share, of_places : float
+            Of rates and, where that is another, of places.
+        """
+        last = self.each[-1].bare()
+        self.each = [self.first.bare(), last]
+        q_scales, v_scales = self.scales()
+        q = _moved(self.first.q, last.q, q_scales, still, share if of_places is None else of_places)
+        v = _moved(self.first.v, last.v, v_scales, still, share)
+        self.each = [self.first, Track(last.time, q, v)]
+
+    def delay(self, time: float) -> None:
+        """Set the time of the second track apart from the first's, where both are wrong by as much."""
+        last = self.each[-1]
+        self.each = [self.first, replace(last, time=last.time + time)]
+
+
+def _moved(first: Vector, second: Vector, scales: Sequence[float], still: Sequence[bool], share: float) -> Vector:
+    """Return the second vector, as far from the first as a share of the scales at least, to either side in turn."""
+    moved = []
+    for i, (x, y, scale) in enumerate(zip(first, second, scales, strict=True)):
+        least = share * scale
+        if (still[i] and x == y) or abs(float(x - y)) >= least:
+            moved.append(y)
+        else:
+            moved.append(arb((x + (least if i % 2 else -least)).mid()))
+    return moved

@@ -1,0 +1,268 @@
+"""Motion while friction turns with the slip, in space: a Taylor series in balls, up to where the slip ends.
+
+The unit vector along the slip is no polynomial of the coordinates, so that neither the passes nor the compiled series
+apply: the whole table is expanded anew at every step. Towards the end of the slip steps become shorter in proportion to
+it; below `ENDED` of the largest rate the rest is passed over at the last rate of change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from flint import arb, arb_mat
+
+from core.arrays import Floats
+from core.balls import precision
+from core.errors import BudgetExceeded
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.rank import independent
+from core.multibody.contacts.contact_start import ContactStart
+from core.multibody.equations.dynamics import accelerations
+from core.multibody.equations.expansion import Expansion, expansion, saddle, slope, value
+from core.multibody.equations.packed import exponent, pair
+from core.multibody.motion.modelling import Modelled, Piece
+from core.multibody.motion.motion import States
+from core.multibody.motion.whole import Whole
+from core.multibody.phases.tracks import TOLD
+from core.multibody.reduction.reduction import Reduced
+from core.multibody.table.connection_effects import Force, Unilateral
+from core.multibody.table.description import Described
+from core.multibody.table.frames import Rate
+from core.multibody.table.measures import COMPONENTS
+from core.multibody.table.table import Row, Table, identity
+
+ENDED = 2.0**-72
+"""Share of the largest rate below which slip ends."""
+_BITS = 256
+_MOST_STEPS = 1000
+_PART, _LONGEST = 0.5, 1e6
+_KINDS = {"fine": (32, 2.0**-96), "check": (30, 2.0**-90)}
+"""Order and tolerance of the two runs."""
+
+
+@dataclass
+class Run:
+    """Steps so far.
+
+    Attributes
+    ----------
+    starts : list of ball
+        Times at which steps begin, and the time reached.
+    steps : list of Expansion
+    table : Table
+        With the state reached.
+    ended : Row or None
+        Whose slip ended the run.
+    fastest : dict of str to float
+        Largest rate so far of every unit.
+    """
+
+    starts: list[Ball]
+    steps: list[Expansion]
+    table: Table
+    ended: Row | None = None
+    fastest: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
+class TurningSlip:
+    """The motion of a table with friction that turns."""
+
+    table: Table
+    name: str = "Taylor series"
+    why: str = "the direction of friction turns with the slip"
+    how: str = "measured against pairs"
+    period: Ball | None = None
+    _runs: dict[str, Run] = field(default_factory=dict, repr=False)
+
+    def run(self, kind: str, end: float) -> Run:
+        """Return the steps to a time, or to the end of the slip.
+
+        Raises
+        ------
+        BudgetExceeded
+            For more steps than one phase may take.
+        """
+        found = self._runs.setdefault(kind, Run([ZERO], [], self.table))
+        order, tolerance = _KINDS[kind]
+        with precision(_BITS):
+            while found.ended is None and found.starts[-1] < end:
+                if len(found.steps) > _MOST_STEPS:
+                    raise BudgetExceeded(
+                        "steps", len(found.steps), _MOST_STEPS, path=("times",), remedy="ask for a shorter time"
+                    )
+                self._step(found, order, tolerance)
+        return found
+
+    def _step(self, run: Run, order: int, tolerance: float) -> None:
+        motion = expansion(run.table, order)
+        run.steps.append(motion)
+        for unit, series in zip(self.table.units, motion.places, strict=True):
+            run.fastest[unit] = max(run.fastest.get(unit, 0.0), abs(float(series[1])))
+        h = min(_length(motion, self.table.units, run.fastest, tolerance), self._within(run.table, motion))
+        ending = self._ending(run.table, motion, run.fastest)
+        if ending is not None:
+            h, run.ended = ending
+        q, v = ([arb(value(x, h).mid()) for x in motion.places], [arb(value(slope(x), h).mid()) for x in motion.places])
+        run.table = replace(run.table, q=q, v=v)
+        run.starts.append(run.starts[-1] + h)
+
+    def _within(self, table: Table, motion: Expansion) -> Ball:
+        """Return the share of the time in which slip could end that a step may take: there the series diverges."""
+        times = [arb(_LONGEST)]
+        for row in table.rows:
+            if row.slide is not None:
+                slips, gains = table.slip_of(row), [motion.of_rates(line)[1] for line in row.slide[1:]]
+                fast, change = (sum((x * x for x in vector), ZERO).sqrt() for vector in (slips, gains))
+                if change > 0:
+                    times.append(arb((_PART * fast / change).mid()))
+        return min(times, key=float)
+
+    def _ending(self, table: Table, motion: Expansion, fastest: dict[str, float]) -> tuple[Ball, Row] | None:
+        """Return after which time slip ends, if it is about to."""
+        for row in table.rows:
+            if row.slide is None:
+                continue
+            x, y = table.slip_of(row)
+            size = (x * x + y * y).sqrt()
+            gains = [motion.of_rates(line)[1] for line in row.slide[1:]]
+            loss = -(x * gains[0] + y * gains[1]) / size
+            if float(size) < ENDED * fastest["m"] and loss > 0:
+                return arb((size / loss).mid()), row
+        return None
+
+    def states(self, times: Floats, *, finer: bool = False) -> States:
+        """Return the states by the finer run, judged by the other."""
+        (q, v), (other, rate) = (self.by(kind, times) for kind in _KINDS)
+        apart = [np.abs((a - b).sum(axis=2)) for a, b in ((q, other), (v, rate))]
+        return States(q, v, TOLD * apart[0], TOLD * apart[1], (other, rate))
+
+    def by(self, kind: str, times: Floats) -> tuple[Floats, Floats]:
+        """Return coordinates and rates by one run, each of shape (t, n, 2)."""
+        run = self.run(kind, float(np.max(times, initial=0.0)))
+        n = len(self.table.names)
+        q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
+        starts = np.array([float(x) for x in run.starts])
+        with precision(_BITS):
+            for s, t in enumerate(times):
+                k = int(np.clip(np.searchsorted(starts, t, side="right") - 1, 0, max(len(run.steps) - 1, 0)))
+                if not run.steps:
+                    q[s], v[s] = [pair(x, 0) for x in self.table.q], [pair(x, 0) for x in self.table.v]
+                    continue
+                late = min(arb(float(t)), run.starts[-1]) - run.starts[k]
+                for i, series in enumerate(run.steps[k].places):
+                    q[s, i], v[s, i] = pair(value(series, late), 0), pair(value(slope(series), late), 0)
+        return q, v
+
+    def nodes(self, end: float) -> Floats:
+        """Return eight times a step."""
+        starts = np.array([float(x) for x in self.run("fine", end).starts])
+        fine = np.interp(np.arange(8 * (len(starts) - 1) + 1) / 8.0, np.arange(len(starts)), starts)
+        return np.append(fine[fine < end], min(end, float(starts[-1])))
+
+
+def _length(motion: Expansion, units: Sequence[str], fastest: dict[str, float], tolerance: float) -> Ball:
+    """Return the length of a step: its last terms are a share of the largest rate of their unit at most."""
+    h = _LONGEST
+    for unit, series in zip(units, motion.places, strict=True):
+        for k in (len(series) - 2, len(series) - 1):
+            # Terms of a slip that is about to end are beyond the range of doubles.
+            last = exponent(k * series[k])
+            if last is not None and fastest[unit] > 0.0:
+                h = min(h, 2.0 ** ((math.log2(tolerance * fastest[unit]) - last) / (k - 1)))
+    return arb(h)
+
+
+@dataclass(frozen=True)
+class TurningWhole(Whole):
+    """A scene in motion whose friction turns.
+
+    Attributes
+    ----------
+    turning : mapping of str to (Unilateral, int, int)
+        Forces of friction that turn, by name: the measure, the axis of the component, the row of the push.
+    """
+
+    turning: dict[str, tuple[Unilateral, int, int]] = field(default_factory=dict)
+
+    def multipliers(self, q: Floats, v: Floats) -> Floats:
+        """Return the multipliers of every row, shape (t, rows)."""
+        return self._at(q, v)[1]
+
+    def accelerations(self, q: Floats, v: Floats) -> Floats:
+        """Return the acceleration of every coordinate at states, shape (t, n)."""
+        return self._at(q, v)[0]
+
+    def _at(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+        table = self.measures.table
+        count = len(table.names)
+        gains, found = np.zeros((len(q), count)), np.zeros((len(q), len(table.rows)))
+        chosen = independent(row.line(table.q) for row in table.rows)
+        for s in range(len(q)):
+            places, rates = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
+            now = replace(table, q=places, v=rates).oriented()
+            right = [[x] for x in now.forces()] + [[now.convective(now.rows[r])] for r in chosen]
+            solved = saddle(now, chosen).solve(arb_mat(right)).entries()
+            gains[s] = [float(x.mid()) for x in solved[:count]]
+            for k, r in enumerate(chosen):
+                found[s, r] = float(solved[count + k].mid())
+        return gains, found
+
+    def force(self, force: Force, q: Floats, v: Floats, multipliers: Floats) -> tuple[Floats, Floats]:
+        """Return a force at every state, and the sum of the magnitudes of its terms, each of shape (t,)."""
+        if force.name not in self.turning:
+            return super().force(force, q, v, multipliers)
+        one, axis, row = self.turning[force.name]
+        assert one.tangents is not None
+        slip = np.array([_slip(line or {}, v) for line in (one.slip, one.across)])
+        length = np.maximum(np.hypot(slip[0], slip[1]), 1e-300)
+        along = (float(one.tangents[0][axis]) * slip[0] + float(one.tangents[1][axis]) * slip[1]) / length
+        push = float(one.kinetic) * multipliers[:, row]
+        return 0.0 - push * along, np.abs(push)
+
+
+def _slip(line: Rate, v: Floats) -> Floats:
+    """Return a rate of slip at rates of shape (t, n, 2); where slip ends its terms cancel, down to their tails."""
+    found = np.zeros(len(v))
+    with precision(_BITS):
+        for s, rates in enumerate(v.tolist()):
+            terms = (poly[()] * (arb(rates[j][0]) + arb(rates[j][1])) for j, poly in line.items())
+            found[s] = float(sum(terms, ZERO).mid())
+    return found
+
+
+def turning_model(
+    found: Described, unilateral: Sequence[Unilateral], normal: Sequence[int | None], start: ContactStart
+) -> Modelled:
+    """Return the only model of a table with friction that turns.
+
+    Parameters
+    ----------
+    normal : sequence of int or None
+        Number of the row of each measure.
+    """
+    table = found.measures.table
+    gain, chosen = accelerations(table)
+    motion = TurningSlip(table)
+    everything = list(range(len(table.names)))
+    turning = {
+        f"{one.name}.friction.{axis}": (one, i, row)
+        for one, row in zip(unilateral, normal, strict=True)
+        if row is not None and table.rows[row].slide is not None
+        for i, axis in enumerate(COMPONENTS)
+    }
+    small = Reduced(table, identity(len(table.names)))
+    whole = TurningWhole(found.measures, small, gain, gain, [(everything, motion)], turning=turning)
+    return Modelled(found, whole, [Piece(everything, table, gain, chosen)], start.moved, start.fitted)
+
+
+def turns(table: Table, names: Sequence[str], order: int) -> list[str]:
+    """Return which of the contacts named, whose friction may turn, do so: their slip does not stay along one line."""
+    rows = [row for row in table.rows if row.slide is not None and row.name in names]
+    if not rows:
+        return []
+    motion = expansion(table, order)
+    return [row.name for row in rows if any(not is_zero(x) for x in motion.of_rates((row.slide or (0, {}, {}))[2]))]

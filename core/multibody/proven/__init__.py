@@ -1,0 +1,1 @@
+"""Answers to many digits, in balls."""

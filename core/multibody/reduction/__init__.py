@@ -1,0 +1,1 @@
+"""Passes that make a table smaller without changing its motion."""

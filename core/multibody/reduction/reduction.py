@@ -1,0 +1,48 @@
+"""A table on its way to fewer coordinates, in terms of which those of the first one stay known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from core.multibody.algebra.polynomials import ONE, Poly, substituted
+from core.multibody.table.table import Table
+
+
+@dataclass
+class Reduced:
+    """A smaller table, and the coordinates of the larger one in terms of it.
+
+    Attributes
+    ----------
+    expressions : list of affine polynomials
+        Every coordinate of the original table.
+    pinned : list of str
+        Coordinates found never to move.
+    steps : list of str
+        What each pass did.
+    """
+
+    table: Table
+    expressions: list[Poly]
+    pinned: list[str] = field(default_factory=list)
+    steps: list[str] = field(default_factory=list)
+
+
+def substitute(state: Reduced, expressions: list[Poly | None]) -> None:
+    """Replace coordinates by expressions in those that have none."""
+    fresh = [i for i, expression in enumerate(expressions) if expression is None]
+    number = {i: k for k, i in enumerate(fresh)}
+    final: list[Poly] = []
+    for i, expression in enumerate(expressions):
+        if expression is None:
+            final.append({(number[i],): ONE})
+        else:
+            final.append({tuple(number[k] for k in key): value for key, value in expression.items()})
+    recast(state, final, fresh)
+
+
+def recast(state: Reduced, final: list[Poly], fresh: list[int]) -> None:
+    """Write the table in new coordinates, of which the present ones are affine functions."""
+    state.table = state.table.changed(final, fresh)
+    state.table.rows = [row for row in state.table.rows if row.rates or (row.measure is None and row.rate != 0)]
+    state.expressions = [substituted(expression, final) for expression in state.expressions]

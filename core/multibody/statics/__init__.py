@@ -1,0 +1,1 @@
+"""Where a scene can rest, and between which values of a number it does."""

@@ -1,0 +1,161 @@
+"""Where the equations of rest hold: Newton's method from many starts.
+
+Where the equations are nearly singular, the step is the shortest of least squares. That all solutions are found is not
+proven.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.arrays import Floats
+from core.compiled import kernel
+from core.errors import BudgetExceeded
+from core.multibody.algebra.small_systems import solve
+from core.multibody.statics.static_equations import StaticArrays, StaticEquations, linearised
+from core.work import spend
+
+MOST_FOUND = 100
+_STARTS = 128
+"""Starts for every degree of freedom."""
+_ROUNDS = 60
+_MOST_OPERATIONS = 80_000_000
+"""Of one round: starts times the cube of the unknowns. More would take longer than a minute, and gigabytes."""
+_OPERATIONS_PER_UNIT = 40.0
+"""So many, in every round, take a unit of work (`core.work`)."""
+_SAME = 1e-7
+_CONVERGED = 1e-10
+_SETTLED = 1e-6
+"""Largest last relative change of the multipliers: beside a length of zero they grow without bound."""
+_ENDED = 1e-13
+_FAR, _HARD = 1e6, 1e12
+"""Places and multipliers beyond which a start is given up."""
+_DWARFED = 1e4
+"""Multipliers so many times the forces, where the equations are nearly singular, are those beside a length of zero."""
+_HOPELESS = 24
+"""Rounds in a row in such a place after which a start is given up. Multipliers double in each of them; starts that end
+at an equilibrium nevertheless leave such places within 13 rounds, in every scene of the catalogue."""
+_ONTO = 8
+"""Rounds that put a start onto the measures."""
+_REMOTE = 1e3
+"""So far out, in the scene's own unit, nearly singular equations are those of forces that vanish at infinity."""
+
+
+def solutions_of(equations: StaticEquations, start: Floats, freedom: int) -> list[tuple[Floats, Floats]]:
+    """Return places and multipliers at which the equations of rest hold, at most `MOST_FOUND`.
+
+    Parameters
+    ----------
+    equations : StaticEquations
+    start : ndarray, shape (n,)
+        The place around which starts are drawn.
+    freedom : int
+        Degrees of freedom.
+
+    Raises
+    ------
+    BudgetExceeded
+        If the search would take too long.
+    """
+    n, m = len(start), len(equations.arrays.offset)
+    count = min(4096, _STARTS * max(1, freedom))
+    operations = count * (n + m) ** 3
+    if operations > _MOST_OPERATIONS:
+        what = f"operations in each round of the search for equilibria ({count} starts, {n + m} unknowns)"
+        remedy = "ask without equilibria, or about fewer bodies"
+        raise BudgetExceeded(what, operations, _MOST_OPERATIONS, path=("outputs",), remedy=remedy)
+    spend(operations / _OPERATIONS_PER_UNIT)
+    # Always the same starts: equal questions have equal answers.
+    random = np.random.Generator(np.random.Philox(7))
+    q = start + random.normal(size=(count, n)) * random.uniform(0.05, 2.0, size=(count, 1))
+    q[0] = start
+    multipliers = np.zeros((count, m))
+    done = _followed(equations.arrays, q, multipliers)
+    q, multipliers = q[done], multipliers[done]
+    found: list[tuple[Floats, Floats]] = []
+    while len(q) and len(found) < MOST_FOUND:
+        found.append((q[0], multipliers[0]))
+        other = np.abs(q - q[0]).max(axis=1) > _SAME * (1.0 + np.abs(q).max(axis=1))
+        q, multipliers = q[other], multipliers[other]
+    return found
+
+
+@kernel()
+def _followed(arrays: StaticArrays, q: Floats, multipliers: Floats) -> np.ndarray:
+    """Follow each start in place; return which have come to a solution, shape (c,)."""
+    size = q.shape[1] + multipliers.shape[1]
+    found, system, right = np.zeros(len(q), dtype=np.bool_), np.empty((size, size)), np.empty(size)
+    for s in range(len(q)):
+        _begin(arrays, q[s], multipliers[s], system, right)
+        if _newton(arrays, q[s], multipliers[s], system, right):
+            found[s] = _is_solution(arrays, q[s], multipliers[s], system, right)
+    return found
+
+
+@kernel()
+def _begin(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats) -> None:
+    """Put a start onto the measures, and give it the multipliers that leave the least force over."""
+    n = len(q)
+    for turn in range(_ONTO + 1):
+        linearised(arrays, q, multipliers, system, right)
+        for j in range(n):
+            for i in range(n):
+                system[j, i] = 1.0 if i == j else 0.0
+        if turn == _ONTO:
+            right[n:] = 0.0
+        else:
+            right[:n] = 0.0
+        solve(system, right)
+        if turn < _ONTO:
+            for j in range(n):
+                moved = q[j] + min(1.0, max(-1.0, right[j]))
+                q[j] = moved if np.isfinite(moved) else 0.0
+    multipliers[:] = right[n:]
+
+
+@kernel()
+def _newton(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats) -> bool:
+    """Follow Newton's method; return whether it stays within every bound."""
+    n, dwarfed = len(q), 0
+    for _ in range(_ROUNDS):
+        left, terms, _off = linearised(arrays, q, multipliers, system, right)
+        largest, far = _largest(multipliers), _largest(q)
+        singular = solve(system, right)
+        dwarfed = dwarfed + 1 if singular and (largest > _DWARFED * terms or far > _REMOTE) else 0
+        q += right[:n]
+        multipliers += right[n:]
+        far, held = _largest(q), _largest(multipliers)
+        if not (far < _FAR and held < _HARD) or dwarfed == _HOPELESS:
+            return False
+        # Beyond a step as short as this there is only rounding; where the equations are nearly singular, a step may be
+        # short though they are not solved.
+        short = _largest(right[:n]) <= _ENDED * (1.0 + far) and _largest(right[n:]) <= _ENDED * (1.0 + held)
+        if short and (not singular or left <= _ENDED * terms):
+            break
+    return True
+
+
+@kernel()
+def _is_solution(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats) -> bool:
+    """Return whether the equations hold, and neither near a length of zero nor at infinity."""
+    n = len(q)
+    left, terms, off = linearised(arrays, q, multipliers, system, right)
+    size, largest = 1.0 + _largest(q), _largest(multipliers)
+    singular = solve(system, right)
+    if singular and (largest > _DWARFED * terms or size > _REMOTE):
+        return False
+    # A step alone may be short where the equations are nearly singular and not solved.
+    solved = left <= _CONVERGED * terms and off < _CONVERGED * size**2
+    settled = _largest(right[n:]) <= _SETTLED * (largest + terms)
+    return solved and settled and _largest(right[:n]) < _CONVERGED * size
+
+
+@kernel()
+def _largest(x: Floats) -> float:
+    """Return the largest size, infinite where a number is none."""
+    found = 0.0
+    for i in range(len(x)):
+        if not np.isfinite(x[i]):
+            return np.inf
+        found = max(found, abs(x[i]))
+    return found

@@ -1,0 +1,129 @@
+"""Places of a reduced table as places of the whole scene, in doubles: which of them can be, and what they look like."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.arrays import Floats
+from core.multibody.algebra.polynomials import Poly
+from core.multibody.equations.packed import Units, two_to
+from core.multibody.reduction.reduction import Reduced
+from core.multibody.table.description import Described
+from core.multibody.table.table import Table
+
+Terms = list[tuple[float, tuple[int, ...]]]
+
+
+@dataclass(frozen=True)
+class Holds:
+    """What bounds the places of a scene, with coefficients as doubles.
+
+    Attributes
+    ----------
+    lines : list of (row, column, terms)
+        Entries of W.
+    forces : list of (list of (row, terms), terms)
+        Of every string and chain: what makes up its tension, by multipliers and by the place alone.
+    lengths : list of terms
+        Those that are positive.
+    """
+
+    table: Table
+    lines: list[tuple[int, int, Terms]]
+    forces: list[tuple[list[tuple[int, Terms]], Terms]]
+    lengths: list[Terms]
+
+
+class RestingPlaces:
+    """The whole scene at places of its reduced table.
+
+    Parameters
+    ----------
+    found : Described
+    small : Reduced
+    units : Units
+        Of the places.
+    """
+
+    def __init__(self, found: Described, small: Reduced, units: Units) -> None:
+        up = np.array([two_to(e) for e in units.lengths])
+        self.slopes, self.offsets = np.zeros((len(small.expressions), len(up))), np.zeros(len(small.expressions))
+        for i, expression in enumerate(small.expressions):
+            for key, value in expression.items():
+                if key:
+                    self.slopes[i, key[0]] = float(value) * up[key[0]]
+                else:
+                    self.offsets[i] = float(value)
+        self.found, measures = found, found.measures
+        self._holds = Holds(
+            measures.table,
+            [(r, j, _terms(p)) for r, row in enumerate(measures.table.rows) for j, p in row.rates.items()],
+            [
+                (
+                    [(row, _terms(p)) for row, p in measures.forces[limit.force].terms],
+                    _terms(measures.forces[limit.force].of_state),
+                )
+                for limit in measures.limits
+                if limit.force is not None
+            ],
+            [_terms(limit.length) for limit in measures.limits if limit.length is not None],
+        )
+
+    def whole(self, q: Floats) -> Floats:
+        """Return every coordinate as described, shape (n,), in SI units."""
+        place: Floats = self.offsets + self.slopes @ q
+        return place
+
+    def shown(self, q: Floats) -> tuple[Mapping[str, tuple[float, ...]], Mapping[str, float]]:
+        """Return the centres of mass of the bodies, and the angles of those in the plane whose direction matters."""
+        place = self.whole(q)
+        frames = self.found.measures.coordinates.frames
+        positions = {name: tuple(float(place[i]) for i in frame.position) for name, frame in frames.items()}
+        angles = {}
+        for name, frame in frames.items():
+            if frame.direction is not None:
+                c, s = frame.direction
+                angles[name] = float(np.arctan2(place[s], place[c]))
+            elif frame.turn is not None:
+                angles[name] = float(place[frame.turn])
+        return positions, angles
+
+    def possible(self, q: Floats) -> bool:
+        """Return whether lengths are positive there and strings taut."""
+        place, holds = self.whole(q).tolist(), self._holds
+        if not all(_value(length, place) > 0.0 for length in holds.lengths):
+            return False
+        if not holds.forces:
+            return True
+        table = holds.table
+        lines = np.zeros((len(table.rows), len(table.names)))
+        for r, j, terms in holds.lines:
+            lines[r, j] = _value(terms, place)
+        load = np.zeros(len(table.names))
+        for i, value in table.load.items():
+            load[i] += float(value)
+        for (i, j), value in table.stiffness.items():
+            load[i] -= float(value) * place[j]
+        scale = np.abs(lines).max(axis=1)
+        multipliers = np.linalg.lstsq((lines / scale[:, None]).T, -load, rcond=1e-12)[0] / scale
+        edge = -1e-9 * float(np.max(np.abs(load), initial=0.0))
+        return not any(
+            sum(_value(terms, place) * multipliers[row] for row, terms in parts) + _value(own, place) < edge
+            for parts, own in holds.forces
+        )
+
+
+def _terms(poly: Poly) -> Terms:
+    return [(float(value), key) for key, value in poly.items()]
+
+
+def _value(terms: Terms, place: list[float]) -> float:
+    total = 0.0
+    for value, key in terms:
+        for i in key:
+            value *= place[i]
+        total += value
+    return total

@@ -1,0 +1,190 @@
+"""The equations of rest of a table, K q - b = W(q)^T lambda with g(q) = 0, in doubles."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from core.arrays import Floats
+from core.compiled import kernel
+from core.multibody.equations.packed import Packed, Units, two_to
+from core.multibody.reduction.reduction import Reduced
+from core.multibody.table.description import Described
+from core.multibody.table.frames import Frame
+
+
+class StaticArrays(NamedTuple):
+    """What compiled code needs of the equations.
+
+    Attributes
+    ----------
+    load : ndarray, shape (n,)
+    stiffness : ndarray, shape (n, n)
+    lines : ndarray, shape (m, n)
+        W where all coordinates are zero.
+    slopes : ndarray, shape (k,)
+        Derivatives of W that are not zero, ``dW[r, j]/dq[i]``.
+    slope_at : ndarray, shape (k, 3)
+        Their (r, j, i).
+    offset : ndarray, shape (m,)
+        g where all coordinates are zero.
+    tie_rows : ndarray, shape (t,)
+        Rows that hold the angle of a body to its direction, in place of a quadratic measure.
+    tie_forms : ndarray, shape (t, 3, n + 1)
+        That angle, and the cosine and sine of the direction: what multiplies the coordinates, and a constant.
+    tie_starts : ndarray, shape (t, 2)
+        Angle and direction at the start (rad).
+    tie_factors : ndarray, shape (t,)
+        Unit of the row.
+    """
+
+    load: Floats
+    stiffness: Floats
+    lines: Floats
+    slopes: Floats
+    slope_at: np.ndarray
+    offset: Floats
+    tie_rows: np.ndarray
+    tie_forms: Floats
+    tie_starts: Floats
+    tie_factors: Floats
+
+
+class StaticEquations:
+    """The equations of rest of a table, without the tails of its numbers.
+
+    Parameters
+    ----------
+    packed : Packed
+
+    Attributes
+    ----------
+    arrays : StaticArrays
+    mass, damping : ndarray, shape (n, n)
+    slopes : ndarray, shape (m, n, n)
+        ``dW[r, j]/dq[i]``.
+    """
+
+    def __init__(self, packed: Packed) -> None:
+        n, m = len(packed.load), len(packed.rate)
+        self.mass, stiffness, self.damping = packed.mass[..., 0], np.zeros((n, n)), np.zeros((n, n))
+        for (i, j), x in zip(packed.stiff_at, packed.stiff[:, 0], strict=True):
+            stiffness[i, j] = x
+        for (i, j), x in zip(packed.damp_at, packed.damp[:, 0], strict=True):
+            self.damping[i, j] = x
+        lines, self.slopes = np.zeros((m, n)), np.zeros((m, n, n))
+        for (r, j), x in zip(packed.lines_at, packed.lines[:, 0], strict=True):
+            lines[r, j] = x
+        for (e, i), x in zip(packed.slopes_at, packed.slopes[:, 0], strict=True):
+            r, j = packed.lines_at[e]
+            self.slopes[r, j, i] = x
+        self._gyration = [(*at, x) for at, x in zip(packed.gyre_at.tolist(), packed.gyre[:, 0], strict=True)]
+        at = np.argwhere(self.slopes)
+        self.arrays = StaticArrays(
+            packed.load[:, 0].copy(),
+            stiffness,
+            lines,
+            self.slopes[at[:, 0], at[:, 1], at[:, 2]],
+            at,
+            packed.offset[:, 0].copy(),
+            np.empty(0, np.int64),
+            np.empty((0, 3, n + 1)),
+            np.empty((0, 2)),
+            np.empty(0),
+        )
+
+    def tie(self, row: int, found: Described, small: Reduced, units: Units, frame: Frame, factor: float) -> None:
+        """Let a row hold the angle of a body to its direction: its rate is that of an angle with full turns."""
+        assert frame.turn is not None
+        assert frame.direction is not None
+        up = np.array([two_to(e) for e in units.lengths])
+        forms, start = np.zeros((1, 3, len(up) + 1)), []
+        for form, i in zip(forms[0], (frame.turn, *frame.direction), strict=True):
+            for key, value in small.expressions[i].items():
+                if key:
+                    form[key[0]] = float(value) * up[key[0]]
+                else:
+                    form[-1] = float(value)
+            start.append(float(found.measures.table.q[i]))
+        now = self.arrays
+        self.arrays = now._replace(
+            tie_rows=np.append(now.tie_rows, row),
+            tie_forms=np.append(now.tie_forms, forms, axis=0),
+            tie_starts=np.append(now.tie_starts, [[start[0], float(np.arctan2(start[2], start[1]))]], axis=0),
+            tie_factors=np.append(now.tie_factors, factor),
+        )
+
+    def jacobian(self, q: Floats) -> Floats:
+        """Return W at a place."""
+        found: Floats = self.arrays.lines + self.slopes @ q
+        return found
+
+    def potential(self, q: Floats) -> float:
+        """Return the potential energy of a place."""
+        return float(q @ self.arrays.stiffness @ q / 2 - self.arrays.load @ q)
+
+    def damping_at(self, q: Floats) -> Floats:
+        """Return what multiplies the rates near a place at rest, gyroscopic terms included."""
+        total = self.damping.copy()
+        for i, j, k, x in self._gyration:
+            total[i, k] -= x * q[j]
+        return total
+
+
+@kernel()
+def linearised(
+    arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats
+) -> tuple[float, float, float]:
+    """Write the system whose solution is Newton's step of places and multipliers, in compiled code.
+
+    Parameters
+    ----------
+    arrays : StaticArrays
+    q : ndarray, shape (n,)
+    multipliers : ndarray, shape (m,)
+    system : ndarray, shape (n + m, n + m)
+    right : ndarray, shape (n + m,)
+        What the step is to end: forces left over, and measures that are not held.
+
+    Returns
+    -------
+    left, terms, off : float
+        The largest force left over, the size of the forces but those of the connections, the largest of the measures.
+    """
+    n, m = len(q), len(multipliers)
+    system[:] = 0.0
+    for r in range(m):
+        for j in range(n):
+            system[n + r, j] = arrays.lines[r, j]
+    for k in range(len(arrays.slopes)):
+        r, j, i = arrays.slope_at[k]
+        system[n + r, j] += arrays.slopes[k] * q[i]
+        system[j, i] += arrays.slopes[k] * multipliers[r]
+    load = pull = left = off = 0.0
+    for j in range(n):
+        total = 0.0
+        for i in range(n):
+            total += arrays.stiffness[j, i] * q[i]
+            system[j, i] -= arrays.stiffness[j, i]
+        load, pull = max(load, abs(arrays.load[j])), max(pull, abs(total))
+        right[j] = total - arrays.load[j]
+        for r in range(m):
+            right[j] -= multipliers[r] * system[n + r, j]
+            system[j, n + r] = system[n + r, j]
+        left = max(left, abs(right[j]))
+    for r in range(m):
+        right[n + r] = -arrays.offset[r]
+        for j in range(n):
+            right[n + r] -= 0.5 * (arrays.lines[r, j] + system[n + r, j]) * q[j]
+    for t in range(len(arrays.tie_rows)):
+        form = arrays.tie_forms[t]
+        now, cosine, sine = form[0, n], form[1, n], form[2, n]
+        for j in range(n):
+            now, cosine, sine = now + form[0, j] * q[j], cosine + form[1, j] * q[j], sine + form[2, j] * q[j]
+        away = (now - arrays.tie_starts[t, 0]) - (np.arctan2(sine, cosine) - arrays.tie_starts[t, 1])
+        # The angle may differ from the direction by full turns: a spring that is wound up.
+        right[n + arrays.tie_rows[t]] = -arrays.tie_factors[t] * (away - 2 * np.pi * np.round(away / (2 * np.pi)))
+    for r in range(m):
+        off = max(off, abs(right[n + r]))
+    return left, load + pull, off

@@ -1,0 +1,202 @@
+"""Between which values of one number a scene stays at rest: a coefficient of friction, a slope, a force.
+
+At rest a scene is in equilibrium if forces exist that balance it, with every contact pushing, every string taut and
+every friction within its cone. Whether they do is decided in balls, and the ends of the range are bisected. Where the
+number is a load or a coefficient of friction the balancing forces and the number form a convex set, or a larger number
+only admits more: rest is one interval, and nothing between its ends is missed. Geometry may have more than one
+interval; there it is looked at in `LOOKS` values on either side, and a gap between neighbours is not seen.
+
+References
+----------
+J.-S. Pang, J. Trinkle, "Stability characterizations of rigid body contact problems with Coulomb friction", ZAMM 80
+(2000): what is found here is weak stability, that some forces balance the scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from flint import arb
+
+from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, pointer_of
+from core.multibody.algebra.polynomials import Ball, is_zero
+from core.multibody.answer import RestEnd, RestRange
+from core.multibody.contacts.complementarity import decided, stays
+from core.multibody.contacts.contact_start import assemble_contacts
+from core.multibody.contacts.contact_states import Problem
+from core.multibody.equations.packed import nearest
+from core.multibody.language.numerals import Numerals
+from core.multibody.language.scene import Scene
+from core.multibody.table.chains import has_chain
+from core.multibody.table.description import Described, described
+from core.near_names import did_you_mean
+from core.work import spend
+
+LOOKS = 64
+"""Values between the written one and each bound that are looked at where rest need not be one interval."""
+_NARROW = 2.0**-64
+"""Width of what is left at an end, relative to its value."""
+_HALVINGS = 200
+_UNITS = 50.0
+"""Work of one look, for every coordinate of the scene."""
+
+
+@dataclass(frozen=True)
+class RestOf:
+    """A question: in which range of a number does the scene stay at rest?
+
+    Attributes
+    ----------
+    vary : str
+        JSON pointer of a number of the description, as ``/connections/0/friction`` or ``/let/alpha``.
+    between : sequence of float
+        Two bounds, with the written value between them.
+    """
+
+    vary: str
+    between: Sequence[float]
+
+
+@dataclass(frozen=True)
+class _Varied:
+    """A scene with one number to vary, at `path`; `where` is the place of the question."""
+
+    scene: Scene
+    path: Path
+    where: Path
+    touching: list[int]
+
+    def at(self, value: Ball) -> Described:
+        """Return the scene with another value of the number."""
+        numerals = Numerals.of(self.scene.let, self.scene.numbers, instead={self.path: value})
+        try:
+            base = described(self.scene, numerals, one_sided=True)
+            spend(_UNITS * len(base.measures.table.names))
+            touching = assemble_contacts(base).touching
+        except MechanicsError as fault:
+            raise InvalidParameter(
+                (*self.where, "between"),
+                f"stay where the scene can be; with the value {float(value):.10g} it cannot: {fault.detail}",
+            ) from fault
+        if touching != self.touching:
+            raise NotApplicable(
+                f"with the value {float(value):.10g} other places touch than with the written one",
+                path=(*self.where, "vary"),
+                remedy="write the places as formulas over a name in let, and vary that name",
+            )
+        return base
+
+    def rests(self, value: Ball) -> bool:
+        """Return whether the scene stays at rest with another value."""
+        return _rests(self.at(value), self.touching)
+
+
+def _rests(base: Described, touching: Sequence[int]) -> bool:
+    table = base.measures.table
+    return all(is_zero(x) for x in table.v) and stays(table, base.measures.unilateral, touching)
+
+
+def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange:
+    """Return the range of a number in which a scene stays at rest; the precision of balls is the caller's.
+
+    Parameters
+    ----------
+    where : path
+        Of the question, for what is wrong with it.
+
+    Raises
+    ------
+    InvalidParameter
+        For a pointer that names no number, bounds that do not hold its value, and for a scene that cannot be, as it
+        stands or with another value between the bounds.
+    NotApplicable
+        Where other places touch with another value.
+    """
+    path, least, most = _checked(question, where)
+    if has_chain(scene):
+        raise NotApplicable(
+            "thresholds of rest are not answered beside a chain",
+            path=where,
+            remedy="ask for accelerations with other values of the number: at rest they are zero",
+        )
+    numerals = Numerals.of(scene.let, scene.numbers)
+    base = described(scene, numerals, one_sided=True)
+    if path not in numerals.every:
+        near = did_you_mean(question.vary, [pointer_of(one) for one in numerals.every])
+        raise InvalidParameter(
+            (*where, "vary"),
+            f'be the JSON pointer of a number of the description, unlike "{question.vary[:80]}"',
+            remedy=f"{f'{near} ' if near else ''}name one that is written there, as /connections/0/friction",
+        )
+    written = numerals.every[path]
+    if written < least or written > most:
+        raise InvalidParameter((*where, "between"), f"hold the written value {float(written):.10g}")
+    touching = assemble_contacts(base).touching
+    if not _rests(base, touching):
+        return RestRange(question.vary, nearest(written), None, None)
+    varied = _Varied(scene, path, where, touching)
+    return RestRange(question.vary, nearest(written), _end(varied, written, least), _end(varied, written, most))
+
+
+def _checked(question: RestOf, where: Path) -> tuple[Path, Ball, Ball]:
+    """Return the path of the number and the bounds."""
+    if not isinstance(question.vary, str) or not question.vary.startswith("/"):
+        raise InvalidParameter((*where, "vary"), "be a JSON pointer, which begins with /")
+    bounds = question.between
+    if isinstance(bounds, str) or not isinstance(bounds, Sequence) or len(bounds) != 2:
+        raise InvalidParameter((*where, "between"), "be two numbers")
+    for i, x in enumerate(bounds):
+        if isinstance(x, bool) or not isinstance(x, (int, float)) or not isfinite(x):
+            raise InvalidParameter((*where, "between", i), "be a finite number")
+    path = tuple(int(part) if part.isdecimal() else part for part in question.vary[1:].split("/"))
+    return path, arb(bounds[0]), arb(bounds[1])
+
+
+def one_interval(scene: Scene, path: Path) -> bool:
+    """Return whether a number is such that a scene rests in one interval of it.
+
+    Equilibrium at given places is linear in the contact forces and each weight, force, torque or stiffness together:
+    what is balanced is a convex set. A larger coefficient of friction admits all that a smaller one does.
+    """
+    if "polar" in path:
+        return False
+    if path[0] == "gravity" or (path[0] == "bodies" and path[2:] == ("mass",)):
+        return True
+    linear = ("friction", "force", "torque", "stiffness", "rest_length", "rest_angle", "strength", "constant")
+    return path[0] == "connections" and path[2] in linear
+
+
+def _end(varied: _Varied, inside: Ball, bound: Ball) -> RestEnd:
+    """Return where rest ends between a value with it and a bound."""
+    written = inside
+    looks = 1 if one_interval(varied.scene, varied.path) else LOOKS
+    for k in range(1, looks + 1):
+        outside = bound if k == looks else arb((written + (bound - written) * k / looks).mid())
+        if not varied.rests(outside):
+            return _bisected(varied, inside, outside)
+        inside = outside
+    return RestEnd(nearest(bound), 0.0, None, None)
+
+
+def _bisected(varied: _Varied, inside: Ball, outside: Ball) -> RestEnd:
+    """Return the end of rest between a value with it and one without."""
+    inside, first = arb(inside.mid()), abs(float(outside - inside))
+    for _ in range(_HALVINGS):
+        middle = arb(((inside + outside) / 2).mid())
+        # An end at zero is known relative to where it was looked for.
+        if abs(float(outside - inside)) <= _NARROW * max(abs(float(middle)), _NARROW * first):
+            break
+        if varied.rests(middle):
+            inside = middle
+        else:
+            outside = middle
+    value = nearest((inside + outside) / 2)
+    error = max(float(abs(x - arb(value)).upper()) for x in (inside, outside))
+    base = varied.at(outside)
+    table, unilateral = base.measures.table, base.measures.unilateral
+    found = decided(table, unilateral, varied.touching, table.q, table.v)
+    if isinstance(found, Problem):
+        return RestEnd(value, error, {}, found.code)
+    return RestEnd(value, error, {unilateral[i].name: found.states[i].value for i in varied.touching}, None)

@@ -1,0 +1,1 @@
+"""From a description to the table of quadratics: coordinates of bodies, rows of connections, forces and works."""

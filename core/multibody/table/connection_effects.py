@@ -1,0 +1,135 @@
+"""What connections bring besides rows: forces, works, limits, and measures that stay at or above zero."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from core.multibody.algebra.polynomials import ZERO, Ball, Poly, gradient
+from core.multibody.table.frames import Rate
+
+
+@dataclass(frozen=True)
+class Force:
+    """A force of a connection: sum of multipliers times polynomials, plus what the coordinates and rates alone say.
+
+    Attributes
+    ----------
+    name : str
+        For example ``"hinge.x"``.
+    unit : str
+        "N" or "N m".
+    terms : list of (row, polynomial)
+    of_state : polynomial
+    of_rates : dict
+        Constant coefficients of rates.
+    of_squares : dict
+        Constant coefficients of squares of rates.
+    """
+
+    name: str
+    unit: str
+    terms: list[tuple[int, Poly]] = field(default_factory=list)
+    of_state: Poly = field(default_factory=dict)
+    of_rates: dict[int, Ball] = field(default_factory=dict)
+    of_squares: dict[int, Ball] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What takes or brings energy: a potential, or a power.
+
+    Attributes
+    ----------
+    name : str
+    potential : polynomial or None
+        Whose fall is the work.
+    square : (ball, dict) or None
+        Of a damper: coefficient and the linear form in the rates whose square it takes.
+    terms : list of (ball, coordinate, rate)
+        Power as factor times coordinate times rate.
+    rows : list of (row, polynomial)
+        Power of what is driven: the multiplier of the row times less what the row says of the clock.
+    """
+
+    name: str
+    potential: Poly | None = None
+    square: tuple[Ball, dict[int, Ball]] | None = None
+    terms: list[tuple[Ball, int, int]] = field(default_factory=list)
+    rows: list[tuple[int, Poly]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Something that has to stay positive, and whose loss ends a scene.
+
+    Attributes
+    ----------
+    event : str
+        "slack" for the tension of a string, "lift-off" for the force on the peg of a chain, "end-of-chain" for the
+        length of one side of it, "singular" for another length.
+    name : str
+        The connection.
+    force : int or None
+        Number of the force that has to stay positive.
+    length : polynomial or None
+        The length that has to.
+    scale : float
+        Size of the forces beside which it may be nothing but noise.
+    """
+
+    event: str
+    name: str
+    force: int | None = None
+    length: Poly | None = None
+    scale: float = 0.0
+
+
+@dataclass(frozen=True)
+class Unilateral:
+    """A measure that stays at or above zero: a contact, a stop, a string.
+
+    Attributes
+    ----------
+    name : str
+        Of the connection, or of one part of a string.
+    gap : polynomial
+        Whose multiplier, while it is zero, is the force that keeps it there.
+    slip, across : linear form in the rates, or None
+        Rate of slip where there is friction; its multiplier is the friction. In space, along two directions.
+    tangents : two vectors, or None
+        These directions.
+    static, kinetic, restitution : ball
+        Coefficients.
+    closes, opens : str
+        What the events are called.
+    rolls : bool
+        Whether sticking is rolling.
+    order : ball or None
+        Place in the order of simultaneous impacts.
+    """
+
+    name: str
+    gap: Poly
+    slip: Rate | None = None
+    static: Ball = ZERO
+    kinetic: Ball = ZERO
+    restitution: Ball = ZERO
+    closes: str = "touch"
+    opens: str = "lift-off"
+    rolls: bool = False
+    unit: str = "N"
+    order: Ball | None = None
+    across: Rate | None = None
+    tangents: tuple[Sequence[Ball], Sequence[Ball]] | None = None
+
+    @property
+    def slips(self) -> list[Rate]:
+        """The rates of slip: none without friction, one in the plane, two in space."""
+        return [line for line in (self.slip, self.across) if line is not None]
+
+    @cached_property
+    def normal(self) -> Rate:
+        """The gradient of the gap: its rate as a linear form."""
+        return gradient(self.gap)

@@ -1,0 +1,107 @@
+"""Geometry of contacts in space: places and balls on planes, with two directions of slip; smooth balls on one another.
+
+On a plane through A with normal n the gap is n.(P - A) - R. The point of a ball that touches slips with
+v_P - v_A - R w x n, of which the components along two unit vectors e of the plane are e.(v_P - v_A) - R (n x e).w.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from core.errors import InvalidParameter, Path
+from core.multibody.algebra.directions import cross, perpendicular, unit
+from core.multibody.algebra.polynomials import ONE, Ball, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.table.contact_places import Rim, gap_of_rims, is_on, place_on, refuse_limits, two_rims
+from core.multibody.table.frames import Rate
+from core.multibody.table.measures import Measures
+from core.multibody.table.rolling import rate_of, sum_of_rates
+
+
+@dataclass(frozen=True)
+class Touching:
+    """What a contact in space is.
+
+    Attributes
+    ----------
+    gap : polynomial
+    slips : two linear forms in the rates, or None
+        Without friction, none.
+    tangents : two vectors, or None
+    rolls : bool
+        Whether sticking is rolling.
+    """
+
+    gap: Poly
+    slips: tuple[Rate, Rate] | None
+    tangents: tuple[Sequence[Ball], Sequence[Ball]] | None
+    rolls: bool
+
+
+def contact_in_space(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> Touching:
+    """Return gap and slip of a contact in space.
+
+    Raises
+    ------
+    InvalidParameter
+        Where it names nothing that can touch, or rubs where the directions of slip are not the same for ever.
+    """
+    if connection.measure != "gap":
+        raise InvalidParameter((*path, "measure"), 'be "gap" in space', remedy="describe a stop in the plane")
+    refuse_limits(connection, path)
+    if is_on(connection, path):
+        return _on(measures, connection, path, rubs=rubs)
+    first, second = two_rims(measures, connection, path)
+    return _round(first, second, path, rubs=rubs)
+
+
+def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> Touching:
+    (point, radius, frame), at, on = place_on(measures, connection, path)
+    where = (*path, "on")
+    if set(on) == {"radius"}:
+        reach = measures.numerals.number(on["radius"], (*where, "radius"))
+        return _round((point, radius, frame), (at, reach, None), path, rubs=rubs)
+    if set(on) != {"normal"}:
+        raise InvalidParameter(where, "have at, and normal or radius", remedy='a level floor is "normal": [0, 0, 1]')
+    n = unit(measures.numerals.vector(on["normal"], (*where, "normal"), 3), (*where, "normal"))
+    d = [difference(x, y) for x, y in zip(point.at, at.at, strict=True)]
+    normal = measures.coordinates.vector_of(at.body, n, where)
+    gap = combined((ONE, dot(normal, d)), (-radius, constant(ONE)))
+    rolls = not is_zero(radius)
+    if not rubs:
+        return Touching(gap, None, None, rolls)
+    if at.body is not None and measures.coordinates.frames[at.body].orients:
+        raise InvalidParameter(
+            (*path, "friction"),
+            f'be left out on a plane that turns with "{at.body}": its directions of slip turn, too',
+            remedy="describe the body without moments, as one that does not turn",
+        )
+    along = perpendicular(n, where)
+    slips = []
+    for e in along:
+        parts = [(constant(x), rate_of(d[i])) for i, x in enumerate(e) if not is_zero(x)]
+        if rolls:
+            if frame is None or frame.turns is None:
+                raise InvalidParameter(
+                    (*path, "friction"),
+                    "be left out on balls that cannot turn",
+                    remedy=f'give "{connection.place}" its moments of inertia',
+                )
+            lever = [-radius * x for x in cross(n, e)]
+            spin = {j: constant(x) for j, x in zip(frame.turns, lever, strict=True) if not is_zero(x)}
+            parts.append((constant(ONE), spin))
+        slips.append(sum_of_rates(*parts))
+    return Touching(gap, (slips[0], slips[1]), (along[0], along[1]), rolls)
+
+
+def _round(a: Rim, b: Rim, path: Path, *, rubs: bool) -> Touching:
+    """Return the gap of two balls; the second is hollow where its radius is negative."""
+    if rubs:
+        raise InvalidParameter(
+            (*path, "friction"),
+            "be left out of what is round on both sides in space",
+            remedy="let one of them be a plane, or describe rolling",
+        )
+    gap, _, _ = gap_of_rims(a[:2], b[:2], path)
+    return Touching(gap, None, None, not (is_zero(a[1]) and is_zero(b[1])))

@@ -1,0 +1,286 @@
+"""Connections that pull or drive: springs, dampers, motors, spinning frames, constant forces and torques."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from core.errors import InvalidParameter, Path
+from core.multibody.algebra.polynomials import (
+    ONE,
+    ZERO,
+    Ball,
+    Poly,
+    combined,
+    constant,
+    coordinate,
+    difference,
+    entry,
+    evaluated,
+    is_zero,
+    product,
+)
+from core.multibody.language.connections import GROUND
+from core.multibody.table.connection_effects import Force, Work
+from core.multibody.table.frames import Point
+from core.multibody.table.measures import Measures
+from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.table import Row
+from core.near_names import near_and_all
+
+
+def spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add a linear spring between two places: energy k (l - l_0)^2/2."""
+    a, b = _ends(measures, connection, path)
+    k = _positive(measures, connection.stiffness, (*path, "stiffness"))
+    d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]
+    rest = None
+    if connection.rest_length is not None:
+        rest = measures.numerals.number(connection.rest_length, (*path, "rest_length"))
+        if rest < 0:
+            raise InvalidParameter((*path, "rest_length"), "be at least 0 m")
+        if is_zero(rest):
+            # Without a rest length the pull is k d: nothing but stiffness, whatever the direction.
+            if (a.body is None and b.body is None) or a.body == b.body:
+                raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
+            for component in d:
+                _potential(measures, component, k)
+            measures.works.append(Work(name, combined(*((k / 2, product(x, x)) for x in d))))
+            for axis, component in zip("xyz", d, strict=False):
+                measures.forces.append(Force(f"{name}.{axis}", "N", [], combined((k, component))))
+            return
+    index = measures.length(name, a, b, path)
+    if rest is None:
+        rest = measures.table.q[index]
+    stretch = combined((ONE, coordinate(index)), (-rest, constant(ONE)))
+    _potential(measures, stretch, k)
+    measures.works.append(Work(name, combined((k / 2, product(stretch, stretch)))))
+    pull = combined((k, coordinate(index)), (-k * rest, constant(ONE)))
+    measures.forces.append(Force(f"{name}.force", "N", [], pull))
+
+
+def torsion_spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add a linear spring between two turns: energy k (angle - rest)^2/2."""
+    k = _positive(measures, connection.stiffness, (*path, "stiffness"))
+    turn = _turn(measures, connection, path)
+    if connection.rest_angle is None:
+        rest = evaluated(turn, measures.table.q)
+    else:
+        rest = measures.numerals.number(connection.rest_angle, (*path, "rest_angle"))
+    away = combined((ONE, turn), (-rest, constant(ONE)))
+    _potential(measures, away, k)
+    measures.works.append(Work(name, combined((k / 2, product(away, away)))))
+    measures.forces.append(Force(f"{name}.torque", "N m", [], combined((-k, away))))
+
+
+def damper(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add a force against the rate of a distance or of a turn."""
+    c = _positive(measures, connection.coefficient, (*path, "coefficient"))
+    if connection.measure == "turn":
+        measured, unit = _turn(measures, connection, path), "N m"
+    elif connection.measure == "length":
+        a, b = _ends(measures, connection, path)
+        measured, unit = coordinate(measures.length(name, a, b, path)), "N"
+    else:
+        raise InvalidParameter((*path, "measure"), 'be "length" or "turn"')
+    slopes = {key[0]: value for key, value in measured.items() if key}
+    for i, x in slopes.items():
+        for j, y in slopes.items():
+            measures.table.add_damping(i, j, c * x * y)
+    measures.works.append(Work(name, square=(c, slopes)))
+    suffix, sign = ("force", c) if unit == "N" else ("torque", -c)
+    measures.forces.append(Force(f"{name}.{suffix}", unit, [], {}, {i: sign * x for i, x in slopes.items()}))
+    measures.conservative = False
+
+
+def motor(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Hold the rate of a turn."""
+    rate = measures.numerals.number(connection.rate, (*path, "rate"))
+    rates = rate_of(_turn(measures, connection, path))
+    if not is_zero(rate):
+        rates = sum_of_rates((constant(ONE), rates), (constant(-rate), {clock(measures): constant(ONE)}))
+        measures.conservative = False
+    row = measures.roll(name, rates)
+    if not is_zero(rate):
+        measures.works.append(Work(name, rows=[(row, constant(-rate))]))
+    measures.force(f"{name}.torque", [(row, constant(ONE))], "N m")
+
+
+def clock(measures: Measures) -> int:
+    """Return the coordinate that is time, made once."""
+    table = measures.table
+    if "clock" in table.names:
+        return table.names.index("clock")
+    index = table.coordinate("clock", "s", ZERO)
+    table.rows.append(Row("clock", None, {index: constant(ONE)}, ONE))
+    return index
+
+
+def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add centrifugal and Coriolis forces: every unit vector and centre moves as particles do."""
+    coordinates = measures.coordinates
+    rate = measures.numerals.number(connection.rate, (*path, "rate"))
+    given = (0,) * measures.dimension if connection.at is None else connection.at
+    at = measures.numerals.vector(given, (*path, "at"), measures.dimension)
+    square = rate * rate
+    if connection.about not in ("vertical", "normal"):
+        raise InvalidParameter((*path, "about"), 'be "vertical" or "normal"')
+    if measures.dimension == 2 and connection.about == "vertical":
+        across = _horizontal(coordinates.gravity, path)
+        for frame in coordinates.frames.values():
+            if frame.orients or frame.turn is not None:
+                raise InvalidParameter(
+                    (*path, "about"),
+                    f'be "normal" where rigid bodies move in the plane, as "{frame.name}" does',
+                    remedy="describe the scene in space",
+                )
+            _outward(measures, frame.position, across, at, square)
+        return
+    if measures.dimension == 3 and connection.about != "vertical":
+        raise InvalidParameter((*path, "about"), 'be "vertical" in space')
+    planar = range(2)
+    if measures.dimension == 3 and not all(is_zero(coordinates.gravity[i]) for i in planar):
+        raise InvalidParameter((*path, "about"), "be about the z axis: gravity has to be along it")
+    for frame in coordinates.frames.values():
+        if (
+            frame.axis is not None
+            or frame.turns is not None
+            or (measures.dimension == 2 and frame.turn is not None and frame.direction is None)
+        ):
+            raise InvalidParameter(path, f'have no top or wheel whose spin is counted apart, as "{frame.name}" is')
+        vectors = [frame.position]
+        if frame.direction is not None:
+            vectors.append(list(frame.direction))
+        if frame.axes is not None:
+            vectors.extend(frame.axes)
+        if frame.direction is not None and frame.turn is not None:
+            raise InvalidParameter(path, f'have no body in it whose turn is counted apart, as "{frame.name}" is')
+        for vector in vectors:
+            _rotating(measures, vector[:2], at if vector is frame.position else None, rate)
+        if frame.axes is not None:
+            _rotating_products(measures, frame.axes, rate)
+
+
+def force(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add a constant force on a place."""
+    point = measures.coordinates.point(connection.place, (*path, "place"))
+    if point.body is None:
+        raise InvalidParameter((*path, "place"), "belong to a body")
+    vector = measures.numerals.vector(connection.force, (*path, "force"), measures.dimension)
+    for component, value in zip(point.at, vector, strict=True):
+        for key, x in component.items():
+            if key and not is_zero(value):
+                measures.table.add_load(key[0], value * x)
+    measures.works.append(
+        Work(name, combined(*((-x, component) for x, component in zip(vector, point.at, strict=True))))
+    )
+
+
+def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add a constant torque on a body."""
+    table, body = measures.table, connection.body
+    if measures.dimension == 2:
+        value = measures.numerals.number(connection.torque, (*path, "torque"))
+        if isinstance(body, str) and body in measures.coordinates.frames:
+            turn = measures.coordinates.turn_of(body, (*path, "body"))
+            table.add_load(next(iter(turn))[0], value)
+            measures.works.append(Work(name, combined((-value, turn))))
+            return
+        remedy = near_and_all(body, measures.coordinates.frames, "bodies")
+        raise InvalidParameter((*path, "body"), "name a body of the scene", remedy=remedy)
+    frame = measures.coordinates.frames.get(body) if isinstance(body, str) else None
+    if frame is None or frame.axes is None:
+        rigid = [one for one, entry in measures.coordinates.frames.items() if entry.axes is not None]
+        remedy = near_and_all(body, rigid, "rigid bodies") if rigid else "give the body its moments"
+        raise InvalidParameter((*path, "body"), "name a rigid body of the scene", remedy=remedy)
+    vector = measures.numerals.vector(connection.torque, (*path, "torque"), 3)
+    terms: list[tuple[Ball, int, int]] = []
+    # The forces (torque x e)/2 on the three unit vectors have the torque as their moment, and no other effect.
+    for axis in frame.axes:
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            table.add_stiffness(axis[i], axis[k], -vector[j] / 2)
+            table.add_stiffness(axis[i], axis[j], vector[k] / 2)
+            terms.append((-vector[j] / 2, axis[k], axis[i]))
+            terms.append((vector[k] / 2, axis[j], axis[i]))
+    measures.works.append(Work(name, terms=[(-factor, i, j) for factor, i, j in terms]))
+    measures.conservative = False
+
+
+def _ends(measures: Measures, connection: Any, path: Path) -> tuple[Point, Point]:
+    point = measures.coordinates.point
+    if connection.b == GROUND:
+        raise InvalidParameter((*path, "b"), "be given: a place, or of the ground its coordinates")
+    return point(connection.a, (*path, "a")), point(connection.b, (*path, "b"))
+
+
+def _positive(measures: Measures, value: Any, path: Path) -> Ball:
+    number = measures.numerals.number(value, path)
+    if not number > 0:
+        raise InvalidParameter(path, "be greater than 0")
+    return number
+
+
+def _turn(measures: Measures, connection: Any, path: Path) -> Poly:
+    if connection.a == connection.b:
+        raise InvalidParameter((*path, "b"), "be another body than a")
+    turn = measures.coordinates.turn_of
+    return difference(turn(connection.a, (*path, "a")), turn(connection.b, (*path, "b")))
+
+
+def _potential(measures: Measures, away: Poly, k: Ball) -> None:
+    """Add the energy k away^2/2 of an affine polynomial."""
+    slopes = {key[0]: value for key, value in away.items() if key}
+    offset = entry(away, ())
+    for i, x in slopes.items():
+        for j, y in slopes.items():
+            measures.table.add_stiffness(i, j, k * x * y)
+        if offset != 0:
+            measures.table.add_load(i, -k * x * offset)
+    measures.potential = measures.potential + k * offset * offset / 2
+
+
+def _horizontal(gravity: Any, path: Path) -> list[Ball]:
+    if all(is_zero(x) for x in gravity):
+        return [ONE, ZERO]
+    size = (gravity[0] * gravity[0] + gravity[1] * gravity[1]).sqrt()
+    if is_zero(gravity[0]):
+        return [ONE, ZERO]
+    return [-gravity[1] / size, gravity[0] / size]
+
+
+def _outward(measures: Measures, position: list[int], across: list[Ball], at: Any, square: Ball) -> None:
+    """Add the centrifugal force on a particle of the plane that spins about a line in the plane."""
+    table = measures.table
+    mass = entry(table.mass, (position[0], position[0]))
+    away: Poly = combined(
+        *((across[i], coordinate(position[i])) for i in range(2)),
+        (-(across[0] * at[0] + across[1] * at[1]), constant(ONE)),
+    )
+    _potential(measures, away, -mass * square)
+
+
+def _rotating(measures: Measures, vector: list[int], at: Any, rate: Ball) -> None:
+    """Add the forces m (2 rate v x z + rate^2 (q - at)) of a vector of the plane of rotation."""
+    x, y = vector
+    mass = entry(measures.table.mass, (x, x))
+    if is_zero(mass):
+        return
+    measures.table.add_damping(x, y, -2 * mass * rate)
+    measures.table.add_damping(y, x, 2 * mass * rate)
+    for number, i in enumerate((x, y)):
+        away = coordinate(i) if at is None else combined((ONE, coordinate(i)), (-at[number], constant(ONE)))
+        _potential(measures, away, -mass * rate * rate)
+
+
+def _rotating_products(measures: Measures, axes: list[list[int]], rate: Ball) -> None:
+    """Add the same for the products of different unit vectors, where the tensor is not diagonal."""
+    table = measures.table
+    for a in range(3):
+        for b in range(3):
+            weight = entry(table.mass, (min(axes[a][0], axes[b][0]), max(axes[a][0], axes[b][0])))
+            if a == b or is_zero(weight):
+                continue
+            table.add_damping(axes[a][0], axes[b][1], -2 * weight * rate)
+            table.add_damping(axes[a][1], axes[b][0], 2 * weight * rate)
+            for i in range(2):
+                table.add_stiffness(axes[a][i], axes[b][i], -weight * rate * rate)

@@ -1,0 +1,256 @@
+"""What connections become: rows of the table, and the forces that their multipliers are.
+
+A row is written so that its multiplier is the force itself where one coordinate system allows it; where not, the force
+is the multiplier times an affine polynomial (a component of a direction).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from core.errors import InvalidParameter, Path
+from core.multibody.algebra.directions import perpendicular, unit
+from core.multibody.algebra.polynomials import (
+    ONE,
+    Ball,
+    Poly,
+    combined,
+    constant,
+    coordinate,
+    degree,
+    difference,
+    dot,
+    evaluated,
+    product,
+)
+from core.multibody.table.connection_effects import Force, Limit, Unilateral, Work
+from core.multibody.table.coordinates import Coordinates
+from core.multibody.table.frames import Point, Rate
+from core.multibody.table.momenta import StateFunction
+from core.multibody.table.table import Row
+
+COMPONENTS = ("x", "y", "z")
+
+CLOSE = 1e-6
+"""Relative mismatch of positions up to which rounded figures are taken to be meant as the connections say."""
+
+
+class Measures:
+    """Adds the rows of connections to the table of the bodies.
+
+    Parameters
+    ----------
+    coordinates : Coordinates
+    one_sided : bool
+        Whether strings may go slack: they are then no rows, but stand in `unilateral`.
+    """
+
+    def __init__(self, coordinates: Coordinates, *, one_sided: bool = False) -> None:
+        self.one_sided = one_sided
+        self.unilateral: list[Unilateral] = []
+        self.coordinates, self.table = coordinates, coordinates.table
+        self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
+        self.forces: list[Force] = []
+        self.limits: list[Limit] = []
+        self.works: list[Work] = []
+        self.potential = ONE - ONE
+        # What has mass beside the bodies: its potential in gravity, and its momentum and angular momentum by name.
+        self.fall: Poly = {}
+        self.momenta: dict[str, tuple[StateFunction, StateFunction]] = {}
+        self.conservative = True
+        self._lengths: dict[Any, int] = {}
+        self._inverses: dict[int, int] = {}
+
+    def hold(self, name: str, measure: Poly) -> int:
+        """Add a measure that stays zero and return the number of its row."""
+        self.table.rows.append(Row.held(name, measure))
+        return len(self.table.rows) - 1
+
+    def roll(self, name: str, rates: Rate) -> int:
+        """Add a combination of rates that stays zero and return the number of its row."""
+        self.table.rows.append(Row(name, None, rates))
+        return len(self.table.rows) - 1
+
+    def force(self, name: str, terms: Sequence[tuple[int, Poly]], unit: str = "N") -> int:
+        """Name a force that multipliers are, and return its number."""
+        self.forces.append(Force(name, unit, list(terms)))
+        return len(self.forces) - 1
+
+    def coincide(self, name: str, a: Point, b: Point, path: Path) -> list[int]:
+        """Hold two places together; the force is that on `a`."""
+        if a.body is not None and a.body == b.body:
+            raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
+        if a.body is None and b.body is None:
+            raise InvalidParameter(path, "connect a body")
+        rows = [self.hold(name, difference(x, y)) for x, y in zip(a.at, b.at, strict=True)]
+        for axis, row in zip(COMPONENTS, rows, strict=False):
+            self.force(f"{name}.{axis}", [(row, constant(ONE))])
+        return rows
+
+    def rod(self, name: str, a: Point, b: Point, length: Any, path: Path) -> None:
+        """Hold two places at a distance; the force is the pull."""
+        self._two(a, b, path)
+        d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]
+        now = self.squared(d)
+        if length is None:
+            square, span = now, now.sqrt()
+        else:
+            span = self.numerals.number(length, (*path, "length"))
+            square = span * span
+        if not square > 0:
+            raise InvalidParameter((*path, "length"), "be greater than 0 m", remedy="hold the places by a pin")
+        if not abs(now - square) < CLOSE * (now + square):
+            raise InvalidParameter(
+                (*path, "length"),
+                f"be {float(now.sqrt()):.10g} m, as the places are apart at the start",
+                remedy="leave it out, or move the bodies",
+            )
+        half = ONE / 2
+        row = self.hold(name, combined((half, dot(d, d)), (-half, constant(square))))
+        self.force(f"{name}.force", [(row, constant(-span))])
+
+    def squared(self, d: Sequence[Poly]) -> Ball:
+        """Return the square of a vector at the start."""
+        values = [evaluated(x, self.table.q) for x in d]
+        return sum((x * x for x in values[1:]), values[0] * values[0])
+
+    def length(self, name: str, a: Point, b: Point, path: Path) -> int:
+        """Return the coordinate that is the distance of two places, made once for each pair."""
+        self._two(a, b, path)
+        key = tuple(sorted(repr(sorted(x.items())) for p in (a, b) for x in p.at))
+        if key in self._lengths:
+            return self._lengths[key]
+        d = [difference(y, x) for x, y in zip(a.at, b.at, strict=True)]
+        square = self.squared(d)
+        if not square > 0:
+            raise InvalidParameter(path, "start with its ends apart: the direction of its force is not determined")
+        index = self.table.coordinate(f"{name}.length", "m", square.sqrt())
+        half = ONE / 2
+        self.hold(name, combined((half, {(index, index): ONE}), (-half, dot(d, d))))
+        self.limits.append(Limit("singular", name, length=coordinate(index)))
+        self._lengths[key] = index
+        return index
+
+    def inverse(self, name: str, length: int) -> int:
+        """Return the coordinate that is one over a length, made once for each."""
+        if length not in self._inverses:
+            index = self.table.coordinate(f"{name}.inverse", "1/m", 1 / self.table.q[length])
+            self.hold(name, {(length, index): ONE, (): -ONE})
+            self._inverses[length] = index
+        return self._inverses[length]
+
+    def aligned(self, name: str, a: str | None, b: str | None, components: Sequence[Ball], path: Path) -> list[int]:
+        """Hold a direction of body `a`, given in space at the start, in body `b`."""
+        first = self.coordinates.vector_of(a, self.in_body(a, components), path)
+        second = self.coordinates.vector_of(b, self.in_body(b, components), path)
+        found = [difference(x, y) for x, y in zip(first, second, strict=True)]
+        return [self.hold(name, measure) for measure in found if measure]
+
+    def in_body(self, body: str | None, components: Sequence[Ball]) -> list[Ball]:
+        """Return the body components of a vector that is given in space at the start."""
+        if body is None or not self.coordinates.frames[body].orients:
+            return list(components)
+        frame, q = self.coordinates.frames[body], self.table.q
+        if frame.direction is not None:
+            c, s = (q[i] for i in frame.direction)
+            return [c * components[0] + s * components[1], c * components[1] - s * components[0]]
+        assert frame.axes is not None, "a top whose direction is held has all of its axes"
+        return [sum((q[i] * x for i, x in zip(axis, components, strict=True)), ONE - ONE) for axis in frame.axes]
+
+    def unturned(self, name: str, a: Point, b: Point, path: Path) -> None:
+        """Hold the orientation of one body to another."""
+        frames = self.coordinates.frames
+        if any(point.body is not None and not frames[point.body].orients for point in (a, b)):
+            turns = [None if point.body is None else frames[point.body].turn for point in (a, b)]
+            if turns[0] is not None and turns[1] is not None:
+                apart = difference(coordinate(turns[0]), coordinate(turns[1]))
+                self.hold(name, difference(apart, constant(evaluated(apart, self.table.q))))
+            # A particle has no orientation that could be held or hold.
+            return
+        if a.body is None:
+            a, b = b, a
+        unit = [[ONE if i == j else ONE - ONE for j in range(self.dimension)] for i in range(self.dimension)]
+        for components in unit[: 1 if self.dimension == 2 else 3]:
+            self.aligned(name, a.body, b.body, components, path)
+
+    def slide(self, name: str, a: Point, b: Point, along: Sequence[Ball], path: Path) -> None:
+        """Hold place `a` on a line through `b`, whose direction is given in the axes of the body of `b`."""
+        d = [difference(x, y) for x, y in zip(a.at, b.at, strict=True)]
+        for number, components in enumerate(perpendicular(along, path)):
+            normal = self.coordinates.vector_of(b.body, components, path)
+            if max(map(degree, normal)) + max(map(degree, d)) > 2:
+                raise InvalidParameter(path, "be simpler")
+            row = self.hold(name, dot(normal, d))
+            suffix = "normal" if self.dimension == 2 else f"normal.{number + 1}"
+            self.force(f"{name}.{suffix}", [(row, constant(ONE))])
+
+    def on_curve(self, name: str, p: Point, curve: Any, path: Path) -> None:
+        """Hold a place on a line, circle, sphere, plane or parabola, of the ground or of a body."""
+        where = (*path, "on")
+        at = self.coordinates.point(self._field(curve, "at", where), (*where, "at"))
+        if at.body is not None and at.body == p.body:
+            raise InvalidParameter((*where, "at"), "belong to another body than the place")
+        d = [difference(x, y) for x, y in zip(p.at, at.at, strict=True)]
+        keys = set(curve) - {"at"}
+        if keys == {"radius"}:
+            radius = self.numerals.number(curve["radius"], (*where, "radius"))
+            if not radius > 0:
+                raise InvalidParameter((*where, "radius"), "be greater than 0 m")
+            half = ONE / 2
+            row = self.hold(name, combined((half, dot(d, d)), (-half, constant(radius * radius))))
+            self.force(f"{name}.normal", [(row, constant(radius))])
+            self._components(name, row, d)
+        elif self.dimension == 3 and keys == {"normal"}:
+            normal = self.coordinates.vector_of(at.body, self._unit(curve["normal"], (*where, "normal")), where)
+            row = self.hold(name, dot(normal, d))
+            self.force(f"{name}.normal", [(row, constant(ONE))])
+        elif self.dimension == 3 and keys == {"direction"}:
+            self.slide(name, p, at, self._unit(curve["direction"], (*where, "direction")), where)
+        elif self.dimension == 2 and keys <= {"slope"}:
+            cosine, sine = self.numerals.angle(curve.get("slope", 0), (*where, "slope"))
+            normal = self.coordinates.vector_of(at.body, [-sine, cosine], where)
+            row = self.hold(name, dot(normal, d))
+            self.force(f"{name}.normal", [(row, constant(ONE))])
+        elif self.dimension == 2 and keys <= {"slope", "curvature"}:
+            self._parabola(name, d, at, curve, where)
+        else:
+            kinds = "slope; radius; curvature" if self.dimension == 2 else "direction; normal; radius"
+            raise InvalidParameter(where, f"have at, and one of: {kinds}")
+
+    def _parabola(self, name: str, d: list[Poly], at: Point, curve: Any, where: Path) -> None:
+        curvature = self.numerals.number(curve["curvature"], (*where, "curvature"))
+        cosine, sine = self.numerals.angle(curve.get("slope", 0), (*where, "slope"))
+        tangent = self.coordinates.vector_of(at.body, [cosine, sine], where)
+        normal = self.coordinates.vector_of(at.body, [-sine, cosine], where)
+        x, y = dot(tangent, d), dot(normal, d)
+        if degree(x) > 1:
+            first = self.table.coordinate(f"{name}.along", "m", evaluated(x, self.table.q))
+            self.hold(name, difference(coordinate(first), x))
+            x = coordinate(first)
+        row = self.hold(name, combined((ONE, y), (-curvature / 2, product(x, x))))
+        if at.body is None:
+            # The gradient is normal - curvature x tangent, and the multiplier goes with it.
+            parts = [
+                combined((ONE, normal[i]), (-curvature * evaluated(tangent[i], self.table.q), x)) for i in range(2)
+            ]
+            self._components(name, row, parts)
+
+    def _components(self, name: str, row: int, parts: Sequence[Poly]) -> None:
+        for axis, part in zip(COMPONENTS, parts, strict=False):
+            self.force(f"{name}.{axis}", [(row, part)])
+
+    def _field(self, mapping: Any, key: str, path: Path) -> Any:
+        if not hasattr(mapping, "keys") or key not in mapping:
+            raise InvalidParameter((*path, key), "be given")
+        return mapping[key]
+
+    def _unit(self, value: Any, path: Path) -> list[Ball]:
+        vector = self.numerals.vector(value, path, self.dimension)
+        return unit(vector, path)
+
+    def _two(self, a: Point, b: Point, path: Path) -> None:
+        if a.body is None and b.body is None:
+            raise InvalidParameter(path, "connect a body")
+        if a.body is not None and a.body == b.body:
+            raise InvalidParameter(path, "connect two different bodies, or a body and the ground")

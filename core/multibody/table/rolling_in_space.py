@@ -1,0 +1,176 @@
+"""Rolling without slip in space: a ball on a plane, which may turn like a table, and on or in a cylinder or a sphere.
+
+With n the unit vector from the surface to the centre C, the ball touches at C - R n, and v_C - R w x n is the velocity
+of the surface there. The angular velocity w in space enters by three coordinates whose rates it is: a ball with equal
+moments needs no others, because then I w' is the torque.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from core.errors import InvalidParameter, Path
+from core.multibody.algebra.directions import cross, perpendicular, unit
+from core.multibody.algebra.polynomials import (
+    ONE,
+    Ball,
+    Poly,
+    combined,
+    constant,
+    coordinate,
+    difference,
+    dot,
+    evaluated,
+    is_zero,
+)
+from core.multibody.table.connection_effects import Work
+from core.multibody.table.frames import Point, Rate
+from core.multibody.table.laws import clock
+from core.multibody.table.measures import COMPONENTS, Measures
+from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.table import Row
+
+Vector = Sequence[Ball]
+
+
+def rolling_in_space(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add the rows of a ball that rolls.
+
+    Raises
+    ------
+    InvalidParameter
+        Where no ball or no surface is named, or the ball is not on the surface.
+    """
+    place, on = connection.place, connection.on
+    if place is None or on is None or connection.a is not None or connection.b is not None:
+        raise InvalidParameter(path, "have place and on: bodies that roll on one another in space are not answered yet")
+    centre = measures.coordinates.point(place, (*path, "place"))
+    frame = measures.coordinates.frames[centre.body] if centre.body is not None else None
+    if frame is None or frame.radius is None or frame.turns is None:
+        raise InvalidParameter((*path, "place"), "belong to a body with a radius and moments of inertia")
+    where = (*path, "on")
+    if not isinstance(on, Mapping) or "at" not in on:
+        raise InvalidParameter((*where, "at"), "be given")
+    at = measures.coordinates.point(on["at"], (*where, "at"))
+    if at.body is not None and (at.body == centre.body or measures.coordinates.frames[at.body].orients):
+        raise InvalidParameter((*where, "at"), "be a point of the ground, or of another body that does not turn")
+    keys = set(on) - {"at"}
+    surface = _Surface(measures, name, centre, frame.radius, list(frame.turns), at, where)
+    if "normal" in keys and keys <= {"normal", "rate"}:
+        surface.plane(on["normal"], on.get("rate", 0))
+    elif keys == {"direction", "radius"}:
+        surface.cylinder(on["direction"], on["radius"])
+    elif keys == {"radius"}:
+        surface.sphere(on["radius"])
+    else:
+        raise InvalidParameter(where, "have at, and one of: normal (and rate); direction and radius; radius")
+
+
+class _Surface:
+    """What a ball rolls on."""
+
+    def __init__(
+        self, measures: Measures, name: str, centre: Point, radius: Ball, turns: list[int], at: Point, path: Path
+    ) -> None:
+        self.measures, self.name, self.radius, self.turns, self.path = measures, name, radius, turns, path
+        self.d = [difference(x, y) for x, y in zip(centre.at, at.at, strict=True)]
+        self.rates = [rate_of(x) for x in self.d]
+
+    def plane(self, normal: Any, rate: Any) -> None:
+        """Roll on a plane, which turns about its normal through the given place."""
+        measures, name = self.measures, self.name
+        n = unit(measures.numerals.vector(normal, (*self.path, "normal"), 3), (*self.path, "normal"))
+        gap = measures.hold(name, combined((ONE, self._along(n)), (-self.radius, constant(ONE))))
+        measures.force(f"{name}.normal", [(gap, constant(ONE))])
+        turning = measures.numerals.number(rate, (*self.path, "rate"))
+        rows, across = [], perpendicular(n, self.path)
+        driven: list[tuple[int, Poly]] = []
+        for e in across:
+            parts = [*self._velocity(e), self._spin([-self.radius * x for x in cross(n, e)])]
+            if not is_zero(turning):
+                # The surface moves with turning n x d, of which this is the component along e.
+                carried = combined(*((-turning * x, self.d[i]) for i, x in enumerate(cross(e, n))))
+                parts.append((carried, {clock(measures): constant(ONE)}))
+                measures.conservative = False
+                driven.append((len(measures.table.rows), carried))
+            rows.append(measures.roll(name, sum_of_rates(*parts)))
+        if driven:
+            measures.works.append(Work(name, rows=driven))
+        for i, axis in enumerate(COMPONENTS):
+            terms = [(row, constant(e[i])) for row, e in zip(rows, across, strict=True) if not is_zero(e[i])]
+            measures.force(f"{name}.friction.{axis}", terms)
+
+    def cylinder(self, direction: Any, radius: Any) -> None:
+        """Roll on a cylinder, or inside it where the radius is negative."""
+        measures, name, table = self.measures, self.name, self.measures.table
+        a = unit(measures.numerals.vector(direction, (*self.path, "direction"), 3), (*self.path, "direction"))
+        first = perpendicular(a, self.path)[0]
+        second = cross(a, first)
+        reach = self._reach(radius)
+        away = [self._along(f) for f in (first, second)]
+        start = [evaluated(x, table.q) / reach for x in away]
+        size = (start[0] * start[0] + start[1] * start[1]).sqrt()
+        if not size > 0:
+            raise InvalidParameter(self.path, "start with the ball beside the axis")
+        n = [table.coordinate(f"{name}.normal.{i + 1}", "1", x / size) for i, x in enumerate(start)]
+        table.rows.append(Row.held(name, {(n[0], n[0]): ONE, (n[1], n[1]): ONE, (): -ONE}))
+        rows = [measures.hold(name, difference(away[i], {(n[i],): reach})) for i in range(2)]
+        measures.force(f"{name}.normal", [(rows[i], coordinate(n[i])) for i in range(2)])
+        # Along the axis, and around it, along a x n.
+        spin = {
+            j: combined((-self.radius * first[i], coordinate(n[1])), (self.radius * second[i], coordinate(n[0])))
+            for i, j in enumerate(self.turns)
+        }
+        rising = measures.roll(name, sum_of_rates(*self._velocity(a), *((poly, _one(j)) for j, poly in spin.items())))
+        around = [
+            (combined((second[i], coordinate(n[0])), (-first[i], coordinate(n[1]))), self.rates[i]) for i in range(3)
+        ]
+        circling = measures.roll(name, sum_of_rates(*around, self._spin([-self.radius * x for x in a])))
+        measures.force(f"{name}.friction.along", [(rising, constant(ONE))])
+        measures.force(f"{name}.friction.around", [(circling, constant(ONE))])
+
+    def sphere(self, radius: Any) -> None:
+        """Roll on a sphere, or inside it where the radius is negative.
+
+        No two directions of the tangent plane serve everywhere on a sphere. So the three components of the velocity are
+        held, from which the measure follows; it is for positions at the start, and to see that they keep to it.
+        """
+        measures, name = self.measures, self.name
+        reach = self._reach(radius)
+        n = [combined((1 / reach, x)) for x in self.d]
+        rows = []
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            # Component i of w x n is w_j n_k - w_k n_j.
+            parts = [(constant(ONE), self.rates[i])]
+            parts.append((combined((-self.radius, n[k])), _one(self.turns[j])))
+            parts.append((combined((self.radius, n[j])), _one(self.turns[k])))
+            rows.append(measures.roll(name, sum_of_rates(*parts)))
+        half = ONE / 2
+        held = measures.hold(name, combined((half, dot(self.d, self.d)), (-half * reach * reach, constant(ONE))))
+        # A multiplier of the measure pushes along d, by as much as d is long.
+        for i, axis in enumerate(COMPONENTS):
+            measures.force(f"{name}.{axis}", [(rows[i], constant(ONE)), (held, self.d[i])])
+        normal = [(row, x) for row, x in zip(rows, n, strict=True)]
+        measures.force(f"{name}.normal", [*normal, (held, constant(reach))])
+
+    def _reach(self, radius: Any) -> Ball:
+        own = self.measures.numerals.number(radius, (*self.path, "radius"))
+        reach = own + self.radius
+        if 0 in reach or 0 in own or (own < 0 and reach > 0):
+            raise InvalidParameter((*self.path, "radius"), "leave room: negative of a hollow larger than the ball")
+        return reach
+
+    def _along(self, direction: Vector) -> Poly:
+        return combined(*((x, self.d[i]) for i, x in enumerate(direction)))
+
+    def _velocity(self, direction: Vector) -> list[tuple[Poly, Rate]]:
+        return [(constant(x), self.rates[i]) for i, x in enumerate(direction) if not is_zero(x)]
+
+    def _spin(self, weights: Vector) -> tuple[Poly, Rate]:
+        return constant(ONE), {j: constant(x) for j, x in zip(self.turns, weights, strict=True) if not is_zero(x)}
+
+
+def _one(index: int) -> Rate:
+    return {index: constant(ONE)}

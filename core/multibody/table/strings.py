@@ -1,0 +1,296 @@
+"""Strings through places and over drums, taut.
+
+A straight part between two points is a length l with l^2 = d.d. A part that touches a drum has a direction u with
+u.u = 1 and d x u = -(k_a R_a - k_b R_b), where k is the sense in which it winds, and its length changes at
+u.(v_b - v_a) + k_a R_a omega_a - k_b R_b omega_b. A drum without slip divides a string in two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, product
+from typing import Any
+
+from core.errors import InvalidParameter, Path, SlackAtStart
+from core.multibody.algebra.polynomials import (
+    ONE,
+    ZERO,
+    Ball,
+    Poly,
+    combined,
+    constant,
+    coordinate,
+    difference,
+    dot,
+    evaluated,
+)
+from core.multibody.language.numerals import member
+from core.multibody.table.connection_effects import Limit, Unilateral
+from core.multibody.table.contact_geometry import bounciness
+from core.multibody.table.frames import Point, Rate
+from core.multibody.table.measures import CLOSE, Measures
+from core.multibody.table.rolling import rate_of, sum_of_rates
+from core.multibody.table.table import Row
+
+SIDES: Mapping[str, tuple[int, int]] = {"left": (0, -1), "right": (0, 1), "below": (1, -1), "above": (1, 1)}
+"""A side of a drum: which component of the way from its centre to the tangent point, and the sign it has."""
+
+MOST_THROUGH = 50
+SLACK = 1e-9
+"""Share of its length by which a string may be longer than its way and still be meant as taut."""
+
+
+@dataclass
+class Knot:
+    """What a string passes: a place, or a drum.
+
+    Attributes
+    ----------
+    radius : ball or None
+        None for a place.
+    turn : polynomial or None
+        The drum's angle; None where the string slips.
+    sides : list of str or None
+        On which side each part touches, in the order of the string.
+    senses : list of int
+        The sense of winding that each part found.
+    """
+
+    point: Point
+    name: str
+    radius: Ball
+    turn: Poly | None
+    sides: list[str | None]
+    senses: list[int]
+    at: Path
+
+
+def string(measures: Measures, name: str, connection: Any, path: Path) -> None:
+    """Add the coordinates and rows of a string.
+
+    Raises
+    ------
+    InvalidParameter
+        For fewer than two things to pass, sides that do not exist or cannot be, and strings of fixed points.
+    """
+    knots = _knots(measures, connection, path)
+    runs: list[list[Knot]] = [[knots[0]]]
+    for knot in knots[1:]:
+        runs[-1].append(knot)
+        if knot.radius is not None and knot.turn is not None and knot is not knots[-1]:
+            runs.append([knot])
+    if connection.length is not None and (len(runs) > 1 or any(knot.radius is not None for knot in knots)):
+        raise InvalidParameter((*path, "length"), "be left out: what is wound on a drum has no part in it")
+    for number, run in enumerate(runs):
+        part = name if len(runs) == 1 else f"{name}.{number + 1}"
+        _run(measures, name, part, run, connection, path)
+    for knot in knots[1:-1]:
+        if knot.radius is not None and knot.senses[0] != knot.senses[1]:
+            raise InvalidParameter(
+                (*path, "sides", knot.name), "be sides between which the string winds around the drum in one sense"
+            )
+
+
+def _knots(measures: Measures, connection: Any, path: Path) -> list[Knot]:
+    through = connection.through
+    if not isinstance(through, (list, tuple)) or len(through) < 2:
+        raise InvalidParameter((*path, "through"), "be a list of at least two places")
+    if len(through) > MOST_THROUGH:
+        raise InvalidParameter((*path, "through"), f"have at most {MOST_THROUGH} entries, not {len(through)}")
+    if not isinstance(connection.sides, Mapping):
+        raise InvalidParameter((*path, "sides"), "be an object of drums and sides")
+    if isinstance(connection.slips, str) or not isinstance(connection.slips, Sequence):
+        raise InvalidParameter((*path, "slips"), "be a list of drums")
+    found: list[Knot] = []
+    drums: set[str] = set()
+    for i, entry in enumerate(through):
+        where = (*path, "through", i)
+        point = measures.coordinates.point(entry, where)
+        frame = measures.coordinates.frames.get(entry) if isinstance(entry, str) else None
+        if frame is None or frame.radius is None:
+            found.append(Knot(point, str(entry)[:80], None, None, [], [], where))
+            continue
+        if measures.dimension != 2:
+            raise InvalidParameter(where, "be a place: strings wind around drums in the plane only")
+        if entry in drums:
+            raise InvalidParameter(where, "be passed once only", remedy="describe the rest as another string")
+        drums.add(str(entry))
+        turn = None if entry in connection.slips else measures.coordinates.turn_of(str(entry), where)
+        count = 1 if i in (0, len(through) - 1) else 2
+        if turn is None and count == 1:
+            raise InvalidParameter((*path, "slips"), "be drums that the string passes, not its ends")
+        sides = _sides(connection.sides.get(entry), count, (*path, "sides", str(entry)))
+        found.append(Knot(point, str(entry), frame.radius, turn, sides, [], where))
+    for extra in connection.sides:
+        if extra not in drums:
+            raise InvalidParameter(member((*path, "sides"), extra), "be a drum that the string passes")
+    for i, extra in enumerate(connection.slips):
+        if not isinstance(extra, str) or extra not in drums:
+            raise InvalidParameter((*path, "slips", i), "be a drum that the string passes")
+    return found
+
+
+def _sides(value: Any, count: int, path: Path) -> list[str | None]:
+    listed = [value] if isinstance(value, str) else value
+    if isinstance(listed, Mapping) or not isinstance(listed, Sequence) or len(listed) != count:
+        raise InvalidParameter(path, f"be {'a side' if count == 1 else 'two sides'} out of {', '.join(SIDES)}")
+    for side in listed:
+        if not isinstance(side, str) or side not in SIDES:
+            raise InvalidParameter(path, f"be {'a side' if count == 1 else 'two sides'} out of {', '.join(SIDES)}")
+    return list(listed)
+
+
+def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: Any, path: Path) -> None:
+    """Add the rows of what lies between two ends or drums: the sum of its lengths does not change."""
+    length = connection.length
+    total: Poly = {}
+    rates: Rate = {}
+    straight = True
+    for a, b in pairwise(run):
+        if a.radius is None and b.radius is None:
+            if a.point.body is None and b.point.body is None:
+                d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
+                total = combined((ONE, total), (ONE, constant(measures.squared(d).sqrt())))
+                continue
+            if len(run) == 2:
+                _single(measures, part, a, b, connection, path)
+                return
+            index = measures.length(name, a.point, b.point, b.at)
+            total = combined((ONE, total), (ONE, coordinate(index)))
+            rates = _joined(rates, {index: constant(ONE)})
+        else:
+            straight = False
+            rates = _joined(rates, sum_of_rates(*_tangent(measures, name, a, b, path)))
+    if not rates:
+        raise InvalidParameter((*path, "through"), "pass something that moves")
+    if straight:
+        held = evaluated(total, measures.table.q) if length is None else _length(measures, length, path)
+        longer = combined((ONE, total), (-held, constant(ONE)))
+        if measures.one_sided:
+            _require_long_enough(evaluated(total, measures.table.q), held, path)
+            measures.unilateral.append(_at_most(measures, part, longer, connection, path))
+            return
+        _require_taut(evaluated(total, measures.table.q), held, path)
+        row = measures.hold(name, longer)
+    elif measures.one_sided:
+        # What the string lacks to be taut is a coordinate: it follows from rates that no measure gives.
+        lack = measures.table.coordinate(f"{part}.slack", "m", ZERO)
+        measures.roll(part, _joined(rates, {lack: constant(ONE)}))
+        measures.unilateral.append(_at_most(measures, part, {(lack,): -ONE}, connection, path))
+        return
+    else:
+        row = measures.roll(name, rates)
+    force = measures.force(f"{part}.tension", [(row, constant(-ONE))])
+    measures.limits.append(Limit("slack", part, force=force))
+
+
+def _at_most(measures: Measures, part: str, longer: Poly, connection: Any, path: Path) -> Unilateral:
+    """Return the measure of a string: what it is longer than its way."""
+    restitution, order = bounciness(measures, connection, path)
+    gap = combined((-ONE, longer))
+    return Unilateral(part, gap, restitution=restitution, closes="taut", opens="slack", order=order)
+
+
+def _require_taut(way: Ball, length: Ball, path: Path) -> None:
+    if length - way > SLACK * length:
+        raise SlackAtStart(
+            (*path, "length"), f"be {float(way):.10g} m here, where a string has to be taut", remedy="leave it out"
+        )
+
+
+def _require_long_enough(way: Ball, length: Ball, path: Path) -> None:
+    if way - length > CLOSE * length:
+        raise InvalidParameter(
+            (*path, "length"), f"be at least {float(way):.10g} m, the way it goes at the start", remedy="leave it out"
+        )
+
+
+def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, path: Path) -> None:
+    """Hold two points at a distance, as long as that takes a pull."""
+    length = connection.length
+    if measures.one_sided:
+        d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
+        square = measures.squared(d) if length is None else _length(measures, length, path) ** 2
+        if not square > 0:
+            raise InvalidParameter((*path, "through"), "pass places that are apart")
+        way = measures.squared(d)
+        _require_long_enough(way.sqrt() if way > 0 else ZERO, square.sqrt(), path)
+        half = 1 / (2 * square.sqrt())
+        longer = combined((half, dot(d, d)), (-half * square, constant(ONE)))
+        measures.unilateral.append(_at_most(measures, part, longer, connection, path))
+        return
+    if length is not None:
+        d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
+        way = measures.squared(d)
+        _require_taut(way.sqrt() if way > 0 else ZERO, _length(measures, length, path), path)
+    measures.rod(part, a.point, b.point, length, path)
+    rod = measures.forces.pop()
+    force = measures.force(f"{part}.tension", rod.terms)
+    measures.limits.append(Limit("slack", part, force=force))
+
+
+def _tangent(measures: Measures, name: str, a: Knot, b: Knot, path: Path) -> list[tuple[Poly, Rate]]:
+    """Add direction and rows of a part that touches a drum; return what its length changes by."""
+    table = measures.table
+    d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
+    start = [evaluated(x, table.q) for x in d]
+    square = start[0] * start[0] + start[1] * start[1]
+    found = []
+    for ka, kb in product((1, -1) if a.radius is not None else (0,), (1, -1) if b.radius is not None else (0,)):
+        offset = (ka * a.radius if ka else ZERO) - (kb * b.radius if kb else ZERO)
+        rest = square - offset * offset
+        if not rest > 0:
+            continue
+        span = rest.sqrt()
+        u = ((span * start[0] + offset * start[1]) / square, (span * start[1] - offset * start[0]) / square)
+        if all(_touches(knot, which, k, u) for knot, which, k in ((a, -1, ka), (b, 0, kb)) if k):
+            found.append((ka, kb, offset, u))
+    if len(found) != 1:
+        culprit = a if a.radius is not None else b
+        raise InvalidParameter(
+            (*path, "sides", culprit.name), "be sides on which the string can touch, and which decide its course"
+        )
+    ka, kb, offset, u = found[0]
+    if ka:
+        a.senses.append(ka)
+    if kb:
+        b.senses.append(kb)
+    first = table.coordinate(f"{name}.direction.x", "1", u[0])
+    second = table.coordinate(f"{name}.direction.y", "1", u[1])
+    table.rows.append(Row.held(name, {(first, first): ONE, (second, second): ONE, (): -ONE}))
+    crossed: Poly = combined(
+        *((value, _times(key, second)) for key, value in d[0].items()),
+        *((-value, _times(key, first)) for key, value in d[1].items()),
+        (offset, constant(ONE)),
+    )
+    measures.hold(name, crossed)
+    parts = [(coordinate(first), rate_of(d[0])), (coordinate(second), rate_of(d[1]))]
+    if ka and a.turn is not None:
+        parts.append((constant(ka * a.radius), rate_of(a.turn)))
+    if kb and b.turn is not None:
+        parts.append((constant(-kb * b.radius), rate_of(b.turn)))
+    return parts
+
+
+def _touches(knot: Knot, which: int, sense: int, u: tuple[Ball, Ball]) -> bool:
+    side = knot.sides[which]
+    assert side is not None
+    component, sign = SIDES[side]
+    way = (-u[1], u[0])[component] * sense * sign
+    return bool(way > 0)
+
+
+def _times(key: tuple[int, ...], index: int) -> Poly:
+    return {tuple(sorted((*key, index))): ONE}
+
+
+def _joined(first: Rate, second: Rate) -> Rate:
+    return {j: combined((ONE, first.get(j, {})), (ONE, second.get(j, {}))) for j in {*first, *second}}
+
+
+def _length(measures: Measures, value: Any, path: Path) -> Ball:
+    length = measures.numerals.number(value, (*path, "length"))
+    if not length > 0:
+        raise InvalidParameter((*path, "length"), "be greater than 0 m")
+    return length

@@ -1,0 +1,1 @@
+"""Columns of a trajectory with their errors; events, integrals and searches along a smooth motion."""

@@ -1,0 +1,157 @@
+"""What is summed up along a motion: the work of every connection, and the lengths of paths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from math import copysign, inf
+
+import numpy as np
+
+from core.arrays import Floats
+from core.errors import BudgetExceeded
+from core.multibody.motion.whole import Whole, values
+from core.multibody.table.connection_effects import Work
+from core.multibody.table.frames import Frame
+from core.multibody.table.momenta import work_of_potential
+from core.multibody.trajectory.integrals import Integrand, integrated
+from core.systems.trajectory import Column, How
+
+MOST_NODES = 20_000
+"""Times at which a motion is looked at between the start and the last sample."""
+
+_SMALL = 2.0**-50
+_TELL = 4.0
+_PARTS = 8
+"""A motion proposes eight times for every step of its series; within a step an integrand is smooth."""
+
+State = tuple[Floats, Floats]
+
+
+def watched_times(whole: Whole, end: float, every: int = 1) -> Floats:
+    """Return times from zero to `end` so close that nothing turns twice between two of them, whole periods included.
+
+    Parameters
+    ----------
+    every : int, optional
+        Of the times that each motion proposes, only each `every`-th is taken.
+
+    Raises
+    ------
+    BudgetExceeded
+        Where they would be too many.
+    """
+    found = [np.array([0.0, end])]
+    for _, motion in whole.parts:
+        period = None if motion.period is None else float(motion.period)
+        if period is None or period >= abs(end):
+            found.append(motion.nodes(end)[::every])
+            continue
+        once = np.abs(motion.nodes(copysign(period, end))[::every])
+        # A period may be so short that their number is no double.
+        periods = abs(end) / period if period > 0.0 else inf
+        if (periods + 1.0) * len(once) > MOST_NODES:
+            what = "times at which the motion is looked at"
+            remedy = "ask for earlier times, or without what is summed up or searched along the way"
+            raise BudgetExceeded(what, (periods + 1.0) * len(once), MOST_NODES, path=("outputs",), remedy=remedy)
+        count = int(periods) + 1
+        found.append(copysign(1.0, end) * (np.arange(count)[:, None] * period + once).ravel())
+    times = np.unique(np.abs(np.concatenate(found)))
+    times = times[times <= abs(end)]
+    if len(times) > MOST_NODES:
+        remedy = "ask for earlier times"
+        raise BudgetExceeded(
+            "times at which the motion is looked at", len(times), MOST_NODES, path=("outputs",), remedy=remedy
+        )
+    return copysign(1.0, end) * times
+
+
+class Along:
+    """Sums along a motion at some times.
+
+    Parameters
+    ----------
+    whole : Whole
+    times : ndarray, shape (t,)
+    how : str
+    finer : bool
+        Whether the motion is answered in pairs.
+    """
+
+    def __init__(self, whole: Whole, times: Floats, how: How, *, finer: bool) -> None:
+        self.whole, self.times, self.how, self.finer = whole, times, how, finer
+
+    def works(self) -> dict[str, Column]:
+        """Return the work that gravity, springs, dampers, motors and forces have done on the scene (J)."""
+        found = {}
+        for work in self.whole.measures.works:
+            if work.potential is not None:
+                found[f"{work.name}.work"] = self._by_potential(work)
+            else:
+                found[f"{work.name}.work"] = self._integral(power_of(self.whole, work), "J")
+        return found
+
+    def paths(self) -> dict[str, Column]:
+        """Return the lengths of the paths of centres of mass (m)."""
+        found = {}
+        for name, speed in path_speeds(self.whole.measures.coordinates.frames).items():
+            found[f"{name}.path"] = self._integral(speed, "m")
+        return found
+
+    def _by_potential(self, work: Work) -> Column:
+        states = self.whole.states(self.times, finer=self.finer)
+        start = self.whole.states(np.zeros(1), finer=self.finer).q[0]
+        done, size = work_of_potential(work.potential or {}, start, states.q)
+        error = _SMALL * float(np.max(size, initial=0.0))
+        if states.reference is not None:
+            other = work_of_potential(work.potential or {}, start, states.reference[0])[0]
+            error += _TELL * float(np.max(np.abs(done - other), initial=0.0))
+        return Column(done, "J", error, self.how)
+
+    def _integral(self, function: Callable[[State], Floats], unit: str) -> Column:
+        def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
+            states = self.whole.states(times, finer=self.finer)
+            own = function((states.q, states.v))
+            return own, own if states.reference is None else function(states.reference), np.abs(own)
+
+        total, error = _from_the_start(self.whole, integrand, self.times)
+        return Column(total, unit, float(np.max(error, initial=0.0)), self.how)
+
+
+def path_speeds(frames: Mapping[str, Frame]) -> dict[str, Callable[[State], Floats]]:
+    """Return the speeds of the centres of mass of bodies, as functions of the state."""
+
+    def speed(where: Sequence[int], state: State) -> Floats:
+        rates: Floats = np.linalg.norm(state[1][:, where, 0], axis=1)
+        return rates
+
+    return {name: partial(speed, list(frame.position)) for name, frame in frames.items()}
+
+
+def power_of(whole: Whole, work: Work) -> Callable[[State], Floats]:
+    """Return the power of what is no potential, as a function of the state."""
+
+    def power(state: State) -> Floats:
+        q, v = state
+        total = np.zeros(len(q))
+        if work.square is not None:
+            rate = sum((float(x) * v[:, i, 0] for i, x in work.square[1].items()), np.zeros(len(q)))
+            total -= float(work.square[0]) * rate**2
+        for factor, i, j in work.terms:
+            total += float(factor) * q[:, i, 0] * v[:, j, 0]
+        if work.rows:
+            multipliers = whole.multipliers(q, v)
+            for row, poly in work.rows:
+                total -= values(poly, q)[0] * multipliers[:, row]
+        return total
+
+    return power
+
+
+def _from_the_start(whole: Whole, integrand: Integrand, times: Floats) -> tuple[Floats, Floats]:
+    total, error = np.zeros(len(times)), np.zeros(len(times))
+    for chosen in (times > 0.0, times < 0.0):
+        if np.any(chosen):
+            end = float(times[chosen][np.argmax(np.abs(times[chosen]))])
+            total[chosen], error[chosen] = integrated(integrand, watched_times(whole, end, _PARTS), times[chosen])
+    return total, error

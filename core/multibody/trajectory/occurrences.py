@@ -1,0 +1,238 @@
+"""When a quantity takes a value, and how small and large it becomes: searched along the motion, located to a bit.
+
+A quantity is a column of the answer, or a component of one: ``rod.angle``, ``ball.position.z``, ``s.tension``,
+``energy.kinetic``. Between the times at which the motion is looked at, which follow its own steps, a quantity turns at
+most once; where a parabola through three values comes near, it is looked at more closely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.arrays import Floats
+from core.errors import InvalidParameter, Path
+from core.multibody.answer import Occurrence, SceneExtremes
+from core.multibody.motion.whole import Whole
+from core.multibody.trajectory.along import watched_times
+from core.near_names import did_you_mean
+from core.systems.trajectory import Column
+
+_SECTIONS = 33
+_ROUNDS = 14
+_MOST_ROUNDS = 100
+_CROWDED = np.concatenate([[0.0], 2.0 ** -np.arange(2, 54, 2), -(2.0 ** -np.arange(2, 54, 2))])
+_FLAT = 2.0**-51
+MOST_FOUND = 1000
+
+Sampler = Callable[[Floats], Column]
+"""From times to the column of one quantity, whose values have shape (t,)."""
+
+
+@dataclass(frozen=True)
+class When:
+    """A question: when does a quantity take a value, for the n-th time after the start, or every time?"""
+
+    quantity: str
+    equals: float
+    nth: int | None = None
+
+
+@dataclass(frozen=True)
+class ExtremesOf:
+    """A question: how small and how large does a quantity become?"""
+
+    quantity: str
+
+
+def component(columns: dict[str, Column], quantity: str) -> Column | None:
+    """Return the column of a quantity, or a component or the length of one; None if there is none."""
+    if quantity in columns:
+        return columns[quantity] if columns[quantity].values.ndim == 1 else None
+    name, _, part = quantity.rpartition(".")
+    column = columns.get(name)
+    if column is None or column.values.ndim == 1:
+        return None
+    if part == "length":
+        return Column(np.linalg.norm(column.values, axis=1), column.unit, column.error, column.how)
+    order = _components(column)
+    if len(part) != 1 or part not in order:
+        return None
+    return Column(column.values[:, order.index(part)], column.unit, column.error, column.how)
+
+
+def _components(column: Column) -> str:
+    """Return the names of a vector's components, a letter each."""
+    return "wxyz" if column.values.shape[1] == 4 else "xyz"[: column.values.shape[1]]
+
+
+def _quantities(columns: Mapping[str, Column]) -> Iterator[str]:
+    """Yield every quantity of which the values can be searched for."""
+    for name, column in columns.items():
+        if column.values.ndim == 1:
+            yield name
+        else:
+            yield from (f"{name}.{part}" for part in (*_components(column), "length"))
+
+
+def occurrences(grid: Floats, sampler: Sampler, search: When, most: int = MOST_FOUND) -> list[Occurrence]:
+    """Return the times after the start at which a quantity takes a value.
+
+    Parameters
+    ----------
+    grid : ndarray, shape (k,)
+        Times from zero to where the motion ends, between which nothing turns twice.
+    sampler : callable
+    """
+    wanted = most if search.nth is None else search.nth
+    crossings = brackets(grid, sampler(grid).values - search.equals, sampler, search.equals, wanted)
+    numbered = list(enumerate(crossings, 1))
+    if search.nth is not None:
+        numbered = numbered[search.nth - 1 : search.nth]
+    return [located(sampler, search, low, high, number) for number, (low, high) in numbered]
+
+
+def brackets(grid: Floats, curve: Floats, sampler: Sampler, equals: float, wanted: int) -> list[tuple[float, float]]:
+    """Return where a curve on a grid, a quantity less a value, is zero after the start: between which times."""
+    crossings: list[tuple[float, float]] = []
+    touching = _touching(curve)
+    for k in range(len(grid) - 1):
+        if len(crossings) >= wanted:
+            break
+        if k > 0 and curve[k] == 0.0:
+            crossings.append((grid[k], grid[k]))
+        elif curve[k] * curve[k + 1] < 0.0:
+            crossings.append((grid[k], grid[k + 1]))
+        elif touching[k] and k + 2 < len(grid):
+            crossings.extend(_pair(sampler, equals, grid[k], grid[k + 2], curve[k]))
+    if len(grid) > 1 and curve[-1] == 0.0 and len(crossings) < wanted:
+        crossings.append((grid[-1], grid[-1]))
+    return crossings
+
+
+def period_within(whole: Whole, end: float) -> float | None:
+    """Return the period after which a motion is the same again, if that is shorter than a time."""
+    periods = {
+        None if motion.period is None else float(motion.period) for _, motion in whole.parts if motion.name != "rest"
+    }
+    single = next(iter(periods)) if len(periods) == 1 else None
+    windings = any(getattr(motion, "winding", 0.0) for _, motion in whole.parts)
+    return single if single is not None and single < end and not windings else None
+
+
+def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> SceneExtremes:
+    """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
+    period = period_within(whole, end)
+    end = end if period is None else period
+    return extremes_on(watched_times(whole, end), sampler, quantity, periodic=period is not None)
+
+
+def extremes_on(grid: Floats, sampler: Sampler, quantity: str, *, periodic: bool = False) -> SceneExtremes:
+    """Return the least and the largest value on a grid of times from zero, between which nothing turns twice."""
+    column = sampler(grid)
+    signs, which = (-1.0, 1.0), [int(np.argmax(sign * column.values)) for sign in (-1.0, 1.0)]
+    found = [(float(column.values[k]), float(grid[k])) for k in which]
+    windows = [(grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]) for k in which]
+    for _ in range(_ROUNDS):
+        fine = [np.linspace(low, high, _SECTIONS) for low, high in windows]
+        values = sampler(np.concatenate(fine)).values.reshape(2, _SECTIONS)
+        for number, sign in enumerate(signs):
+            i = int(np.argmax(sign * values[number]))
+            if sign * values[number, i] >= sign * found[number][0]:
+                found[number] = (float(values[number, i]), float(fine[number][i]))
+            windows[number] = (fine[number][max(i - 1, 0)], fine[number][min(i + 1, _SECTIONS - 1)])
+        # Where both are flat to rounding, looking closer tells nothing more.
+        if np.all(np.ptp(values, axis=1) <= _FLAT * np.abs(values).max(axis=1)):
+            break
+    (least, low), (largest, high) = found
+    error = sampler(np.array([low, high])).error
+    return SceneExtremes(quantity, column.unit, least, low, largest, high, error, float(grid[-1]), periodic)
+
+
+def _touching(curve: Floats) -> np.ndarray:
+    """Return whether the curve may cross zero twice between a value and the next but one, as a parabola says."""
+    found = np.zeros(len(curve), dtype=bool)
+    if len(curve) > 2:
+        left, middle, right = curve[:-2], curve[1:-1], curve[2:]
+        bend = left - 2 * middle + right
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turn = middle - (right - left) ** 2 / (8 * bend)
+        sign = np.sign(middle)
+        nearest = (sign * middle <= sign * left) & (sign * middle <= sign * right) & (sign * bend > 0)
+        found[:-2] = nearest & (sign * left > 0) & (sign * right > 0) & (sign * turn < 0.25 * np.abs(left))
+    return found
+
+
+def _pair(sampler: Sampler, equals: float, low: float, high: float, before: float) -> list[tuple[float, float]]:
+    """Return brackets of two crossings beside a turning point; none where the curve turns before it gets there."""
+    sign = 1.0 if before > 0.0 else -1.0
+    first, last = low, high
+    for _ in range(_ROUNDS):
+        fine = np.linspace(low, high, _SECTIONS)
+        values = sign * (sampler(fine).values - equals)
+        i = int(np.argmin(values))
+        if values[i] < 0.0:
+            return [(first, float(fine[i])), (float(fine[i]), last)]
+        low, high = fine[max(i - 1, 0)], fine[min(i + 1, _SECTIONS - 1)]
+    return []
+
+
+def located(sampler: Sampler, search: When, low: float, high: float, number: int) -> Occurrence:
+    """Return where the sign changes between two times, to the last bit, with the error of the time."""
+    first = sampler(np.array([low])).values[0] - search.equals
+    fine = np.linspace(low, high, _SECTIONS)
+    for _ in range(_MOST_ROUNDS):
+        if not low < np.nextafter(low, high) < high:
+            break
+        values = sampler(fine).values - search.equals
+        beyond = values * first <= 0.0
+        k = int(np.argmax(beyond)) if np.any(beyond) else len(fine) - 1
+        if k == 0:
+            break
+        low, high = fine[k - 1], fine[k]
+        # The chord's zero is close where the curve is smooth: the next times crowd around it. Where all of them are
+        # rounded to the ends, the middle goes on.
+        near = low + (high - low) * values[k - 1] / (values[k - 1] - values[k])
+        around = near + (high - low) * _CROWDED
+        inner = np.append(around[(around > low) & (around < high)], 0.5 * (low + high))
+        fine = np.unique(np.concatenate([[low, high], inner]))
+    reach = (high - low) + 1e-6 * max(abs(high), np.finfo(float).tiny)
+    around = sampler(np.array([low - reach, high, high + reach]))
+    slope = abs(around.values[2] - around.values[0]) / (2 * reach + (high - low))
+    off = sampler(np.array([high])).error
+    # Where the quantity turns back its slope is nothing, and its curvature holds it.
+    wide = 1e-4 * max(abs(high), np.finfo(float).tiny)
+    left, middle, right = sampler(np.array([high - wide, high, high + wide])).values
+    bend = abs(left - 2 * middle + right) / wide**2
+    known = [2.0 * (2.0 * off / bend) ** 0.5] if bend > 0.0 else []
+    error = min([off / slope, *known] if slope > 0.0 else [abs(high), *known])
+    error += (high - low) + 2.0**-52 * abs(high)
+    return Occurrence(search.quantity, search.equals, around.unit, number, float(high), float(error), around.how)
+
+
+def check_search(search: When | ExtremesOf, index: int) -> None:
+    """Raise `InvalidParameter` unless a question can be answered as it stands."""
+    where: Path = ("outputs", index, "when") if isinstance(search, When) else ("outputs", index)
+    key = "quantity" if isinstance(search, When) else "extremes"
+    if not isinstance(search.quantity, str) or not search.quantity:
+        raise InvalidParameter((*where, key), "name a column of the trajectory, or a component of one")
+    if isinstance(search, ExtremesOf):
+        return
+    if isinstance(search.equals, bool) or not isinstance(search.equals, (int, float)) or not np.isfinite(search.equals):
+        raise InvalidParameter((*where, "equals"), "be a finite number")
+    nth = search.nth
+    if nth is not None and (isinstance(nth, bool) or not isinstance(nth, int) or not 1 <= nth <= MOST_FOUND):
+        raise InvalidParameter((*where, "nth"), f"be a whole number from 1 to {MOST_FOUND}")
+
+
+def unknown(search: When | ExtremesOf, index: int, columns: Mapping[str, Column]) -> InvalidParameter:
+    """Return the fault of a quantity that the scene has not."""
+    near = did_you_mean(search.quantity, _quantities(columns))
+    components = 'take a component of a vector by ".x", its length by ".length"'
+    return InvalidParameter(
+        ("outputs", index, "when", "quantity") if isinstance(search, When) else ("outputs", index, "extremes"),
+        f'name a quantity of the scene, unlike "{search.quantity[:80]}"; there are {", ".join([*columns][:40])}',
+        remedy=f"{near} {components}" if near else components,
+    )

@@ -1,0 +1,249 @@
+"""Friction: sticking, sliding, rolling, and what friction leaves undecided, against textbook formulas."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.multibody.solve import solve_scene
+from tests.core.multibody.table.test_contact_geometry import kinds, states
+from tests.core.multibody.worked_examples import column, force, linear, read
+
+
+def disc(inertia: Any, friction: Any, **body: Any) -> dict[str, Any]:
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"disc": {"mass": 1, "inertia": inertia, "radius": 0.1, "at": [0, 0.1], **body}},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "disc", "on": {"at": [0, 0]}, "friction": friction}
+        ],
+    }
+
+
+def block(slope: Any, friction: Any, **body: Any) -> dict[str, Any]:
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"block": {"mass": 2, "at": [0, 0], **body}},
+        "connections": [
+            {"kind": "contact", "name": "slope", "place": "block", "on": {"at": [0, 0], "slope": slope}, **friction}
+        ],
+    }
+
+
+def chalk(**body: Any) -> dict[str, Any]:
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "chalk": {
+                "mass": 1,
+                "inertia": 0.3333,
+                "at": [0.5, 0.8660254037844386],
+                "angle": {"degrees": 60},
+                "velocity": [-3, 0],
+                "places": {"foot": [-1, 0]},
+                **body,
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": "board", "place": "chalk.foot", "on": {"at": [0, 0]}, "friction": 2}
+        ],
+    }
+
+
+@pytest.mark.parametrize(
+    ("inertia", "friction", "speed", "time", "share"),
+    [
+        (0.005, 0.2, 3, 0.509683995922528, 2 / 3),
+        ("2*0.01/5", 0.25, 5, 0.58249599534003201, 5 / 7),
+    ],
+)
+def test_what_slips_comes_to_roll(inertia: Any, friction: float, speed: float, time: float, share: float) -> None:
+    """From v/(mu g (1 + m R^2/I)): the friction changes v and R omega until they agree."""
+    answer = solve_scene(read(disc(inertia, friction, velocity=[speed, 0])), [0.1, 2.0])
+    assert kinds(answer) == [("roll", "floor")]
+    assert abs(answer.events[0].time - time) <= answer.events[0].error < 2e-16
+    assert states(answer) == [{"floor": "slide"}, {"floor": "stick"}]
+    velocity = column(answer, "disc.velocity").values
+    assert velocity[0, 0] == pytest.approx(speed - friction * 9.81 * 0.1, rel=1e-15)
+    assert velocity[1, 0] == pytest.approx(share * speed, rel=1e-15)
+    assert column(answer, "disc.angular_velocity").values[1] == pytest.approx(-share * speed / 0.1, rel=1e-15)
+    assert answer.phases is not None
+    assert {phase.model for phase in answer.phases} == {"constant acceleration"}
+
+
+def test_backspin_returns() -> None:
+    """Thrown forward with backspin beyond R w = 2 v, a disc of I = m R^2/2 comes back, at (2 v - R w)/3."""
+    answer = solve_scene(read(disc(0.005, 0.2, velocity=[1, 0], angular_velocity=50)), [3.0])
+    assert kinds(answer) == [("roll", "floor")]
+    assert answer.events[0].time == pytest.approx((1 + 5) / (3 * 0.2 * 9.81), rel=1e-15)
+    assert column(answer, "disc.velocity").values[0, 0] == pytest.approx((2 - 5) / 3, rel=1e-15)
+
+
+@pytest.mark.parametrize("degrees", [20, 30, 45, 60])
+def test_block_sticks_exactly_at_the_angle_of_friction(degrees: int) -> None:
+    tangent = f"sin(pi*{degrees}/180)/cos(pi*{degrees}/180)"
+    slope = {"degrees": degrees}
+    at = solve_scene(read(block(slope, {"friction": tangent})), [1.0])
+    assert states(at) == [{"slope": "stick"}]
+    assert column(at, "block.position").values.tolist() == [[0.0, 0.0]]
+    below = solve_scene(read(block(slope, {"friction": f"{tangent} - 1/1e60"})), [1.0])
+    assert states(below) == [{"slope": "slide back"}]
+    alpha = math.radians(degrees)
+    assert force(at, "slope.normal") == pytest.approx(2 * 9.81 * math.cos(alpha), rel=1e-15)
+    assert abs(force(at, "slope.friction")) == pytest.approx(2 * 9.81 * math.sin(alpha), rel=1e-15)
+
+
+def test_block_slides_up_stops_and_slides_back() -> None:
+    """Up with g (sin + mu cos), down with g (sin - mu cos); it sticks instead where mu_s > tan."""
+    alpha, mu, v = math.radians(30), 0.3, 4.0
+    velocity = [{"polar": [4, {"degrees": 30}]}][0]
+    scene = block({"degrees": 30}, {"friction": [0.4, 0.3]}, velocity=velocity)
+    answer = solve_scene(read(scene), [2.0])
+    up, down = (9.81 * (math.sin(alpha) + s * mu * math.cos(alpha)) for s in (1, -1))
+    assert kinds(answer) == [("slip", "slope")]
+    assert answer.events[0].time == pytest.approx(v / up, rel=1e-15)
+    late = 2.0 - v / up
+    way = v * v / (2 * up) - down * late * late / 2
+    assert column(answer, "block.position").values[0] @ [math.cos(alpha), math.sin(alpha)] == pytest.approx(way)
+    held = solve_scene(read(block({"degrees": 30}, {"friction": [0.6, 0.3]}, velocity=velocity)), [2.0])
+    assert kinds(held) == [("stick", "slope")]
+    assert np.linalg.norm(column(held, "block.position").values[0]) == pytest.approx(v * v / (2 * up), rel=1e-14)
+
+
+def test_cylinder_rolls_down_or_slips_at_three_times_the_coefficient() -> None:
+    """tan alpha <= 3 mu rolls (a = 2/3 g sin alpha), beyond it slides with mu; exactly at the limit it rolls."""
+
+    def on(slope: Any, friction: Any) -> Any:
+        scene = disc(0.005, friction)
+        scene["connections"][0]["on"] = {"at": [0, 0], "slope": slope}
+        scene["let"] = {"a": "pi/6"}
+        scene["bodies"]["disc"]["at"] = ["-0.1*sin(a)", "0.1*cos(a)"]
+        return solve_scene(read(scene), [0.5])
+
+    rolling = on("a", "sin(a)/cos(a)/3")
+    assert states(rolling) == [{"floor": "stick"}]
+    assert np.linalg.norm(linear(rolling, "disc")) == pytest.approx(2 / 3 * 9.81 / 2, rel=1e-15)
+    slipping = on("a", 0.1)
+    assert states(slipping) == [{"floor": "slide back"}]
+    expected = 9.81 * (0.5 - 0.1 * math.sqrt(3) / 2)
+    assert np.linalg.norm(linear(slipping, "disc")) == pytest.approx(expected, rel=1e-15)
+
+
+def test_block_on_a_spring_with_friction_loses_alike_in_every_swing() -> None:
+    """Turning points of m x'' = -k x -+ mu m g: each is 2 mu m g/k nearer, half a period pi sqrt(m/k) apart."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"block": {"mass": 1, "at": [1, 0]}},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "block", "on": {"at": [0, 0]}, "friction": 0.25},
+            {"kind": "spring", "name": "s", "a": "block", "b": [-2, 0], "stiffness": 25, "rest_length": 2},
+        ],
+    }
+    half, step = math.pi / 5, 2 * 0.25 * 9.81 / 25
+    answer = solve_scene(read(scene), [0.3, 3.5], ("trajectory", "forces-in-time"))
+    count = 5
+    assert kinds(answer) == [("slip", "floor")] * (count - 1) + [("stick", "floor")]
+    for n, event in enumerate(answer.events):
+        assert abs(event.time - (n + 1) * half) <= event.error + 1e-15
+    assert column(answer, "block.position").values[1, 0] == pytest.approx((1 - count * step) * (-1) ** count, abs=1e-14)
+    assert answer.phases is not None
+    assert [phase.model for phase in answer.phases] == ["modes"] * count + ["rest"]
+
+
+def test_block_on_a_moving_plank() -> None:
+    """Momentum, and the relative deceleration mu g (1 + m/M): they move together from v/(mu g (1 + m/M))."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "plank": {"mass": 4, "inertia": 1, "at": [0, 0]},
+            "block": {"mass": 1, "at": [0, 0], "velocity": [2, 0]},
+        },
+        "connections": [
+            {"kind": "slider", "a": "plank", "b": [0, 0], "slope": 0},
+            {"kind": "contact", "name": "top", "place": "block", "on": {"at": "plank"}, "friction": 0.3},
+        ],
+    }
+    answer = solve_scene(read(scene), [2.0])
+    assert kinds(answer) == [("stick", "top")]
+    assert answer.events[0].time == pytest.approx(2 / (0.3 * 9.81 * 1.25), rel=1e-15)
+    assert column(answer, "plank.velocity").values[0, 0] == pytest.approx(0.4, rel=1e-15)
+
+
+def test_painleve_without_a_motion() -> None:
+    """1 + (l^2 m/I)(cos^2 - mu sin cos) < 0 at 60 degrees with mu = 2: nothing goes with sliding on."""
+    answer = solve_scene(read(chalk()), [0.0, 1.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "no-motion"
+    assert answer.problem.connections == ("board",)
+    assert answer.problem.decided_by
+    assert answer.ended is not None
+    assert (answer.ended.kind, answer.ended.time) == ("no-motion", 0.0)
+    # With less friction the same chalk slides: N = (m g - ...)/..., by Newton and Euler about the centre.
+    free = chalk()
+    free["connections"][0]["friction"] = 0.5
+    moving = solve_scene(read(free), [0.0])
+    c, s, mu = 0.5, math.sqrt(3) / 2, 0.5
+    # Acceleration of the foot upward: N/m - g + (N c - mu N s) c/I for sliding to the left, friction to the right.
+    push = 9.81 / (1 + c * (c - mu * s) / 0.3333)
+    assert force(moving, "board.normal") == pytest.approx(push, rel=1e-14)
+
+
+def test_painleve_with_several_motions() -> None:
+    """Spinning by 5 about its sliding foot, it may lift off or slide on."""
+    foot = chalk()
+    body = foot["bodies"]["chalk"]
+    body["angular_velocity"] = 5
+    # The centre moves so that the foot has the velocity (-3, 0): v = v_f + w x r.
+    body["velocity"] = ["-3 - 5*0.8660254037844386", 2.5]
+    answer = solve_scene(read(foot), [0.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "several-motions"
+    assert {one["board"] for one in answer.problem.candidates} == {"slide back", "open"}
+
+
+def test_load_that_is_shared_is_not_determined() -> None:
+    """A bar on two rough places: the vertical forces are m g/2 each, the friction may be any pair that cancels."""
+    bar = {"mass": 2, "inertia": 1, "at": [0, 0], "places": {"l": [-1, 0], "r": [1, 0]}}
+    floor = {"at": [0, 0]}
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"bar": bar},
+        "connections": [
+            {"kind": "contact", "name": k, "place": f"bar.{k}", "on": floor, "friction": 0.5} for k in ("l", "r")
+        ],
+    }
+    answer = solve_scene(read(scene), [1.0])
+    assert answer.forces is not None
+    assert force(answer, "l.normal") == pytest.approx(9.81, rel=1e-15)
+    assert not answer.forces["l.friction"].determined
+    assert set(answer.forces["l.friction"].shared_with) == {"l", "r"}
+    assert column(answer, "bar.position").values.tolist() == [[0.0, 0.0]]
+
+
+def test_sliding_on_three_legs_of_different_roughness_is_not_determined() -> None:
+    bar = {
+        "mass": 2,
+        "inertia": 1,
+        "at": [0, 0],
+        "velocity": [1, 0],
+        "places": {"l": [-1, 0], "m": [0, 0], "r": [1, 0]},
+    }
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {"bar": bar},
+        "connections": [
+            {"kind": "contact", "name": k, "place": f"bar.{k}", "on": {"at": [0, 0]}, "friction": mu}
+            for k, mu in (("l", 0.1), ("m", 0.2), ("r", 0.1))
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "undetermined-friction"
+    for connection in scene["connections"]:
+        connection["friction"] = 0.1
+    alike = solve_scene(read(scene), [0.1])
+    assert alike.problem is None
+    assert linear(alike, "bar") == (pytest.approx(-0.981, rel=1e-15), 0.0)

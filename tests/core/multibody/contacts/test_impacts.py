@@ -1,0 +1,375 @@
+"""Impacts: restitution, friction, simultaneous ones and those that accumulate, against formulas and counts."""
+
+from __future__ import annotations
+
+import json
+import math
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from core.multibody.motion.turning import FEW_RADIANS
+from core.multibody.solve import solve_scene
+from tests.core.multibody.table.test_contact_geometry import kinds, states
+from tests.core.multibody.worked_examples import column, read
+
+BALL = """{"gravity":[0,-9.81],"bodies":{"ball":{"mass":1,"at":[0,1.25]}},"connections":[{"kind":"contact",
+"name":"floor","place":"ball","on":{"at":[0,0]},"restitution":0.8}]}"""
+
+
+def test_bounces_end_at_their_limit() -> None:
+    """Rest at sqrt(2 h/g)(1 + e)/(1 - e); the way is h (1 + e^2)/(1 - e^2)."""
+    answer = solve_scene(read(BALL), np.linspace(0, 5, 201), ("trajectory", "energy-in-time"))
+    assert kinds(answer)[-1] == ("settle", "floor")
+    settle = answer.events[-1]
+    with mpmath.workdps(40):
+        limit = 9 * mpmath.sqrt(mpmath.mpf("2.5") / mpmath.mpf("9.81"))
+    # To the last bit: 4.54336899611537..., of which doubles are 9e-16 apart.
+    assert settle.time == float(limit)
+    assert abs(settle.time - limit) <= settle.error < 1e-15
+    first = math.sqrt(2.5 / 9.81)
+    for n, event in enumerate(answer.events[:-1]):
+        assert event.time == pytest.approx(first * (1 + 2 * sum(0.8**k for k in range(1, n + 1))), rel=4e-16)
+        assert event.energy_loss == pytest.approx(9.81 * 1.25 * 0.64**n * 0.36, rel=1e-14)
+    heights = column(answer, "ball.position").values[:, 1]
+    time = np.linspace(0, 5, 201)
+    # Within the arcs that are not listed, too: arc n begins at t_n with the speed e^n v.
+    for t, y in zip(time, heights, strict=True):
+        if t <= first:
+            expected = 1.25 - 9.81 * t * t / 2
+        else:
+            begin, speed = first, 0.8 * 9.81 * first
+            while speed > 1e-9 and begin + 2 * speed / 9.81 < t:
+                begin, speed = begin + 2 * speed / 9.81, 0.8 * speed
+            late = t - begin
+            expected = max(0.0, late * (speed - 9.81 * late / 2)) if speed > 1e-9 else 0.0
+        assert y == pytest.approx(expected, abs=2e-14)
+    assert states(answer)[-1] == {"floor": "closed"}
+    assert answer.phases is not None
+    assert answer.phases[-2].model == "accumulating bounces"
+    assert answer.phases[-1].model == "rest"
+    way = 1.25 + 2 * 1.25 * sum(0.64**n for n in range(1, 400))
+    assert way == pytest.approx(41 / 7.2, rel=1e-14)
+
+
+@pytest.mark.parametrize(("ratio", "count"), [(1, 3), (100, 31), (10_000, 314)])
+def test_blocks_between_a_wall_and_a_heavy_block_count_the_digits_of_pi(ratio: int, count: int) -> None:
+    """ceil(pi/atan sqrt(m/M)) - 1 elastic impacts (G. Galperin, 2003)."""
+    scene = {
+        "bodies": {
+            "light": {"mass": 1, "inertia": 1, "radius": 0.1, "at": [1, 0]},
+            "heavy": {"mass": ratio, "inertia": 1, "radius": 0.1, "at": [2, 0], "velocity": [-1, 0]},
+        },
+        "connections": [
+            {
+                "kind": "contact",
+                "name": "wall",
+                "place": "light",
+                "on": {"at": [0, 0], "slope": {"degrees": -90}},
+                "restitution": 1,
+            },
+            {"kind": "contact", "name": "pair", "a": "heavy", "b": "light", "restitution": 1},
+        ],
+    }
+    answer = solve_scene(read(scene), [1000.0], ("trajectory", "energy-in-time"))
+    assert len(answer.events) == count == math.ceil(math.pi / math.atan(math.sqrt(1 / ratio))) - 1
+    assert {event.kind for event in answer.events} == {"touch"}
+    assert sum(event.energy_loss for event in answer.events) == 0.0
+    assert column(answer, "energy.kinetic").values[0] == pytest.approx(ratio / 2, rel=1e-14)
+
+
+def test_spinning_ball_bounces_off_a_rough_floor() -> None:
+    """Garwin's bounce with e = 1: friction (1 + e) mu m v while it slips, else until the contact point rests."""
+
+    def thrown(friction: float, spin: float) -> Any:
+        scene = {
+            "gravity": [0, -9.81],
+            "bodies": {
+                "ball": {
+                    "mass": 1,
+                    "inertia": "2/5*0.01",
+                    "radius": 0.1,
+                    "at": [0, 0.6],
+                    "velocity": [1, 0],
+                    "angular_velocity": spin,
+                }
+            },
+            "connections": [
+                {
+                    "kind": "contact",
+                    "name": "floor",
+                    "place": "ball",
+                    "on": {"at": [0, 0]},
+                    "friction": friction,
+                    "restitution": 0.7,
+                }
+            ],
+        }
+        return solve_scene(read(scene), [0.4])
+
+    down = math.sqrt(2 * 9.81 * 0.5)
+    slips = thrown(0.1, 40)
+    assert slips.events[0].impulses["normal"] == pytest.approx(1.7 * down, rel=1e-14)
+    assert slips.events[0].impulses["friction"] == pytest.approx(-0.1 * 1.7 * down, rel=1e-14)
+    assert column(slips, "ball.velocity").values[0, 0] == pytest.approx(1 - 0.17 * down, rel=1e-14)
+    sticks = thrown(0.9, 10)
+    # (1 + R w) over 1/m + R^2/I = 7/2
+    assert sticks.events[0].impulses["friction"] == pytest.approx(-2 / 3.5, rel=1e-14)
+    assert column(sticks, "ball.velocity").values[0, 0] == pytest.approx(1 - 2 / 3.5, rel=1e-14)
+
+
+def test_two_balls_exchange_their_velocities() -> None:
+    scene = {
+        "bodies": {
+            "a": {"mass": 1, "inertia": 1, "radius": 0.1, "at": [0, 0], "velocity": [1, 0]},
+            "b": {"mass": 1, "inertia": 1, "radius": 0.1, "at": [1.2, 0], "velocity": [0, 0]},
+        },
+        "connections": [{"kind": "contact", "name": "pair", "a": "a", "b": "b", "restitution": 1}],
+    }
+    answer = solve_scene(read(scene), [2.0])
+    assert kinds(answer) == [("touch", "pair")]
+    assert answer.events[0].time == 1.0
+    assert column(answer, "b.velocity").values.tolist() == [[1.0, 0.0]]
+    assert column(answer, "a.velocity").values.tolist() == [[0.0, 0.0]]
+
+
+def cradle(**orders: int) -> dict[str, Any]:
+    return {
+        "bodies": {
+            name: {"mass": 1, "inertia": 1, "radius": 0.1, "at": [x, 0], "velocity": [v, 0]}
+            for name, x, v in (("a", -1, 1), ("b", 0, 0), ("c", 0.2, 0))
+        },
+        "connections": [
+            {"kind": "contact", "name": name, "a": name[0], "b": name[1], "restitution": 1, **_order(orders, name)}
+            for name in ("ab", "bc")
+        ],
+    }
+
+
+def _order(orders: dict[str, int], name: str) -> dict[str, int]:
+    return {"order": orders[name]} if name in orders else {}
+
+
+def test_three_balls_of_a_cradle_are_undecided_unless_ordered() -> None:
+    """Together, the first would go back with a third of its velocity; one after another, the last takes all."""
+    answer = solve_scene(read(cradle()), [2.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "simultaneous-impacts"
+    assert {one["order"] for one in answer.problem.candidates} == {"together", "ab then bc"}
+    assert answer.trajectory is not None
+    assert len(answer.trajectory.rows) == 0
+    ordered = solve_scene(read(cradle(ab=1, bc=2)), [2.0], ("trajectory", "energy-in-time"))
+    assert ordered.problem is None
+    for name, v in (("a", 0.0), ("b", 0.0), ("c", 1.0)):
+        assert column(ordered, f"{name}.velocity").values.tolist() == [[v, 0.0]]
+
+
+def test_dumbbell_dropped_flat_rebounds_flat() -> None:
+    """Two equal points on a massless rod do not notice one another: the inertia m l^2 decouples the two ends."""
+    scene = {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "dumbbell": {"mass": 2, "inertia": 2, "at": [0, 1], "places": {"l": [-1, 0], "r": [1, 0]}},
+        },
+        "connections": [
+            {"kind": "contact", "name": k, "place": f"dumbbell.{k}", "on": {"at": [0, 0]}, "restitution": 0.5}
+            for k in ("l", "r")
+        ],
+    }
+    answer = solve_scene(read(scene), [0.6])
+    assert answer.problem is None
+    assert kinds(answer) == [("touch", "l"), ("touch", "r")]
+    down = math.sqrt(2 * 9.81)
+    late = 0.6 - down / 9.81
+    assert column(answer, "dumbbell.velocity").values[0, 1] == pytest.approx(0.5 * down - 9.81 * late, rel=1e-13)
+    # A uniform rod is another thing: the one end's impulse moves the other.
+    scene["bodies"]["dumbbell"]["inertia"] = "2/3"  # type: ignore[index]
+    undecided = solve_scene(read(scene), [0.6])
+    assert undecided.problem is not None
+    assert undecided.problem.code == "simultaneous-impacts"
+
+
+def test_ball_hits_a_stick_that_lies_on_ice() -> None:
+    """A point hits a free rod at the end: m v = m v' + p, p = M V, p a = I w, (V + a w - v') = e v."""
+    scene = {
+        "bodies": {
+            "ball": {"mass": 1, "inertia": 0.1, "radius": 0.1, "at": [-1, 0.9], "velocity": [2, 0]},
+            "stick": {
+                "mass": 3,
+                "inertia": 1,
+                "at": [0, 0],
+                "angle": {"degrees": 90},
+            },
+        },
+        "connections": [
+            {
+                "kind": "contact",
+                "name": "hit",
+                "place": "ball",
+                "on": {"at": "stick", "slope": 0},
+                "restitution": 0.5,
+            }
+        ],
+    }
+    answer = solve_scene(read(scene), [0.5], ("trajectory", "energy-in-time"))
+    push = 1.5 * 2 / (1 / 1 + 1 / 3 + 0.9**2 / 1)
+    (event,) = answer.events
+    assert event.time == pytest.approx(0.45, rel=1e-15)
+    assert event.impulses["normal"] == pytest.approx(push, rel=1e-14)
+    assert column(answer, "stick.angular_velocity").values[0] == pytest.approx(-push * 0.9, rel=1e-14)
+    assert event.energy_loss == pytest.approx(2 - 2 + push * 2 - push**2 / 2 * (1 + 1 / 3 + 0.81), rel=1e-13)
+
+
+def box(angle: float, spin: float, *, ordered: bool) -> dict[str, Any]:
+    places = {"l": [-0.3, -0.2], "r": [0.3, -0.2]}
+    law = {"restitution": 0.3, "friction": 0.4}
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {
+            "box": {
+                "mass": 1,
+                "inertia": 0.05,
+                "at": [0, 1],
+                "angle": angle,
+                "angular_velocity": spin,
+                "places": places,
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": name, "place": f"box.{name}", "on": {"at": [0, 0]}, **law}
+            | ({"order": i} if ordered else {})
+            for i, name in enumerate(places)
+        ],
+    }
+
+
+def test_a_dropped_box_bounces_on_its_corners_in_turn_until_it_rests() -> None:
+    """The bounces of both corners end together; then the box slides to rest at mu g, flat on the floor."""
+    answer = solve_scene(read(box(0.2, 1.0, ordered=True)), np.linspace(0, 3, 7), ("trajectory", "energy-in-time"))
+    assert answer.ended is None
+    assert states(answer)[-1] == {"l": "stick", "r": "stick"}
+    found = column(answer, "box.position")
+    assert found.values[-1, 1] == pytest.approx(0.2, abs=found.error)
+    assert found.error < 1e-9
+    assert column(answer, "box.angle").values[-1] == pytest.approx(0.0, abs=column(answer, "box.angle").error)
+    # What the impacts take is what was there, but for the friction of sliding.
+    assert 7.8 < sum(event.energy_loss for event in answer.events) < 9.81 * 0.8 + 0.025
+
+
+def test_undecided_candidates_say_nothing_of_rounding() -> None:
+    answer = solve_scene(read(box(0.3, 0.0, ordered=False)), [0.5, 3.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "simultaneous-impacts"
+    words = {candidate[name] for candidate in answer.problem.candidates for name in ("l", "r")}
+    assert "stays closed" in words
+    assert not any("e-" in word for word in words)
+
+
+def test_more_events_than_are_followed_end_the_answer_and_lose_nothing() -> None:
+    """An elastic ball bounces every 2 sqrt(2 h/g) s for ever: 500 impacts are followed, and what they say is kept."""
+    scene = json.loads(BALL)
+    scene["connections"][0]["restitution"] = 1
+    answer = solve_scene(read(scene), [0.0, 1.0, 400.0, 1000.0])
+    assert answer.problem is not None
+    assert answer.problem.code == "event-limit"
+    assert answer.ended is not None
+    assert answer.ended.time == pytest.approx((2 * 500 + 1) * math.sqrt(2.5 / 9.81), rel=1e-13)
+    assert answer.trajectory is not None
+    assert answer.trajectory.rows.tolist() == [0, 1, 2]
+    with mpmath.workdps(40):
+        fall = mpmath.sqrt(mpmath.mpf("2.5") / mpmath.mpf("9.81"))
+        late = (400 + fall) % (2 * fall)
+        height = mpmath.mpf("9.81") * late * (2 * fall - late) / 2
+    found = column(answer, "ball.position")
+    assert abs(found.values[2, 1] - float(height)) <= found.error
+
+
+def test_an_impact_goes_through_a_row_of_equal_balls() -> None:
+    """Equal balls exchange their velocities: one moves at a time, over one gap after another."""
+    count, gap = 30, 0.0001
+    names = [f"b{i:02}" for i in range(count)]
+    scene = {
+        "bodies": {
+            name: {
+                "mass": 2,
+                "inertia": 1,
+                "radius": 0.01,
+                "at": [f"{i}*(0.02 + {gap})", 0],
+                "velocity": [3 * (i == 0), 0],
+            }
+            for i, name in enumerate(names)
+        },
+        "connections": [
+            {"kind": "contact", "name": f"{a}-{b}", "a": a, "b": b, "restitution": 1} for a, b in pairwise(names)
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 1.0])
+    assert [event.name for event in answer.events] == [f"{a}-{b}" for a, b in pairwise(names)]
+    for i, event in enumerate(answer.events, 1):
+        assert abs(event.time - float(Fraction(i, 30000))) <= event.error + 2**-53 * event.time
+        assert event.impulses["normal"] == 6.0
+    for name in names[:-1]:
+        assert column(answer, f"{name}.velocity").values[-1].tolist() == [0.0, 0.0]
+    assert column(answer, f"{names[-1]}.velocity").values[-1].tolist() == [3.0, 0.0]
+
+
+def test_a_mass_on_a_spring_bounces_off_a_stop_at_equal_times() -> None:
+    """x = a cos(wt) from a = 0.5 m to the stop at -0.2 m, and back: w t = (2n - 1) arccos(-0.4)."""
+    scene = {
+        "bodies": {"m": {"mass": 2, "at": ["0.5", 0]}},
+        "connections": [
+            {"kind": "slider", "a": "m", "b": [0, 0], "slope": 0},
+            {"kind": "spring", "a": "m", "b": [0, 0], "stiffness": 50, "rest_length": 0},
+            {
+                "kind": "contact",
+                "name": "stop",
+                "place": "m",
+                "on": {"at": ["-0.2", 0], "slope": {"degrees": -90}},
+                "restitution": 1,
+            },
+        ],
+    }
+    answer = solve_scene(read(scene), [0.0, 15.0])
+    assert len(answer.events) == 19
+    with mpmath.workdps(30):
+        half = mpmath.acos(mpmath.mpf(-2) / 5) / 5
+        for n, event in enumerate(answer.events, 1):
+            assert abs(event.time - (2 * n - 1) * half) <= event.error < 1e-14
+
+
+def test_a_rod_lands_after_many_turns() -> None:
+    """Its lower end is at h - 0.3 |sin(40 t)| - g t^2/2: the first zero comes after 127 radians."""
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {
+            "rod": {
+                "mass": 1,
+                "inertia": "0.03",
+                "at": [0, 51],
+                "angle": 0,
+                "angular_velocity": 40,
+                "places": {"left": ["-0.3", 0], "right": ["0.3", 0]},
+            }
+        },
+        "connections": [
+            {"kind": "contact", "name": end, "place": f"rod.{end}", "on": {"at": [0, 0]}, "restitution": 0}
+            for end in ("left", "right")
+        ],
+    }
+    answer = solve_scene(read(scene), [3.0])
+    assert not answer.events
+    answer = solve_scene(read(scene), [0.0, 3.2])
+    with mpmath.workdps(30):
+        times = np.linspace(3.0, 3.2, 20001)
+        first = next(t for t in times if 51 - 0.3 * abs(np.sin(40 * t)) < 5 * t * t)
+        end = "left" if np.sin(40 * first) > 0 else "right"
+        sign = 1 if end == "left" else -1
+        root = mpmath.findroot(lambda t: 51 - sign * mpmath.sin(40 * t) * 3 / 10 - 5 * t * t, first)
+        event = answer.events[0]
+        assert event.name == end
+        assert 40 * root > FEW_RADIANS
+        assert abs(event.time - root) <= event.error < 1e-14

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.balls import precision
+from core.errors import AccuracyUnreachable
+from core.multibody.algebra.polynomials import BITS
+from core.multibody.motion.free_body import FreeBody
+from core.multibody.motion.modelling import modelled
+from core.multibody.solve import solve_scene
+from tests.core.multibody.judge import judged, numerical
+from tests.core.multibody.worked_examples import column, read
+
+
+def tumbling(seed):
+    """Return a body with a full tensor, turned askew."""
+    random = np.random.default_rng(seed)
+    points = np.round(random.uniform(-1, 1, (4, 3)), 2)
+    tensor = sum(float(p @ p) * np.eye(3) - np.outer(p, p) for p in points)
+    numbers = [[f"{round(float(x) * 1e4)}/10000" for x in row] for row in tensor]
+    angle = f"{random.uniform(-3, 3):.3f}"
+    axes = [[f"cos({angle})", f"sin({angle})", 0], [f"-sin({angle})", f"cos({angle})", 0], [0, 0, 1]]
+    omega = [float(f"{x:.3f}") for x in random.uniform(-3, 3, 3)]
+    body = {"mass": 1, "tensor": numbers, "at": [0, 0, 0], "axes": axes, "angular_velocity": omega}
+    return {"gravity": [0, 0, 0], "bodies": {"b": body}}
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_closed_form_is_the_motion_of_the_table(seed):
+    description = tumbling(seed)
+    with precision(BITS):
+        ((_, motion),) = modelled(read(description)).whole.parts
+        assert isinstance(motion, FreeBody)
+        (table,) = numerical(description)
+        for t in np.random.default_rng(seed).uniform(-3, 3, 2):
+            found = motion.states(np.array([t]))
+            for value, right in zip((found.q, found.v), judged(table, float(t)), strict=True):
+                true = np.abs((value[0, :, 0] - right[:, 0]) + (value[0, :, 1] - right[:, 1]))
+                assert np.all(true <= 1e-24 * np.abs(right[:, 0]).max())
+
+
+@pytest.mark.parametrize(
+    ("moments", "omega"),
+    [
+        ([1, 2, 3], [0, 0, 2]),
+        ([1, 2, 3], [0, 2, 0]),
+        ([2, 2, 2], [1, 2, 3]),
+        ([1, 2, 3], ["sqrt(3)", 0.5, 1]),
+        ([2, 2, 3], [1, 0.5, 2]),
+        # On the separatrix: L^2 = 2 E I_2.
+        ([1, 2, 3], ["sqrt(3)", 1, 1]),
+    ],
+)
+def test_every_branch_keeps_energy_and_angular_momentum(moments, omega):
+    body = {"mass": 1, "moments": moments, "at": [0, 0, 0], "angular_velocity": omega}
+    # A torque, here of nothing, sees the body's orientation, so that it is not described by one axis.
+    torque = {"kind": "torque", "body": "b", "torque": [0, 0, 0]}
+    scene = read({"gravity": [0, 0, 0], "bodies": {"b": body}, "connections": [torque]})
+    answer = solve_scene(scene, [-3.0, 0.0, 5.0])
+    # What turns about an axis of its own leaves the others at rest along it.
+    assert answer.model.name == ("one period" if omega.count(0) == 2 else "free rotation")
+    attitude, rates = (column(answer, f"b.{name}").values for name in ("attitude", "angular_velocity"))
+    momentum = []
+    for (w, *axis), rate in zip(attitude, rates, strict=True):
+        own, v = np.array(moments) * rate, np.array(axis)
+        momentum.append(own + 2 * w * np.cross(v, own) + 2 * np.cross(v, np.cross(v, own)))
+    for one in momentum:
+        assert one == pytest.approx(momentum[1], abs=2e-14)
+    energy = (np.array(moments) * rates**2).sum(axis=1)
+    assert energy == pytest.approx(energy[1], rel=1e-14)
+
+
+def test_any_time_is_answered_alike():
+    """The middle axis turned about at 1 rad/s, a billion seconds later: the exact rate by its elliptic functions."""
+    answer = solve_scene(read(tumbling(4)), [0.0, 2.0**30], ["trajectory", "energy", "energy-in-time"])
+    assert answer.trajectory.accuracy.error < 2e-15
+    energy = column(answer, "energy.kinetic").values
+    assert energy[1] == pytest.approx(energy[0], rel=1e-15)
+    with pytest.raises(AccuracyUnreachable):
+        solve_scene(read(tumbling(4)), [1e80])
+
+
+def test_a_full_turn_returns():
+    body = {"mass": 1, "moments": [1, 2, 3], "at": [0, 0, 0], "angular_velocity": [0, 0, 2]}
+    answer = solve_scene(read({"gravity": [0, 0, 0], "bodies": {"b": body}}), [math.pi / 2])
+    assert column(answer, "b.attitude").values[0] == pytest.approx([0, 0, 0, 1], abs=1e-15)

@@ -1,0 +1,117 @@
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from mpmath import ellipk, mp
+
+from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
+from core.multibody.solve import solve_scene
+from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.systems.methods.explicit_euler import ExplicitEuler
+from tests.core.multibody.worked_examples import points, read
+
+PENDULUM = read(points((1,), (2.5,), (2,)))
+SCENES = Path(__file__).parents[3] / "examples" / "scenes"
+
+
+def times_of(scene, until, *asked):
+    answer = solve_scene(scene, [until], asked)
+    assert answer.occurrences is not None
+    return [one.time for one in answer.occurrences], [one.error for one in answer.occurrences]
+
+
+def test_a_pendulum_passes_its_lowest_place_at_odd_quarters_of_its_period():
+    """T = 4 K(sin^2 1.25)/omega, Jacobi."""
+    found, errors = times_of(PENDULUM, 9.0, When("p0.position.x", 0.0))
+    with mp.workdps(30):
+        quarter = ellipk(mp.sin(mp.mpf("1.25")) ** 2) / mp.sqrt(mp.mpf("9.81"))
+        exact = [quarter * k for k in (1, 3, 5, 7, 9)]
+    assert len(found) == 5
+    for time, error, right in zip(found, errors, exact, strict=True):
+        assert abs(time - right) <= error < 1e-14
+
+
+def test_the_nth_is_the_nth_of_all():
+    every, _ = times_of(PENDULUM, 20.0, When("r0.force", 30.0))
+    for n in (1, 2, 5):
+        assert times_of(PENDULUM, 20.0, When("r0.force", 30.0, n))[0] == [every[n - 1]]
+    assert times_of(PENDULUM, 1.0, When("r0.force", 30.0, 9))[0] == []
+
+
+def test_a_thrown_ball_is_as_high_twice_and_at_its_highest_once():
+    ball = read({"gravity": [0, -9.81], "bodies": {"b": {"mass": 1, "at": [0, 0], "velocity": [1, 9.81]}}})
+    found, errors = times_of(ball, 3.0, When("b.position.y", 3.0))
+    root = math.sqrt(1 - 6 / 9.81)
+    assert found == pytest.approx([1 - root, 1 + root], rel=1e-15)
+    assert max(errors) < 1e-14
+    # Just below the top two crossings lie close together, and just above it there are none.
+    found, errors = times_of(ball, 3.0, When("b.position.y", 4.905 - 1e-10))
+    for time, error, sign in zip(found, errors, (-1, 1), strict=True):
+        assert abs(time - 1 - sign * math.sqrt(2e-10 / 9.81)) <= error + 1e-11
+        assert error < 1e-9
+    assert times_of(ball, 3.0, When("b.position.y", 4.905 + 1e-10))[0] == []
+
+
+def test_extremes_over_a_period_are_those_of_all_time():
+    """The pull is m (3 g cos(theta) - 2 g cos(2.5)): least at the ends, largest below; E = m g (1 - cos)."""
+    asked = [ExtremesOf("r0.force"), ExtremesOf("p0.velocity.length"), ExtremesOf("p0.position.y")]
+    answer = solve_scene(PENDULUM, [100.0], asked)
+    pull, speed, height = answer.extremes
+    g, c = 9.81, math.cos(2.5)
+    assert all(one.periodic and one.until == pytest.approx(answer.period) for one in answer.extremes)
+    for one, least, largest in (
+        (pull, 2 * g * c, 2 * g * (3 - 2 * c)),
+        (speed, 0.0, math.sqrt(2 * g * (1 - c))),
+        (height, -1.0, -c),
+    ):
+        assert abs(one.least - least) <= one.error + 1e-15
+        assert abs(one.largest - largest) <= one.error + 1e-14
+        assert one.error < 1e-12
+
+
+def test_extremes_of_what_does_not_repeat_are_those_of_the_time():
+    ball = read({"gravity": [0, -9.81], "bodies": {"b": {"mass": 1, "at": [0, 0], "velocity": [1, 9.81]}}})
+    (found,) = solve_scene(ball, [3.0], [ExtremesOf("b.position.y")]).extremes
+    assert (found.periodic, found.until) == (False, 3.0)
+    assert found.largest == pytest.approx(4.905, rel=1e-15)
+    assert found.largest_time == pytest.approx(1.0, abs=1e-7)
+    assert (found.least, found.least_time) == (pytest.approx(9.81 * 3 - 4.905 * 9, rel=1e-14), 3.0)
+
+
+def test_an_angle_is_unwrapped_when_it_is_searched():
+    motor = json.loads((SCENES / "crank-slider.json").read_text())
+    scene = read({key: value for key, value in motor.items() if key not in ("times", "outputs")})
+    found, errors = times_of(scene, 3.0, When("crank.angle", 20.0))
+    assert found == pytest.approx([2.0], rel=1e-14)
+    assert errors[0] < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("asked", "path"),
+    [
+        (When("p0.mass", 1.0), ("outputs", 0, "when", "quantity")),
+        (When("p0.position", 1.0), ("outputs", 0, "when", "quantity")),
+        (When("", 1.0), ("outputs", 0, "when", "quantity")),
+        (When("r0.force", math.nan), ("outputs", 0, "when", "equals")),
+        (When("r0.force", 1.0, 0), ("outputs", 0, "when", "nth")),
+        (ExtremesOf("nothing"), ("outputs", 0, "extremes")),
+        (ExtremesOf(3), ("outputs", 0, "extremes")),  # type: ignore[arg-type]
+    ],
+)
+def test_what_cannot_be_searched_is_refused_with_its_path(asked, path):
+    with pytest.raises(InvalidParameter) as fault:
+        solve_scene(PENDULUM, [1.0], [asked])
+    assert fault.value.path == path
+
+
+def test_a_search_needs_times_and_the_motion_itself():
+    with pytest.raises(InvalidParameter) as fault:
+        solve_scene(PENDULUM, [-1.0], [When("r0.force", 1.0)])
+    assert fault.value.path == ("times",)
+    with pytest.raises(NotApplicable):
+        solve_scene(PENDULUM, [1.0], [When("r0.force", 1.0)], method=ExplicitEuler(step=0.1))
+    with pytest.raises(BudgetExceeded):
+        solve_scene(PENDULUM, [1e6], [When("r0.force", 1.0)])

@@ -1,0 +1,98 @@
+"""Trajectories of described scenes, with fewer digits."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.errors import AccuracyUnreachable, MechanicsError, NotApplicable
+from core.multibody.proven.proven_answer import proven_answer
+from core.multibody.solve import solve_scene
+from core.systems.methods import RungeKutta4
+from core.systems.trajectory import Trajectory
+from tests.core.multibody.worked_examples import TWO_RODS, points, read
+
+
+def moved(**others: Any) -> Trajectory:
+    found = solve_scene(read(TWO_RODS), [0.1, 0.4, 0.9], ("trajectory", "forces-in-time"), **others).trajectory
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("digits", [3, 8, 17])
+def test_digits_are_as_many_and_the_error_covers_them(digits: int) -> None:
+    whole, short = moved(), moved(digits=digits)
+    for name, column in short.columns.items():
+        difference = whole.columns[name].values - column.values
+        change = np.abs(difference) if difference.ndim == 1 else np.linalg.norm(difference, axis=1)
+        assert change.max() + whole.columns[name].error <= column.error * (1 + 1e-9)
+        for value in column.values.ravel().tolist():
+            assert float(f"{value:.{digits - 1}e}") == value
+    assert short.accuracy.error >= whole.accuracy.error
+
+
+@pytest.mark.parametrize("scene", [points((1,), ("2.5",), (1,)), points((1, 1), ("1", "-0.5"), (1, 1))])
+def test_an_accuracy_of_half_an_ulp_is_answered_from_the_pairs(scene: dict[str, Any]) -> None:
+    """Every sample is the double nearest to the motion, as many digits of which are proven by balls."""
+    found = solve_scene(read(scene), [0.1], ("trajectory",), 1.2e-16).trajectory
+    proven = proven_answer(read(scene), 20, [Fraction(0.1)]).columns
+    assert found is not None
+    assert proven is not None
+    assert found.accuracy.error <= 1.2e-16
+    for name, column in found.columns.items():
+        for value, numeral in zip(column.values[0].tolist(), proven[name].values[0], strict=True):
+            assert abs(Fraction(value) - Fraction(numeral)) <= Fraction(column.error)
+            assert abs(Fraction(value) - Fraction(numeral)) <= Fraction(math.ulp(value)) * Fraction("0.501")
+
+
+def test_what_doubles_cannot_hold_is_refused_with_the_certified_route() -> None:
+    for accuracy in (1e-16, 1e-20):
+        with pytest.raises(AccuracyUnreachable, match="samples are doubles") as refusal:
+            moved(accuracy=accuracy)
+        assert "/v1/certified/scenes" in str(refusal.value.remedy)
+
+
+def test_meaningful_places_are_those_that_the_error_supports() -> None:
+    short = moved(digits="meaningful", method=RungeKutta4(0.05))
+    column = short.columns["two.position"]
+    for value in column.values.ravel().tolist():
+        assert len(repr(value)) < 10
+    assert column.error < 5e-2
+
+
+def test_rounding_beyond_the_accuracy_is_reported() -> None:
+    (warning,) = moved(digits=3).warnings
+    assert warning.code == "rounded-beyond-accuracy"
+
+
+def thrown(mass: float | str, strings: int) -> dict[str, Any]:
+    """Return a bob that is too slow for the top of its circle, on strings between the same ends."""
+    return {
+        "gravity": [0, -9.81],
+        "bodies": {"bob": {"mass": mass, "at": [0, -1], "velocity": [6, 0]}},
+        "connections": [{"kind": "string", "name": f"s{i}", "through": ["bob", [0, 0]]} for i in range(strings)],
+    }
+
+
+def test_a_string_whose_force_leaves_the_doubles_is_not_said_to_stay_taut() -> None:
+    """At any mass it becomes slack after 0.48 s; in doubles the tension of this one is infinite."""
+    assert solve_scene(read(thrown("1e300", 1)), [0, 2]).events[0].kind == "slack"
+    with pytest.raises(NotApplicable, match="whether it stays positive"):
+        solve_scene(read(thrown("1e308", 1)), [0, 2])
+
+
+def test_forces_that_are_not_determined_are_said_not_to_be_watched() -> None:
+    found = [solve_scene(read(thrown(1, strings)), [0, 0.1]).trajectory for strings in (1, 2)]
+    assert [[notice.code for notice in one.warnings] for one in found if one is not None] == [[], ["end-not-known"]]
+
+
+def test_a_phase_shorter_than_the_least_double_is_no_failure() -> None:
+    """With this friction, of which the exact value is used, it stops after 1e-410 s."""
+    contact = {"kind": "contact", "name": "c", "place": "b", "on": {"at": [0, 0]}, "friction": "1e400"}
+    bodies = {"b": {"mass": 1, "at": [0, 0], "velocity": ["1e-9", 0]}}
+    with pytest.raises(MechanicsError, match="range of doubles"):
+        solve_scene(read({"gravity": [0, -9.81], "bodies": bodies, "connections": [contact]}), [0, 1])
