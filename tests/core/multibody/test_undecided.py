@@ -19,7 +19,7 @@ WITHOUT_CODE = {"rigid-redundancy", "references"}
 def constructed() -> set[str]:
     """Return the codes with which the solver ends a motion, by its source."""
     found = set()
-    for file in (ROOT / "core" / "multibody").glob("*.py"):
+    for file in (ROOT / "core" / "multibody").rglob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Problem":
                 (first, *_) = node.args

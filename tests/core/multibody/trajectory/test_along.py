@@ -11,7 +11,7 @@ from mpmath import mp
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, points, read
 
-SCENES = Path(__file__).parents[3] / "examples" / "scenes"
+SCENES = Path(__file__).parents[4] / "examples" / "scenes"
 ALL = ["trajectory", "energy-in-time", "work-in-time", "paths-in-time"]
 
 

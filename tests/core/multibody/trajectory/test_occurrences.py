@@ -14,7 +14,7 @@ from core.systems.methods.explicit_euler import ExplicitEuler
 from tests.core.multibody.worked_examples import points, read
 
 PENDULUM = read(points((1,), (2.5,), (2,)))
-SCENES = Path(__file__).parents[3] / "examples" / "scenes"
+SCENES = Path(__file__).parents[4] / "examples" / "scenes"
 
 
 def times_of(scene, until, *asked):
