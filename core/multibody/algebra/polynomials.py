@@ -17,6 +17,9 @@ Ball = Any
 
 Poly = dict[tuple[int, ...], Ball]
 
+LinearForm = dict[int, Poly]
+"""A linear form in the rates: for each coordinate whose rate enters, an affine polynomial. Lines of W are such."""
+
 ZERO: Ball = arb(0)
 ONE: Ball = arb(1)
 BITS = 320

@@ -179,7 +179,7 @@ def _decided_group(at: _Situation, group: Sequence[int], settled: Sequence[State
         if not _same(sticking[0].acceleration, other.acceleration):
             return Problem(
                 "several-motions",
-                f"several motions are possible: {'; '.join(_told(one.states) for one in sticking)}",
+                f"several motions are possible: {'; '.join(_in_words(one.states) for one in sticking)}",
                 names,
                 tuple({name: state.value for name, state in zip(names, one.states, strict=True)} for one in sticking),
                 "a compliance of the contact and how it came to this state",
@@ -205,7 +205,7 @@ def _onsets(
     return [{i: direction} for direction in directions(after)]
 
 
-def _told(states: Sequence[State]) -> str:
+def _in_words(states: Sequence[State]) -> str:
     return ", ".join(state.value for state in states)
 
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, constant, is_zero
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, LinearForm, Poly, combined, constant, is_zero
 from core.multibody.equations.expansion import product
 from core.multibody.table.connection_effects import Force, Unilateral
 from core.multibody.table.measures import COMPONENTS
-from core.multibody.table.table import Rates, Row, Table
+from core.multibody.table.table import Row, Table
 from core.multibody.undecided import Code
 
 
@@ -133,7 +133,7 @@ def phase_table(
         across.append(None)
         if state is State.OPEN:
             continue
-        drag: Rates = {}
+        drag: LinearForm = {}
         slide = None
         if state.sense and one.slip is not None:
             factor = -state.sense * one.kinetic

@@ -27,7 +27,7 @@ from core.multibody.contacts.contact_responses import (
     slip_rate,
 )
 from core.multibody.contacts.contact_states import Problem, phase_table
-from core.multibody.contacts.impulses import LIMIT, Rates, alike, impulses_at_once, likest, rates_after
+from core.multibody.contacts.impulses import LIMIT, RatesByLine, alike, impulses_at_once, likest, rates_after
 from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.equations.dynamics import kinetic
 from core.multibody.table.connection_effects import Unilateral
@@ -46,7 +46,7 @@ class Impact:
     Attributes
     ----------
     v : list of ball
-        Rates afterwards.
+        RatesByLine afterwards.
     impulses : mapping of int to (ball, ball, ball)
         Of every measure that takes one: along its gap, and along its slip, of which there are two in space.
     works : mapping of int to ball
@@ -78,7 +78,7 @@ class _Outcome:
     works: dict[int, Ball]
 
 
-def _outcome(group: Sequence[int], impulses: Forces, rates: Rates, found: Responses) -> _Outcome:
+def _outcome(group: Sequence[int], impulses: Forces, rates: RatesByLine, found: Responses) -> _Outcome:
     """Return impulses at once with their works: each times the mean of its rates before and after.
 
     References
@@ -203,7 +203,7 @@ def _group(
     in_order = [rates_after(one, rates, found) for _, one in outcomes[1:]]
     if len(group) <= _MOST_ORDERED and all(alike(first, then, rates) for then in in_order):
         return at_once
-    different: list[tuple[str, Rates]] = []
+    different: list[tuple[str, RatesByLine]] = []
     for told, one in outcomes:
         then = rates_after(one, rates, found)
         if not any(alike(then, other, rates) for _, other in different):
@@ -220,7 +220,7 @@ def _group(
     )
 
 
-def _without_width(rates: Rates, found: Responses) -> tuple[Rates, Responses]:
+def _without_width(rates: RatesByLine, found: Responses) -> tuple[RatesByLine, Responses]:
     """Return the middle of what is known of rates and responses.
 
     Impacts in turn may come to their outcome as a limit only, while the width of balls grows with every one of them: it
@@ -232,9 +232,9 @@ def _without_width(rates: Rates, found: Responses) -> tuple[Rates, Responses]:
 
 def _rates(
     unilateral: Sequence[Unilateral], group: Sequence[int], q: list[Ball], v: list[Ball], found: Responses
-) -> Rates:
+) -> RatesByLine:
     """Return the rates along all lines of a group."""
-    rates: Rates = {}
+    rates: RatesByLine = {}
     for i in group:
         one = unilateral[i]
         lines = [found.normal[i], *found.grip(i)]
@@ -242,7 +242,7 @@ def _rates(
     return rates
 
 
-def _told(one: Unilateral, line: int, after: Rates) -> str:
+def _told(one: Unilateral, line: int, after: RatesByLine) -> str:
     """Return in words how a gap changes after an impact; what is left of a zero by rounding is zero."""
     rate = float(after[line])
     if abs(rate) <= LIMIT * max(abs(float(x)) for x in after.values()):
@@ -257,7 +257,7 @@ def _endless(names: tuple[str, ...]) -> Problem:
 def _in_turn(
     unilateral: Sequence[Unilateral],
     order: Sequence[int],
-    rates: Rates,
+    rates: RatesByLine,
     found: Responses,
 ) -> _Outcome | None:
     """Return the sum of the impulses if the first that approaches always comes first; None if that does not end."""

@@ -25,23 +25,23 @@ from core.multibody.table.connection_effects import Unilateral
 LIMIT = 2.0**-40
 """Share of the largest rate below which two outcomes differ by nothing."""
 
-Rates = dict[int, Ball]
-"""Rates by line, zero where they cannot be told from zero."""
+RatesByLine = dict[int, Ball]
+"""RatesByLine by line, zero where they cannot be told from zero."""
 
 
-def rates_after(impulses: Forces, rates: Rates, found: Responses) -> Rates:
+def rates_after(impulses: Forces, rates: RatesByLine, found: Responses) -> RatesByLine:
     """Return the rates along every line after impulses."""
     return {a: x + sum((found.matrix[a][b] * p for b, p in impulses.items()), ZERO) for a, x in rates.items()}
 
 
-def alike(first: Rates, second: Rates, before: Rates) -> bool:
+def alike(first: RatesByLine, second: RatesByLine, before: RatesByLine) -> bool:
     """Return whether two outcomes are one, beside the rates before: impacts in turn may come to it as a limit."""
     scale = max((float(abs(x)) for x in (*first.values(), *before.values())), default=0.0)
     return all(is_zero(x - second[a]) or bool(abs(x - second[a]) < LIMIT * scale) for a, x in first.items())
 
 
 def impulses_at_once(
-    unilateral: Sequence[Unilateral], group: Sequence[int], rates: Rates, found: Responses
+    unilateral: Sequence[Unilateral], group: Sequence[int], rates: RatesByLine, found: Responses
 ) -> Forces | Problem:
     """Return the impulses of a group of contacts if all act together, or why they are undecided."""
     consistent: list[tuple[tuple[State, ...], Forces]] = []
@@ -92,7 +92,7 @@ def impulses_at_once(
 
 
 def likest(
-    unilateral: Sequence[Unilateral], group: Sequence[int], rates: Rates, change: Sequence[Ball], found: Responses
+    unilateral: Sequence[Unilateral], group: Sequence[int], rates: RatesByLine, change: Sequence[Ball], found: Responses
 ) -> Forces:
     """Return the impulses of the states that change the rates of all coordinates most nearly as wanted.
 
@@ -130,7 +130,7 @@ def _ways(
     group: Sequence[int],
     states: Sequence[State],
     slides: Sequence[int],
-    rates: Rates,
+    rates: RatesByLine,
     found: Responses,
 ) -> list[dict[int, Direction]]:
     """Return the directions in which contacts may slide after an impact in space: along those they have then."""
@@ -152,7 +152,7 @@ def _solved(
     unilateral: Sequence[Unilateral],
     group: Sequence[int],
     states: Sequence[State],
-    rates: Rates,
+    rates: RatesByLine,
     found: Responses,
     ways: Mapping[int, Direction],
 ) -> Forces | None:
@@ -160,7 +160,7 @@ def _solved(
     unknowns, held = found.unknowns(unilateral, group, states, ways)
     if not held:
         return {}
-    wanted: Rates = {a: -rates[a] for a in held}
+    wanted: RatesByLine = {a: -rates[a] for a in held}
     for i in group:
         a = found.normal[i]
         if a in wanted:
@@ -185,9 +185,9 @@ def _holds(
     one: Unilateral,
     i: int,
     state: State,
-    after: Rates,
+    after: RatesByLine,
     impulses: Forces,
-    rates: Rates,
+    rates: RatesByLine,
     found: Responses,
     ways: Mapping[int, Direction],
 ) -> bool:

@@ -13,10 +13,9 @@ from math import cos, pi, sin
 
 from flint import arb, ctx
 
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, combined, is_zero
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, LinearForm, combined, is_zero
 from core.multibody.contacts.contact_responses import across_rate, slip_rate
 from core.multibody.table.connection_effects import Unilateral
-from core.multibody.table.table import Rates
 
 Direction = tuple[Ball, Ball]
 """Cosine and sine of the angle with the first direction of slip."""
@@ -47,7 +46,7 @@ def turned(one: Unilateral, direction: Direction) -> Unilateral:
     )
 
 
-def _sum(a: Ball, first: Rates, b: Ball, second: Rates) -> Rates:
+def _sum(a: Ball, first: LinearForm, b: Ball, second: LinearForm) -> LinearForm:
     found = {j: combined((a, first.get(j, {})), (b, second.get(j, {}))) for j in {*first, *second}}
     return {j: poly for j, poly in found.items() if poly}
 

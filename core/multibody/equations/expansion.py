@@ -9,10 +9,10 @@ from operator import mul
 
 from flint import arb_mat
 
-from core.multibody.algebra.polynomials import ZERO, Ball, Poly, entry, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, entry, is_zero
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.dynamics import weightless
-from core.multibody.table.table import Rates, Row, Table
+from core.multibody.table.table import Row, Table
 
 Series = list[Ball]
 """Coefficients of powers of time, lowest first."""
@@ -52,7 +52,7 @@ class Expansion:
                 total = _added(total, x, part)
         return total
 
-    def of_rates(self, rates: Rates) -> Series:
+    def of_rates(self, rates: LinearForm) -> Series:
         """Return a linear form in the rates as a series, one coefficient shorter than the places."""
         total = [ZERO] * self.order
         for j, poly in rates.items():
@@ -210,7 +210,7 @@ def expansion(start: Table, order: int) -> Expansion:
 class _Turning:
     """The direction s/|s| of a slip along a motion whose own coefficients are still being found."""
 
-    def __init__(self, lines: Sequence[Rates], rates: Sequence[Series]) -> None:
+    def __init__(self, lines: Sequence[LinearForm], rates: Sequence[Series]) -> None:
         self._lines, self._rates = lines, rates
         self._slip: tuple[Series, Series] = ([], [])
         self._size: Series = []
@@ -250,7 +250,7 @@ def _convolved(first: Sequence[Ball], second: Sequence[Ball]) -> Ball:
     return sum(map(mul, first, reversed(second)), ZERO)
 
 
-def _varying(line: Rates, places: Sequence[Series]) -> dict[int, _Entry]:
+def _varying(line: LinearForm, places: Sequence[Series]) -> dict[int, _Entry]:
     found = {}
     for j, poly in line.items():
         slopes = [(key[0], x) for key, x in poly.items() if key]

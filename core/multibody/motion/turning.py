@@ -10,10 +10,10 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats
-from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
 from core.multibody.equations.packed import pair
 from core.multibody.motion.motion import States
-from core.multibody.table.table import Rates, Table
+from core.multibody.table.table import Table
 
 _PER_RADIAN = 8
 _MOST_NODES = 100_000
@@ -114,7 +114,7 @@ def turning(part: Table, chosen: Sequence[int]) -> Turning | None:
         turn = next(i for i in range(3) if i not in (c, s))
         line = rates[0].rates
         # The angle's rate is that of the direction, of which squares add up to one.
-        expected: Rates = {turn: {(): ZERO + 1}, s: {(c,): ZERO - 1}, c: {(s,): ZERO + 1}}
+        expected: LinearForm = {turn: {(): ZERO + 1}, s: {(c,): ZERO - 1}, c: {(s,): ZERO + 1}}
         factor = line.get(turn, {}).get((), ZERO)
         if is_zero(factor) or not is_zero(square - 1) or rates[0].rate != 0 or set(line) != set(expected):
             return None

@@ -20,7 +20,7 @@ from core.multibody.equations.polynomial_roots import changes
 from core.multibody.phases.crossings import uniform_motion
 from core.multibody.phases.phase import Phase
 from core.multibody.phases.sampled_crossings import Sampled
-from core.multibody.phases.tracks import FLOOR, TOLD
+from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
 from core.multibody.phases.watches import Watch
 
 _NEAR = 2.0**14
@@ -82,7 +82,7 @@ def _in_closed_form(phase: Phase, gaps: Sequence[Watch], until: float) -> list[G
 def _width(watch: Watch, motion: Expansion, gaps: Sequence[Sequence[Ball]], late: Ball) -> float:
     """Return to what error a gap is known of which there are two series."""
     apart = value(gaps[0], late) - value(gaps[1], late)
-    return TOLD * abs(float(apart)) + FLOOR * float(_terms(watch, motion, late))
+    return SAFETY_FACTOR * abs(float(apart)) + FLOOR * float(_terms(watch, motion, late))
 
 
 def _lasting(series: Sequence[Ball], late: Ball, width: float) -> Ball:

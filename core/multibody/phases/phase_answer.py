@@ -112,7 +112,7 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         motion.ended,
         occurrences,
         extremes,
-        phases=tuple(_told(phase, motion) for phase in motion.phases),
+        phases=tuple(_phase_in_answer(phase, motion) for phase in motion.phases),
         problem=_problem(motion),
     )
 
@@ -134,7 +134,7 @@ def _noticed(motion: PhaseMotion) -> list[str]:
     return list(dict.fromkeys(motion.noticed))
 
 
-def _told(phase: Phase, motion: PhaseMotion) -> MotionPhase:
+def _phase_in_answer(phase: Phase, motion: PhaseMotion) -> MotionPhase:
     model = phase.models[0]
     names = list(dict.fromkeys(part.name for _, part in model.whole.parts))
     if phase.bounces is not None:

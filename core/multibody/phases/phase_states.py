@@ -13,7 +13,7 @@ from core.multibody.equations.dynamics import forces_at_start, multipliers_at_st
 from core.multibody.equations.packed import pair
 from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.phase import Phase
-from core.multibody.phases.tracks import FLOOR, TOLD
+from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
 from core.multibody.trajectory.columns import Columns, Unknown
 from core.systems.trajectory import Column, How
 
@@ -55,8 +55,8 @@ def states_in(phase: Phase, times: Times) -> WholeStates:
     if len(found) > 1:
         other = found[1]
         reference = (other.q, other.v) if other.reference is None else other.reference
-        q_error = q_error + TOLD * np.abs((first.q - reference[0]).sum(axis=2))
-        v_error = v_error + TOLD * np.abs((first.v - reference[1]).sum(axis=2))
+        q_error = q_error + SAFETY_FACTOR * np.abs((first.q - reference[0]).sum(axis=2))
+        v_error = v_error + SAFETY_FACTOR * np.abs((first.v - reference[1]).sum(axis=2))
     return WholeStates(first.q, first.v, q_error, v_error, reference)
 
 

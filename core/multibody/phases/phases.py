@@ -285,7 +285,7 @@ class _Run:
         if not crossings:
             return False
         first, tracks = crossings[0], self.tracks
-        tracks.lived(float(first.time), phase.tracks[0].q, first.q, phase.models[0].whole.acceleration)
+        tracks.follow_scales(float(first.time), phase.tracks[0].q, first.q, phase.models[0].whole.acceleration)
         before = phase.tracks if len(phase.tracks) == len(crossings) else phase.tracks * len(crossings)
         tracks.each = [Track(t.time + x.time, x.q, x.v) for t, x in zip(before, crossings, strict=True)]
         wide = tracks.exact and tracks.width() > EXACT

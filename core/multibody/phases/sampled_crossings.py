@@ -9,7 +9,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import BudgetExceeded
-from core.multibody.algebra.polynomials import evaluated, is_zero
+from core.multibody.algebra.polynomials import LinearForm, evaluated, is_zero
 from core.multibody.equations.expansion import expansion
 from core.multibody.equations.packed import two_to
 from core.multibody.equations.polynomial_roots import first_of_quadratic
@@ -19,9 +19,9 @@ from core.multibody.motion.periods import Periodic
 from core.multibody.motion.turning import Turning
 from core.multibody.motion.whole import Whole, values
 from core.multibody.phases.taylor_crossings import ORDER
-from core.multibody.phases.tracks import TOLD
+from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.watches import Watch
-from core.multibody.table.table import Rates, Table
+from core.multibody.table.table import Table
 
 _NOISE = 2.0**-44
 """Share of its terms below which the sign of something sampled in doubles is noise."""
@@ -173,7 +173,7 @@ class Sampled:
         if self.other is None or watch.what != "gap":
             return 0.0
         gap = watch.one.gap
-        return TOLD * abs(float(evaluated(gap, self.table.q) - evaluated(gap, self.other.q)))
+        return SAFETY_FACTOR * abs(float(evaluated(gap, self.table.q) - evaluated(gap, self.other.q)))
 
     def _look(self, times: Floats) -> tuple[float, Watch] | None:
         """Return about when and what first becomes negative between times."""
@@ -242,7 +242,7 @@ class Sampled:
         return [int(i) + 1 for i in np.flatnonzero(low) if i + 1 < until]
 
 
-def rates_along(line: Rates, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+def rates_along(line: LinearForm, q: Floats, v: Floats) -> tuple[Floats, Floats]:
     """Return a linear form in the rates at states, and how large its terms are."""
     total, size = np.zeros(len(q)), np.zeros(len(q))
     for j, poly in line.items():

@@ -19,7 +19,7 @@ from core.multibody.motion.whole import WholeStates
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_states import columns_in, states_in
-from core.multibody.phases.tracks import TOLD
+from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.trajectory.along import watched_times
 from core.systems.trajectory import Column, How
 
@@ -95,7 +95,7 @@ def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:
         if number and not until > phase.start:
             return
         late = float(phase.start.rad())
-        late += TOLD * max((abs(float(one.time - phase.start)) for one in phase.tracks), default=0.0)
+        late += SAFETY_FACTOR * max((abs(float(one.time - phase.start)) for one in phase.tracks), default=0.0)
         if phase.bounces is None:
             yield Stretch(number, phase, phase.start, float(until - phase.start), late)
         else:

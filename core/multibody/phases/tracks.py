@@ -14,11 +14,11 @@ from flint import arb
 
 from core.multibody.algebra.polynomials import ZERO, Ball
 
-TOLD = 16.0
+SAFETY_FACTOR = 16.0
 """The difference of the two tracks, times this, is what a state is taken to be wrong by."""
 FLOOR = 2.0**-96
 """Share of the largest coordinate of its unit that a state is wrong by at least, once it is not exact."""
-NOUGHT = 2.0**-180
+NEGLIGIBLE_RATE = 2.0**-180
 """Share of the largest rate of its unit below which a rate is what is left of an exact zero."""
 
 Vector = list[Ball]
@@ -90,7 +90,7 @@ class Tracks:
 
     def _around(self, first: Vector, second: Vector, scales: Sequence[float]) -> Vector:
         return [
-            arb(x.mid(), TOLD * float(abs(x - y).mid()) + self.floor * scale)
+            arb(x.mid(), SAFETY_FACTOR * float(abs(x - y).mid()) + self.floor * scale)
             for x, y, scale in zip(first, second, scales, strict=True)
         ]
 
@@ -112,7 +112,9 @@ class Tracks:
         place, rate = (largest.get("m", 0.0) for largest in self._largest)
         return place / rate if rate > 0.0 else 1.0
 
-    def lived(self, time: float, before: Sequence[Ball], after: Sequence[Ball], acceleration: Sequence[Ball]) -> None:
+    def follow_scales(
+        self, time: float, before: Sequence[Ball], after: Sequence[Ball], acceleration: Sequence[Ball]
+    ) -> None:
         """Take account of how large coordinates and rates were during a phase, as far as its ends tell."""
         self.lost = [x + time * y for x, y in zip(*self.lost, strict=True)], self.lost[1]
         for i, unit in enumerate(self.units):
@@ -128,7 +130,7 @@ class Tracks:
         time = self.time
         error = float(time.rad()) + 2.0**-53 * abs(float(time))
         if not self.exact:
-            error += TOLD * abs(float(time - self.each[1].time)) + FLOOR * abs(float(time))
+            error += SAFETY_FACTOR * abs(float(time - self.each[1].time)) + FLOOR * abs(float(time))
         return error
 
     def width(self) -> float:
@@ -155,7 +157,7 @@ class Tracks:
         for largest, vector, least in zip(self._largest, (q, v), (0.0, turning), strict=True):
             for i, (unit, x) in enumerate(zip(self.units, vector, strict=True)):
                 own = largest.get(unit, 0.0)
-                if abs(float(x)) <= NOUGHT * (own if unit == "m" else max(own, least)):
+                if abs(float(x)) <= NEGLIGIBLE_RATE * (own if unit == "m" else max(own, least)):
                     vector[i] = ZERO
 
     def part(self, still: Sequence[bool], share: float = FLOOR, of_places: float | None = None) -> None:

@@ -17,7 +17,7 @@ from flint import arb, arb_mat
 from core.arrays import Floats
 from core.balls import precision
 from core.errors import BudgetExceeded
-from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
 from core.multibody.algebra.rank import independent
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.equations.dynamics import accelerations
@@ -26,11 +26,10 @@ from core.multibody.equations.packed import exponent, pair
 from core.multibody.motion.modelling import Modelled, Piece
 from core.multibody.motion.motion import States
 from core.multibody.motion.whole import Whole
-from core.multibody.phases.tracks import TOLD
+from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.table.connection_effects import Force, Unilateral
 from core.multibody.table.description import Described
-from core.multibody.table.frames import Rate
 from core.multibody.table.measures import COMPONENTS
 from core.multibody.table.table import Row, Table, identity
 
@@ -138,7 +137,7 @@ class TurningSlip:
         """Return the states by the finer run, judged by the other."""
         (q, v), (other, rate) = (self.by(kind, times) for kind in _KINDS)
         apart = [np.abs((a - b).sum(axis=2)) for a, b in ((q, other), (v, rate))]
-        return States(q, v, TOLD * apart[0], TOLD * apart[1], (other, rate))
+        return States(q, v, SAFETY_FACTOR * apart[0], SAFETY_FACTOR * apart[1], (other, rate))
 
     def by(self, kind: str, times: Floats) -> tuple[Floats, Floats]:
         """Return coordinates and rates by one run, each of shape (t, n, 2)."""
@@ -224,7 +223,7 @@ class TurningWhole(Whole):
         return 0.0 - push * along, np.abs(push)
 
 
-def _slip(line: Rate, v: Floats) -> Floats:
+def _slip(line: LinearForm, v: Floats) -> Floats:
     """Return a rate of slip at rates of shape (t, n, 2); where slip ends its terms cancel, down to their tails."""
     found = np.zeros(len(v))
     with precision(_BITS):

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from core.multibody.algebra.polynomials import ZERO, Ball, Poly, gradient
-from core.multibody.table.frames import Rate
+from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, Poly, gradient
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ class Unilateral:
 
     name: str
     gap: Poly
-    slip: Rate | None = None
+    slip: LinearForm | None = None
     static: Ball = ZERO
     kinetic: Ball = ZERO
     restitution: Ball = ZERO
@@ -121,15 +120,15 @@ class Unilateral:
     rolls: bool = False
     unit: str = "N"
     order: Ball | None = None
-    across: Rate | None = None
+    across: LinearForm | None = None
     tangents: tuple[Sequence[Ball], Sequence[Ball]] | None = None
 
     @property
-    def slips(self) -> list[Rate]:
+    def slips(self) -> list[LinearForm]:
         """The rates of slip: none without friction, one in the plane, two in space."""
         return [line for line in (self.slip, self.across) if line is not None]
 
     @cached_property
-    def normal(self) -> Rate:
+    def normal(self) -> LinearForm:
         """The gradient of the gap: its rate as a linear form."""
         return gradient(self.gap)

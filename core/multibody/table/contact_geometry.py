@@ -11,12 +11,23 @@ from collections.abc import Sequence
 from typing import Any
 
 from core.errors import InvalidParameter, Path
-from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.algebra.polynomials import (
+    ONE,
+    ZERO,
+    Ball,
+    LinearForm,
+    Poly,
+    combined,
+    constant,
+    difference,
+    dot,
+    is_zero,
+)
 from core.multibody.language.connections import GROUND
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.contact_geometry_in_space import contact_in_space
 from core.multibody.table.contact_places import gap_of_rims, is_on, place_on, refuse_limits, two_rims
-from core.multibody.table.frames import Frame, Point, Rate
+from core.multibody.table.frames import Frame, Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 
@@ -117,7 +128,7 @@ def _turn(measures: Measures, connection: Any, path: Path) -> Poly:
     return combined((-ONE, angle), (measures.numerals.number(connection.at_most, (*path, "at_most")), {(): ONE}))
 
 
-def spin_of(measures: Measures, body: str | None, path: Path) -> Rate:
+def spin_of(measures: Measures, body: str | None, path: Path) -> LinearForm:
     """Return the angular velocity of a body of the plane as a linear form; nothing of the ground and of particles."""
     if body is None:
         return {}
@@ -132,20 +143,20 @@ def spin_of(measures: Measures, body: str | None, path: Path) -> Rate:
     return {}
 
 
-def _times(factor: Ball, rate: Rate) -> Rate:
+def _times(factor: Ball, rate: LinearForm) -> LinearForm:
     """Return a linear form times a number, nothing for zero."""
     return {} if is_zero(factor) else {j: combined((factor, poly)) for j, poly in rate.items()}
 
 
-def _sum(*rates: Rate) -> Rate:
-    found: Rate = {}
+def _sum(*rates: LinearForm) -> LinearForm:
+    found: LinearForm = {}
     for rate in rates:
         for j, poly in rate.items():
             found[j] = combined((ONE, found.get(j, {})), (ONE, poly))
     return {j: poly for j, poly in found.items() if poly}
 
 
-def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
+def _on(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, LinearForm, bool]:
     (point, radius, frame), at, on = place_on(measures, connection, path)
     where, keys = (*path, "on"), set(on)
     rolls = _rolls(frame)
@@ -182,7 +193,7 @@ def unit_in_plane(measures: Measures, value: Any, path: Path) -> list[Ball]:
     return [x / size, y / size]
 
 
-def _between(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, Rate, bool]:
+def _between(measures: Measures, connection: Any, path: Path, *, rubs: bool) -> tuple[Poly, LinearForm, bool]:
     a, b = two_rims(measures, connection, path)
     rolls = _rolls(a[2]) or _rolls(b[2])
     if not rolls:
@@ -196,7 +207,7 @@ def _rolls(frame: Frame | None) -> bool:
 
 def _circle(
     measures: Measures, a: tuple[Point, Ball], b: tuple[Point, Ball], path: Path, *, rubs: bool
-) -> tuple[Poly, Rate]:
+) -> tuple[Poly, LinearForm]:
     """Return gap and slip of two circles; the second is hollow where its radius is negative."""
     gap, d, reach = gap_of_rims(a, b, path)
     if not rubs:

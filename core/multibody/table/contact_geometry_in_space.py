@@ -12,9 +12,8 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import cross, perpendicular, unit
-from core.multibody.algebra.polynomials import ONE, Ball, Poly, combined, constant, difference, dot, is_zero
+from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly, combined, constant, difference, dot, is_zero
 from core.multibody.table.contact_places import Rim, gap_of_rims, is_on, place_on, refuse_limits, two_rims
-from core.multibody.table.frames import Rate
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 
@@ -34,7 +33,7 @@ class Touching:
     """
 
     gap: Poly
-    slips: tuple[Rate, Rate] | None
+    slips: tuple[LinearForm, LinearForm] | None
     tangents: tuple[Sequence[Ball], Sequence[Ball]] | None
     rolls: bool
 

@@ -7,9 +7,6 @@ from dataclasses import dataclass, field
 from core.errors import Path
 from core.multibody.algebra.polynomials import ZERO, Ball, Poly
 
-Rate = dict[int, Poly]
-"""A linear form in the rates, with affine coefficients."""
-
 
 @dataclass
 class Frame:

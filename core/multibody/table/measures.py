@@ -14,6 +14,7 @@ from core.multibody.algebra.directions import perpendicular, unit
 from core.multibody.algebra.polynomials import (
     ONE,
     Ball,
+    LinearForm,
     Poly,
     combined,
     constant,
@@ -26,7 +27,7 @@ from core.multibody.algebra.polynomials import (
 )
 from core.multibody.table.connection_effects import Force, Limit, Unilateral, Work
 from core.multibody.table.coordinates import Coordinates
-from core.multibody.table.frames import Point, Rate
+from core.multibody.table.frames import Point
 from core.multibody.table.momenta import StateFunction
 from core.multibody.table.table import Row
 
@@ -67,7 +68,7 @@ class Measures:
         self.table.rows.append(Row.held(name, measure))
         return len(self.table.rows) - 1
 
-    def roll(self, name: str, rates: Rate) -> int:
+    def roll(self, name: str, rates: LinearForm) -> int:
         """Add a combination of rates that stays zero and return the number of its row."""
         self.table.rows.append(Row(name, None, rates))
         return len(self.table.rows) - 1

@@ -8,6 +8,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import (
     ONE,
     Ball,
+    LinearForm,
     Poly,
     combined,
     constant,
@@ -16,7 +17,7 @@ from core.multibody.algebra.polynomials import (
     dot,
     evaluated,
 )
-from core.multibody.table.frames import Point, Rate
+from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.table import Row
 from core.near_names import near_and_all
@@ -27,14 +28,14 @@ _FIXED = (
 )
 
 
-def rate_of(poly: Poly) -> Rate:
+def rate_of(poly: Poly) -> LinearForm:
     """Return the rate of an affine polynomial as a linear form."""
     return {key[0]: constant(value) for key, value in poly.items() if key}
 
 
-def sum_of_rates(*parts: tuple[Poly, Rate]) -> Rate:
+def sum_of_rates(*parts: tuple[Poly, LinearForm]) -> LinearForm:
     """Return a sum of linear forms with constant coefficients, each times an affine polynomial."""
-    total: Rate = {}
+    total: LinearForm = {}
     for factor, rate in parts:
         for j, value in rate.items():
             number = value.get((), ONE - ONE)

@@ -15,6 +15,7 @@ from core.multibody.algebra.directions import cross, perpendicular, unit
 from core.multibody.algebra.polynomials import (
     ONE,
     Ball,
+    LinearForm,
     Poly,
     combined,
     constant,
@@ -25,7 +26,7 @@ from core.multibody.algebra.polynomials import (
     is_zero,
 )
 from core.multibody.table.connection_effects import Work
-from core.multibody.table.frames import Point, Rate
+from core.multibody.table.frames import Point
 from core.multibody.table.laws import clock
 from core.multibody.table.measures import COMPONENTS, Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
@@ -165,12 +166,12 @@ class _Surface:
     def _along(self, direction: Vector) -> Poly:
         return combined(*((x, self.d[i]) for i, x in enumerate(direction)))
 
-    def _velocity(self, direction: Vector) -> list[tuple[Poly, Rate]]:
+    def _velocity(self, direction: Vector) -> list[tuple[Poly, LinearForm]]:
         return [(constant(x), self.rates[i]) for i, x in enumerate(direction) if not is_zero(x)]
 
-    def _spin(self, weights: Vector) -> tuple[Poly, Rate]:
+    def _spin(self, weights: Vector) -> tuple[Poly, LinearForm]:
         return constant(ONE), {j: constant(x) for j, x in zip(self.turns, weights, strict=True) if not is_zero(x)}
 
 
-def _one(index: int) -> Rate:
+def _one(index: int) -> LinearForm:
     return {index: constant(ONE)}

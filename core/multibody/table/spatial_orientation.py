@@ -8,11 +8,11 @@ from flint import arb
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import cross
-from core.multibody.algebra.polynomials import ONE, ZERO, combined, constant, coordinate, dot, is_zero
+from core.multibody.algebra.polynomials import ONE, ZERO, LinearForm, combined, constant, coordinate, dot, is_zero
 from core.multibody.language.inertia import symmetry_axes, three_vectors
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import SceneBody
-from core.multibody.table.frames import Frame, Given, Rate
+from core.multibody.table.frames import Frame, Given
 from core.multibody.table.table import Row, Table
 
 
@@ -94,7 +94,7 @@ class SpatialOrientation:
         frame.turns = tuple(table.coordinate(f"{name}.turn.{x}", "rad", ZERO) for x in "xyz")
         for i, turn in enumerate(frame.turns):
             j, k = (i + 1) % 3, (i + 2) % 3
-            rates: Rate = {turn: constant(ONE)}
+            rates: LinearForm = {turn: constant(ONE)}
             for axis in frame.axes:
                 rates[axis[k]] = {(axis[j],): -ONE / 2}
                 rates[axis[j]] = {(axis[k],): ONE / 2}

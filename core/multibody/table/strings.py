@@ -17,6 +17,7 @@ from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
     Ball,
+    LinearForm,
     Poly,
     combined,
     constant,
@@ -28,7 +29,7 @@ from core.multibody.algebra.polynomials import (
 from core.multibody.language.numerals import member
 from core.multibody.table.connection_effects import Limit, Unilateral
 from core.multibody.table.contact_geometry import bounciness
-from core.multibody.table.frames import Point, Rate
+from core.multibody.table.frames import Point
 from core.multibody.table.measures import CLOSE, Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
 from core.multibody.table.table import Row
@@ -145,7 +146,7 @@ def _run(measures: Measures, name: str, part: str, run: list[Knot], connection: 
     """Add the rows of what lies between two ends or drums: the sum of its lengths does not change."""
     length = connection.length
     total: Poly = {}
-    rates: Rate = {}
+    rates: LinearForm = {}
     straight = True
     for a, b in pairwise(run):
         if a.radius is None and b.radius is None:
@@ -230,7 +231,7 @@ def _single(measures: Measures, part: str, a: Knot, b: Knot, connection: Any, pa
     measures.limits.append(Limit("slack", part, force=force))
 
 
-def _tangent(measures: Measures, name: str, a: Knot, b: Knot, path: Path) -> list[tuple[Poly, Rate]]:
+def _tangent(measures: Measures, name: str, a: Knot, b: Knot, path: Path) -> list[tuple[Poly, LinearForm]]:
     """Add direction and rows of a part that touches a drum; return what its length changes by."""
     table = measures.table
     d = [difference(y, x) for x, y in zip(a.point.at, b.point.at, strict=True)]
@@ -285,7 +286,7 @@ def _times(key: tuple[int, ...], index: int) -> Poly:
     return {tuple(sorted((*key, index))): ONE}
 
 
-def _joined(first: Rate, second: Rate) -> Rate:
+def _joined(first: LinearForm, second: LinearForm) -> LinearForm:
     return {j: combined((ONE, first.get(j, {})), (ONE, second.get(j, {}))) for j in {*first, *second}}
 
 

@@ -16,6 +16,7 @@ from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
     Ball,
+    LinearForm,
     Poly,
     combined,
     degree,
@@ -24,9 +25,6 @@ from core.multibody.algebra.polynomials import (
     is_zero,
     substituted,
 )
-
-Rates = dict[int, Poly]
-"""A line of W: for each coordinate whose rate enters, an affine polynomial."""
 
 
 @dataclass
@@ -39,11 +37,11 @@ class Row:
         The connection or body to which it belongs.
     measure : polynomial or None
         None for a rate row.
-    rates : Rates
+    rates : LinearForm
         Its line of W.
     rate : ball
         The right-hand side r.
-    drag : Rates
+    drag : LinearForm
         Its line of X: where its multiplier pushes beside the line of W. That of a sliding contact is -sigma mu times
         the rate of slip.
     slide : (ball, line, line) or None
@@ -53,10 +51,10 @@ class Row:
 
     name: str
     measure: Poly | None
-    rates: Rates
+    rates: LinearForm
     rate: Ball = ZERO
-    drag: Rates = field(default_factory=dict)
-    slide: tuple[Ball, Rates, Rates] | None = None
+    drag: LinearForm = field(default_factory=dict)
+    slide: tuple[Ball, LinearForm, LinearForm] | None = None
 
     @classmethod
     def held(cls, name: str, measure: Poly) -> Row:
@@ -89,9 +87,9 @@ class Row:
         return Row(self.name, None, _along(self.rates, expressions), self.rate, drag)
 
 
-def _along(line: Rates, expressions: Sequence[Poly]) -> Rates:
+def _along(line: LinearForm, expressions: Sequence[Poly]) -> LinearForm:
     """Return a line of W or X in other coordinates."""
-    found: Rates = {}
+    found: LinearForm = {}
     for j, poly in line.items():
         changed = substituted(poly, expressions)
         for key, value in expressions[j].items():
