@@ -213,7 +213,7 @@ def _group(
         "several contacts take impulses at once, and rigid bodies do not say in which order",
         names,
         tuple(
-            {"order": told} | {unilateral[i].name: _told(unilateral[i], normal[i], then) for i in group}
+            {"order": told} | {unilateral[i].name: _gap_afterwards(unilateral[i], normal[i], then) for i in group}
             for told, then in different
         ),
         'the order in which they happen, as "order" of the contacts',
@@ -242,7 +242,7 @@ def _rates(
     return rates
 
 
-def _told(one: Unilateral, line: int, after: RatesByLine) -> str:
+def _gap_afterwards(one: Unilateral, line: int, after: RatesByLine) -> str:
     """Return in words how a gap changes after an impact; what is left of a zero by rounding is zero."""
     rate = float(after[line])
     if abs(rate) <= LIMIT * max(abs(float(x)) for x in after.values()):
