@@ -126,15 +126,14 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
     free = [i for i in range(len(q)) if not _cyclic(table, i)]
     normal = np.zeros(len(q))
     at_rest = all(is_zero(x) for x in table.v)
-    if at_rest:
-        # In the units of the arrays it is of the order of one, however hard the pull.
-        start = np.array([pair(x, 2 * units.time - e)[0] for x, e in zip(acceleration, units.lengths, strict=True)])
-        normal[free] = start[free] / max(np.max(np.abs(start)), 1e-300)
-    else:
-        normal[free] = v[free, 0]
+    # In the units of the arrays it is of the order of one, however hard the pull.
+    pull = np.array([pair(x, 2 * units.time - e)[0] for x, e in zip(acceleration, units.lengths, strict=True)])
+    # What starts beside a turning point passes its place twice in a short time, its rate only once.
+    slow = bool(np.max(np.abs(v[free, 0]), initial=0.0) <= np.max(np.abs(pull[free]), initial=0.0))
+    normal[free] = pull[free] / max(np.max(np.abs(pull)), 1e-300) if slow else v[free, 0]
     if not np.any(normal):
         return None
-    section = Section(normal, at_rest, 1.0)
+    section = Section(normal, v if slow else q, slow, 1.0)
 
     def returned(passages: list[Passage]) -> bool:
         end, rate = passages[-1].q, passages[-1].v

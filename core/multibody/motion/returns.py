@@ -27,17 +27,19 @@ _PARTS = 8
 
 @dataclass(frozen=True)
 class Section:
-    """Where a motion is looked for again: the zeros of normal . (q - q_0), or of normal . q', the start apart.
+    """Where a motion is looked for again: the zeros of normal . (q - origin), or of normal . (q' - origin).
 
     Attributes
     ----------
     normal : ndarray, shape (n,)
+    origin : ndarray, shape (n, 2)
     of_rates : bool
     sign : float
         Sign of the function just after the start.
     """
 
     normal: Floats
+    origin: Floats
     of_rates: bool
     sign: float
 
@@ -64,7 +66,7 @@ def followed(
     starts: list[Floats] = []
     series: list[Floats] = []
     passages: list[Passage] = []
-    sign, zeros = section.sign, np.empty((2 * _PARTS, 2))
+    sign, zeros = section.sign, np.empty((_PARTS, 2))
     while len(series) * _CHUNK < MOST_STEPS:
         chunk_starts, chunk = np.empty((_CHUNK + 1, 2)), np.empty((_CHUNK, len(q), order + 1, 2))
         ended, count = advance_pairs(arrays, q, v, clock, 1e300, tolerance, chunk_starts, chunk)
@@ -72,7 +74,7 @@ def followed(
             return None
         for step in range(count):
             width = (chunk_starts[step + 1, 0] - chunk_starts[step, 0]) + chunk_starts[step + 1, 1]
-            found, sign = _zeros(chunk[step], width, start[0], section.normal, section.of_rates, sign, zeros)
+            found, sign = _zeros(chunk[step], width, section.origin, section.normal, section.of_rates, sign, zeros)
             for local in zeros[:found]:
                 end, rate = np.empty_like(q), np.empty_like(v)
                 moved_pairs(chunk[step], local[0], local[1], end, rate)
@@ -91,19 +93,19 @@ def followed(
 def _along(series: Floats, origin: Floats, normal: Floats, of_rates: bool, curve: Floats) -> None:
     """Fill in the section's function of the time within a step, a polynomial of shape (order + 1, 2)."""
     n, order = series.shape[0], series.shape[1] - 1
+    lowest = 1 if of_rates else 0
     curve[:] = 0.0
-    for k in range(order + 1):
+    for k in range(lowest, order + 1):
         sh, sl = 0.0, 0.0
         for i in range(n):
             ch, cl = series[i, k, 0], series[i, k, 1]
-            if k == 0:
+            if k == lowest:
                 ch, cl = dd_add(ch, cl, -origin[i, 0], -origin[i, 1])
             sh, sl = gathered(sh, sl, ch, cl, normal[i], 0.0)
         sh, sl = settled(sh, sl)
-        if not of_rates:
-            curve[k, 0], curve[k, 1] = sh, sl
-        elif k > 0:
-            curve[k - 1, 0], curve[k - 1, 1] = dd_mul_d(sh, sl, float(k))
+        if of_rates:
+            sh, sl = dd_mul_d(sh, sl, float(k))
+        curve[k - lowest, 0], curve[k - lowest, 1] = sh, sl
 
 
 @kernel()
@@ -142,44 +144,21 @@ def _root(curve: Floats, low: float, high: float, before: float) -> Pair:
 
 
 @kernel()
-def _turning(curve: Floats, low: float, high: float, before: float) -> float:
-    """Return where the slope, of the sign `before` at first, changes its sign between two times."""
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        if _slope(curve, middle) * before > 0.0:
-            low = middle
-        else:
-            high = middle
-    return 0.5 * (low + high)
-
-
-@kernel()
 def _zeros(
     series: Floats, width: float, origin: Floats, normal: Floats, of_rates: bool, sign: float, times: Floats
 ) -> tuple[int, float]:
-    """Fill in the zeros in a step as pairs, shape (2 parts, 2); return how many they are, and the sign at its end.
-
-    What starts beside a turning point passes the section there twice in a short time: between two values of one sign
-    the one nearest to zero is looked at too.
-    """
+    """Fill in the zeros in a step as pairs, shape (parts, 2); return how many they are, and the sign at its end."""
     curve = np.empty((series.shape[1], 2))
     _along(series, origin, normal, of_rates, curve)
-    count, last, parts = 0, 0.0, times.shape[0] // 2
-    rise = _slope(curve, 0.0)
+    count, last, parts = 0, 0.0, times.shape[0]
     for part in range(1, parts + 1):
         time = width * part / parts
-        value, following = _value(curve, time, 0.0)[0], _slope(curve, time)
+        value = _value(curve, time, 0.0)[0]
         if sign * value < 0.0:
             times[count, 0], times[count, 1] = _root(curve, last, time, sign)
             count += 1
-        elif sign * rise < 0.0 and sign * following > 0.0:
-            turn = _turning(curve, last, time, rise)
-            if sign * _value(curve, turn, 0.0)[0] < 0.0:
-                times[count, 0], times[count, 1] = _root(curve, last, turn, sign)
-                times[count + 1, 0], times[count + 1, 1] = _root(curve, turn, time, -sign)
-                count += 2
         if value != 0.0:
-            sign, last, rise = math.copysign(1.0, value), time, following
+            sign, last = math.copysign(1.0, value), time
     return count, sign
 
 

@@ -135,7 +135,7 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
     # The height turns back at an extreme, and there again a period later.
     resting = is_zero(z_rate)
     sign = math.copysign(1.0, float(z_gain if resting else z_rate))
-    section = Section(np.array([0.0, 0.0, 1.0]), True, sign)
+    section = Section(np.array([0.0, 0.0, 1.0]), np.zeros((3, 2)), True, sign)
     count = 2 if resting else 3
 
     def returned(passages: list[Passage]) -> bool:
