@@ -3,20 +3,27 @@
 Integrators get the equations in the rods' angles, derived by hand or by sympy. MuJoCo and Drake get links and hinges.
 Every number is a double, so that all solve the same problem. Each is swept through its setting; the error is the larger
 difference of the two angles after 10 s (rad) from the motion at 30 digits. What a new scene costs is measured apart
-from what a motion costs.
+from what a motion costs, but for the whole question to this project.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+import mpmath
 import numpy as np
 
 from benchmarks.described_scenes.drake import prepared
+from core.arrays import Floats
+from core.balls import precision
+from core.multibody.algebra.polynomials import BITS
 from core.multibody.language.reading import scene_from
+from core.multibody.motion.modelling import modelled
+from core.multibody.motion.numerical import Numerical
 from core.multibody.solve import solve_scene
+from core.systems.methods.dormand_prince_853 import DormandPrince853
 
 G, INERTIA, HALF, END = 9.8125, 0.08203125, 0.5, 10.0
 START = (0.0, 1.5, 0.0, 0.0)
@@ -35,8 +42,10 @@ SCENE: dict[str, Any] = {
     "connections": [{"kind": "pin", "a": "one.top", "b": [0, 0]}, {"kind": "pin", "a": "two.top", "b": "one.end"}],
 }
 
-Run = Callable[[], tuple[float, float]]
+Angles = tuple[mpmath.mpf | float, mpmath.mpf | float]
+Run = Callable[[], Any]
 TOLERANCES = tuple(10.0**-k for k in (4, 6, 8, 10, 12, 14))
+FINEST_OF_DOUBLES = 1e-14
 STEPS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
 
 
@@ -49,17 +58,21 @@ class Entrant:
     package : str
         The distribution that has to be installed.
     prepare : callable
-        From a setting to a run, which returns the two angles after 10 s.
+        From a setting to a run.
     settings : tuple of float
+    angles : callable
+        From what a run returns to the two angles after 10 s.
     """
 
     name: str
     package: str
     prepare: Callable[[float], Run]
     settings: tuple[float, ...]
+    angles: Callable[[Any], Angles] = lambda found: found
 
 
-EXACT = (0.31882713913599546864, -40.878526862214604295)
+with mpmath.workdps(30):
+    EXACT = (mpmath.mpf("0.31882713913599546864"), mpmath.mpf("-40.878526862214604295"))
 """The angles after 10 s, by heyoka's Taylor series of the equations in the angles, in 113 bits (real128)."""
 
 
@@ -68,6 +81,40 @@ def _ours(accuracy: float) -> Run:
 
     def run() -> tuple[float, float]:
         answer = solve_scene(scene_from(SCENE), [END], ("trajectory",), accuracy)
+        assert answer.trajectory is not None
+        columns = answer.trajectory.columns
+        return float(columns["one.angle"].values[-1]), float(columns["two.angle"].values[-1])
+
+    return run
+
+
+def _motion(accuracy: float) -> Run:
+    """The motion and its error, of a scene that is set up: in doubles judged by pairs, or in pairs judged by pairs."""
+    with precision(BITS):
+        ((_, motion),) = modelled(scene_from(SCENE)).whole.parts
+    assert isinstance(motion, Numerical)
+    assert motion.table.names == ["one.cos", "one.sin", "two.cos", "two.sin"]
+
+    def run() -> Floats:
+        return replace(motion, _runs={}).states(np.array([END]), finer=accuracy < FINEST_OF_DOUBLES).q[0]
+
+    return run
+
+
+def _angles(found: Floats) -> Angles:
+    """Return angles from direction cosines in pairs, with the turns of the known motion."""
+    with mpmath.workdps(30):
+        cosine, sine, *other = (mpmath.mpf(x) + mpmath.mpf(tail) for x, tail in found)
+        turns = 2 * mpmath.pi * mpmath.nint((EXACT[1] - mpmath.atan2(other[1], other[0])) / (2 * mpmath.pi))
+        return mpmath.atan2(sine, cosine), mpmath.atan2(other[1], other[0]) + turns
+
+
+def _same_table(tolerance: float) -> Run:
+    """Dormand and Prince's method of order 8 on the same table in compiled code, put back onto the connections."""
+    method = DormandPrince853(tolerance=tolerance)
+
+    def run() -> tuple[float, float]:
+        answer = solve_scene(scene_from(SCENE), [END], ("trajectory",), method=method)
         assert answer.trajectory is not None
         columns = answer.trajectory.columns
         return float(columns["one.angle"].values[-1]), float(columns["two.angle"].values[-1])
@@ -178,6 +225,8 @@ def _drake(accuracy: float) -> Run:
 
 ENTRANTS = (
     Entrant("Polhode, whole question with error statement", "numpy", _ours, (1e-6, 1e-9, 1e-12, 1e-15)),
+    Entrant("Polhode, the motion with its error", "numpy", _motion, (1e-9, 1e-15), _angles),
+    Entrant("Polhode, whole question by DOP853 on the same table", "numpy", _same_table, TOLERANCES[1:5]),
     Entrant("heyoka, equations by hand", "heyoka", _heyoka, TOLERANCES),
     Entrant("SciPy solve_ivp DOP853, equations by hand", "scipy", _scipy, TOLERANCES),
     Entrant("SciPy solve_ivp DOP853, equations by sympy", "sympy", _sympy, TOLERANCES[2:]),
