@@ -18,7 +18,8 @@ from core.arrays import Floats
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _DEPTH = 60
-_FINE = 2.0**-52
+_FINE = 2.0**-50
+"""Share of a piece up to which two sums of ten rounded terms differ by rounding alone."""
 
 Integrand = Callable[[Floats], tuple[Floats, Floats, Floats]]
 """From times of shape (t,) to the integrand by the answer, by its judge, and how large its terms are, each (t,)."""
@@ -51,7 +52,7 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
         off = np.abs(finer - whole)
         settled = (off <= _FINE * np.maximum(finer_size, 2.0**-8 * largest)) | (middle == low) | (depth == _DEPTH - 1)
         np.add.at(piece, owner[settled], finer[settled])
-        np.add.at(error, owner[settled], (off + 4.0 * np.abs(finer - judged) + 2.0**-50 * finer_size)[settled])
+        np.add.at(error, owner[settled], (off + 4.0 * np.abs(finer - judged) + _FINE * finer_size)[settled])
         go = ~settled
         if not np.any(go):
             break
