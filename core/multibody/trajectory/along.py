@@ -7,9 +7,12 @@ from functools import partial
 from math import copysign, inf
 
 import numpy as np
+from flint import arb
 
 from core.arrays import Floats
+from core.balls import precision
 from core.errors import BudgetExceeded
+from core.multibody.algebra.polynomials import BITS, Ball
 from core.multibody.motion.whole import Whole, values
 from core.multibody.table.connection_effects import Work
 from core.multibody.table.frames import Frame
@@ -64,6 +67,20 @@ def watched_times(whole: Whole, end: float, every: int = 1) -> Floats:
             "times at which the motion is looked at", len(times), MOST_NODES, path=("outputs",), remedy=remedy
         )
     return copysign(1.0, end) * times
+
+
+def period_within(whole: Whole, end: float) -> Ball | None:
+    """Return the period (s) after which a motion is the same again, if that is shorter than a time."""
+    periods = {
+        None if motion.period is None else float(motion.period): motion.period
+        for _, motion in whole.parts
+        if motion.name != "rest"
+    }
+    windings = any(getattr(motion, "winding", 0.0) for _, motion in whole.parts)
+    if len(periods) != 1 or windings:
+        return None
+    ((approximate, period),) = periods.items()
+    return period if approximate is not None and approximate < end else None
 
 
 class Along:
@@ -150,8 +167,26 @@ def power_of(whole: Whole, work: Work) -> Callable[[State], Floats]:
 
 def _from_the_start(whole: Whole, integrand: Integrand, times: Floats) -> tuple[Floats, Floats]:
     total, error = np.zeros(len(times)), np.zeros(len(times))
-    for chosen in (times > 0.0, times < 0.0):
+    for way in (1.0, -1.0):
+        chosen = way * times > 0.0
         if np.any(chosen):
-            end = float(times[chosen][np.argmax(np.abs(times[chosen]))])
-            total[chosen], error[chosen] = integrated(integrand, watched_times(whole, end, _PARTS), times[chosen])
+            total[chosen], error[chosen] = _one_way(whole, integrand, times[chosen])
     return total, error
+
+
+def _one_way(whole: Whole, integrand: Integrand, times: Floats) -> tuple[Floats, Floats]:
+    """Return integrals to times of one sign; of a motion that repeats, those of whole periods are multiples of one."""
+    end = float(times[np.argmax(np.abs(times))])
+    period = period_within(whole, abs(end))
+    if period is None:
+        return integrated(integrand, watched_times(whole, end, _PARTS), times)
+    once = copysign(float(period), end)
+    counts = np.floor(np.abs(times) / abs(once))
+    with precision(BITS):
+        pairs = zip(times.tolist(), counts.tolist(), strict=True)
+        late = np.array([float(arb(abs(t)) - arb(k) * period) for t, k in pairs])
+    within = np.append(np.copysign(np.clip(late, 0.0, abs(once)), end), once)
+    found, errors = integrated(integrand, watched_times(whole, once, _PARTS), within)
+    total = counts * found[-1] + found[:-1]
+    rounding = 2.0**-51 * (np.abs(total) + np.abs(found[-1]))
+    return total, counts * errors[-1] + errors[:-1] + rounding

@@ -15,9 +15,12 @@ from collections.abc import Callable
 import numpy as np
 
 from core.arrays import Floats
+from core.errors import BudgetExceeded
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _DEPTH = 60
+MOST_POINTS = 400_000
+"""Times at which an integrand is evaluated."""
 _FINE = 2.0**-50
 """Share of a piece up to which two sums of ten rounded terms differ by rounding alone."""
 
@@ -33,6 +36,11 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
     nodes : ndarray, shape (k,)
         Times from zero up to the farthest or beyond it, between which the integrand is smooth.
     times : ndarray, shape (t,)
+
+    Raises
+    ------
+    BudgetExceeded
+        Where the integrand would have to be evaluated too often.
     """
     ends = np.unique(
         np.concatenate([np.zeros(1), np.abs(times), np.abs(nodes)[np.abs(nodes) <= np.abs(times).max(initial=0.0)]])
@@ -45,7 +53,13 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
     owner = np.arange(len(low))
     whole, _, size = _gauss(integrand, low, high)
     largest = float(np.max(size, initial=0.0))
+    points = len(low) * len(_POINTS)
     for depth in range(_DEPTH):
+        points += 2 * len(low) * len(_POINTS)
+        if points > MOST_POINTS:
+            what = "times at which what is summed up along the motion is evaluated"
+            remedy = "ask for earlier times, or without paths and works"
+            raise BudgetExceeded(what, points, MOST_POINTS, path=("outputs",), remedy=remedy)
         middle = 0.5 * (low + high)
         halves = _gauss(integrand, np.concatenate([low, middle]), np.concatenate([middle, high]))
         (first, finer), (_, judged), (_, finer_size) = ((x[: len(low)], x[: len(low)] + x[len(low) :]) for x in halves)

@@ -16,7 +16,7 @@ from core.arrays import Floats
 from core.errors import InvalidParameter, Path
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.motion.whole import Whole
-from core.multibody.trajectory.along import watched_times
+from core.multibody.trajectory.along import period_within, watched_times
 from core.near_names import did_you_mean
 from core.systems.trajectory import Column
 
@@ -112,20 +112,10 @@ def brackets(grid: Floats, curve: Floats, sampler: Sampler, equals: float, wante
     return crossings
 
 
-def period_within(whole: Whole, end: float) -> float | None:
-    """Return the period after which a motion is the same again, if that is shorter than a time."""
-    periods = {
-        None if motion.period is None else float(motion.period) for _, motion in whole.parts if motion.name != "rest"
-    }
-    single = next(iter(periods)) if len(periods) == 1 else None
-    windings = any(getattr(motion, "winding", 0.0) for _, motion in whole.parts)
-    return single if single is not None and single < end and not windings else None
-
-
 def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> SceneExtremes:
     """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
     period = period_within(whole, end)
-    end = end if period is None else period
+    end = end if period is None else float(period)
     return extremes_on(watched_times(whole, end), sampler, quantity, periodic=period is not None)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
+from core.errors import BudgetExceeded
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, points, read
 
@@ -52,6 +53,34 @@ def test_a_torque_in_space_works():
     gain = column(answer, "energy.kinetic").values
     work = column(answer, "t.work")
     assert gain[1] - gain[0] == pytest.approx(work.values[1], abs=work.error + 1e-13)
+
+
+@pytest.mark.parametrize("time", [0.3, 77.7, 1e6, 1e9, -1e7])
+@pytest.mark.parametrize("amplitude", [1, 2.5])
+def test_the_path_of_a_pendulum_at_any_horizon_is_that_of_elliptic_functions(amplitude, time):
+    """theta = 2 asin(k sn(K - sqrt(g) t, k)) from rest at the amplitude; a period's path is four amplitudes."""
+    bob = {"mass": 2, "at": [f"sin({amplitude})", f"-cos({amplitude})"]}
+    rod = {"kind": "rod", "a": "bob", "b": [0, 0]}
+    scene = read({"gravity": [0, "-9.81"], "bodies": {"bob": bob}, "connections": [rod]})
+    path = column(solve_scene(scene, [time], ["paths-in-time"]), "bob.path")
+    with mp.workdps(40):
+        rate, k = mp.sqrt(mp.mpf("9.81")), mp.sin(mp.mpf(amplitude) / 2)
+        quarter = mp.ellipk(k**2) / rate
+        halves = mp.floor(abs(time) / (2 * quarter))
+        angle = 2 * mp.asin(k * mp.ellipfun("sn", rate * (quarter - abs(time) + 2 * halves * quarter), m=k**2))
+        expected = mp.sign(time) * (2 * amplitude * halves + amplitude - angle)
+        true = abs(mp.mpf(path.values[0]) - expected)
+        assert true <= path.error
+        assert path.error <= 1e-13 * abs(expected)
+
+
+def test_an_integral_of_too_many_pieces_is_refused():
+    """Two pendulums of different periods repeat together nowhere near."""
+    bodies = {f"p{i}": {"mass": 1, "at": [f"{i} + sin(1)*{size}", f"-cos(1)*{size}"]} for i, size in ((0, 1), (1, 1.7))}
+    rods = [{"kind": "rod", "a": f"p{i}", "b": [i, 0]} for i in (0, 1)]
+    scene = read({"gravity": [0, "-9.81"], "bodies": bodies, "connections": rods})
+    with pytest.raises(BudgetExceeded):
+        solve_scene(scene, [3000.0], ["paths-in-time"])
 
 
 def test_the_path_of_a_pendulum_is_its_arc_in_every_swing():
