@@ -57,7 +57,7 @@ def section(result: Mapping[str, Any]) -> str:
     cases, machine = result["cases"], result["machine"]
     versions = ", ".join(f"{name} {version}" for name, version in machine["versions"].items())
     load = result["load average"]
-    busy = load["before"] >= 0.5 or load["after"] >= machine["cores"]
+    busy = max(load.values()) >= machine["cores"]
     warning = "**The machine was busy with other work during this run: times are provisional.**\n" if busy else ""
     text = [
         HEAD.format(

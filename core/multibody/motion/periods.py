@@ -197,16 +197,13 @@ def _fold(
     """
     n, order = series.shape[1], series.shape[2] - 1
     for s in range(times.shape[0]):
-        count = math.floor(times[s] / length[0])
-        th, tl = dd_mul_d(length[0], length[1], -count)
-        th, tl = dd_add(times[s], 0.0, th, tl)
-        # The quotient is rounded, so that the count may be one off.
-        if th < 0.0:
-            count -= 1.0
-            th, tl = dd_add(th, tl, length[0], length[1])
-        elif th >= length[0]:
-            count += 1.0
-            th, tl = dd_add(th, tl, -length[0], -length[1])
+        count, th, tl = 0.0, times[s], 0.0
+        # Quotients are rounded, so that a count may be one off, or many of a number that has no unit's digit.
+        for _ in range(3):
+            more = np.floor(th / length[0])
+            count += more
+            ph, pl = dd_mul_d(length[0], length[1], -more)
+            th, tl = dd_add(th, tl, ph, pl)
         counts[s] = count
         later = (abs(count) + 1.0) * late
         back = half and th > 0.5 * length[0]
