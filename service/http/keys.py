@@ -38,6 +38,9 @@ WRONG_KEYS_PER_SECOND = 1.0
 ADDRESSES = 10_000
 """Number of addresses that are remembered for that."""
 
+_SUSPENDED = 3600.0
+"""Seconds after which a key whose limit is zero is told to ask again: its line may have changed."""
+
 _LINE = re.compile(r"([\w.-]{1,64})\s+([0-9a-f]{64})\s+(-|\d+(?:\.\d+)?)\s+(-|\d+(?:\.\d+)?)")
 
 Stamp = tuple[int, int, int]
@@ -63,13 +66,15 @@ class Allowance:
         """Take an amount and return 0, or the seconds until it may be taken; a debt is let run up once."""
         if self._rate == inf:
             return 0.0
+        if self._rate == 0.0:
+            return _SUSPENDED if amount > 0.0 else 0.0
         now = monotonic()
         self._left = min(self._most, self._left + self._rate * (now - self._seen))
         self._seen = now
         # Otherwise an amount above all that can be saved up could never be had.
         needed = min(amount, self._most)
         if self._left < needed:
-            return (needed - self._left) / self._rate if self._rate > 0.0 else 3600.0
+            return (needed - self._left) / self._rate
         self._left -= amount
         return 0.0
 

@@ -31,7 +31,7 @@ _CHUNK = 2**21
 # A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
 # motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
 ORDER, TOLERANCE = 24, 2.0**-56
-JUDGE_ORDER, JUDGE_TOLERANCE = 32, 2.0**-72
+JUDGE_ORDER, JUDGE_TOLERANCE = 28, 2.0**-72
 FINE_ORDER, FINE_TOLERANCE = 32, 2.0**-100
 CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
 

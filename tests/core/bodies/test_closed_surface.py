@@ -94,6 +94,17 @@ def test_two_bodies_that_touch_in_an_edge_are_distinguished_from_a_hole() -> Non
         closed(more, np.vstack([faces, second]))
 
 
+def test_an_inner_wall_is_refused_at_its_three_edges() -> None:
+    vertices, faces = SHAPES[0]
+    # A second tetrahedron on the face of the first that has no vertex 3, and that face left in as a wall.
+    more = np.vstack([vertices, -np.ones((1, 3))])
+    mirrored = np.where(faces == 3, 4, faces)[:, ::-1]
+    walls = [sorted(face) == [0, 1, 2] for face in faces.tolist()]
+    assert sum(walls) == 1
+    with pytest.raises(InvalidParameter, match=r"3 of 9 edges belong to more than two faces"):
+        closed(more, np.vstack([faces, mirrored[~np.array(walls)]]))
+
+
 def test_faces_that_shrink_to_a_point_close_nothing() -> None:
     with pytest.raises(OpenMesh, match="every face has corners that coincide"):
         closed(np.zeros((3, 3)), np.array([[0, 1, 2], [0, 2, 1], [0, 1, 2]]))

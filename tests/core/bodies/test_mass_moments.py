@@ -92,6 +92,14 @@ def test_what_is_added_and_taken_away_leaves_nothing() -> None:
     assert other + -other == MassMoments()
 
 
+def test_a_place_nearer_to_the_origin_than_every_double_is_the_origin() -> None:
+    least = Fraction(1, 2**1074)
+    own = MassMoments.of(Fraction(1), (Fraction(0),) * 3, diagonal((1.0, 2.0, 2.5)))
+    for place, found in ((least, least), (least / 2, least / 2), (least / 4, Fraction(0))):
+        first = (int(place * (1 << BITS)), 0, 0)
+        assert MassMoments(own.mass, first, own.second).properties()[1] == [found, 0, 0]
+
+
 def test_attitudes_need_no_length_of_one() -> None:
     own = MassMoments.of(Fraction(2), fractions((0.1, 0.2, 0.3)), diagonal((1.0, 2.0, 2.5)))
     assert own.turned((0.5, 0.25, -0.125, 1.0)) == own.turned((2.0, 1.0, -0.5, 4.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -90,6 +91,11 @@ def test_the_report_has_a_condition_for_the_mass() -> None:
     report = {condition.name: condition for condition in body().validity.report}
     assert report["positive-mass"].holds
     assert "0.333333 kg" in report["positive-mass"].detail
+
+
+def test_a_body_without_mass_has_no_positive_mass() -> None:
+    report = {condition.name: condition for condition in replace(body(), mass=0.0).validity.report}
+    assert not report["positive-mass"].holds
 
 
 def test_an_unphysical_tensor_is_reported_at_its_field() -> None:

@@ -77,6 +77,11 @@ def test_numerals(number: str, written: str):
     assert float(written) == pytest.approx(float(number), rel=1e-3)
 
 
+@pytest.mark.parametrize(("number", "written"), [("2.5", "2"), ("3.5", "4"), ("-0.45", "-0.4"), ("95", "1e2")])
+def test_fractions_between_two_numerals_become_the_even_one(number: str, written: str):
+    assert Decimal(decimal_of_fraction(Fraction(number), 1)) == Decimal(written)
+
+
 def test_numbers_indistinguishable_from_zero_are_printed_to_the_floor_or_not_at_all():
     with precision(100):
         around = arb(0, "1e-25")

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.balls import precision
-from core.certified.exact_inputs import LARGEST_EXPONENT, enclosed, evenly_spaced, exact, exact_numbers
+from core.certified.exact_inputs import LARGEST_EXPONENT, LONGEST_NUMERAL, enclosed, evenly_spaced, exact, exact_numbers
 from core.errors import InvalidParameter
 
 
@@ -26,6 +26,13 @@ from core.errors import InvalidParameter
 )
 def test_numbers_are_exact(given_as, is_):
     assert exact(given_as, "x") == is_
+
+
+def test_the_longest_numerals_are_read_to_the_last_digit():
+    written = "0." + "1" * (LONGEST_NUMERAL - 2)
+    assert exact(written, "x") == Fraction(10 ** (LONGEST_NUMERAL - 2) // 9, 10 ** (LONGEST_NUMERAL - 2))
+    with pytest.raises(InvalidParameter):
+        exact(written + "1", "x")
 
 
 NO_NUMERALS = ["", "1/3", "nan", "inf", "1_000", " 1", "0x10", "1e", "١", "1" * 2000, "1e1001", "1e-999999", "--1"]

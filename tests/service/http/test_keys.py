@@ -136,6 +136,17 @@ def test_an_allowance_never_grows_beyond_its_most(clock: Clock) -> None:
     assert allowance.take(1.0) == pytest.approx(8.0)
 
 
+def test_a_key_with_a_rate_of_zero_may_ask_nothing(clock: Clock) -> None:
+    for rate, work in ((0.0, inf), (inf, 0.0)):
+        key = Key("suspended", rate, work, 1)
+        for _ in range(2):
+            with pytest.raises(Refusal) as refused:
+                key.request()
+                key.work(1e-3)
+            assert refused.value.problem.retry_after == 3600.0
+            clock.now += 1e6
+
+
 def known(keys: Keys, key: str) -> bool:
     try:
         keys.admit({b"authorization": b"Bearer " + key.encode()})

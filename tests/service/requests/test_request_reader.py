@@ -75,6 +75,13 @@ def test_a_rule_of_the_mechanics_keeps_its_code_pointer_and_remedy() -> None:
     ]
 
 
+def test_faults_of_several_kinds_have_the_code_of_all() -> None:
+    inner = {"kind": "nest", "inner": [{"kind": "moments", "moments": [1, 2, 7]}]}
+    document = ask(json.dumps(GOOD | {"body": inner, "times": "x"}).encode()).json()
+    assert document["code"] == "invalid-parameter"
+    assert {fault["pointer"] for fault in document["errors"]} == {"/body/inner/0/moments/2", "/times"}
+
+
 def test_an_accuracy_that_cannot_be_reached_says_what_can() -> None:
     document = ask(json.dumps(GOOD | {"behaviour": "unreachable"}).encode()).json()
     assert (document["requested"], document["achievable"]) == (1e-30, 1e-15)
