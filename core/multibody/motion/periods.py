@@ -157,7 +157,9 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
     shift = np.zeros((len(q), 2))
     for i in range(len(q)):
         if i not in free:
-            shift[i] = _pair_difference(end[i], q[i])
+            wound = _pair_difference(end[i], q[i])
+            # What comes back only seems to wind on, by less than is known.
+            shift[i] = wound if abs(wound[0]) > off else 0.0
     return Periodic(table, units, run, time, False, shift, (late, off))
 
 

@@ -116,8 +116,10 @@ def _sampled(phase: Phase, gaps: Sequence[Watch], until: float) -> list[Graze]:
             gap = value(series, late)
             if abs(float(gap)) <= width:
                 found.append(Graze(arb(turn) + _lasting(series, late, width), watch))
-            elif gap < 0:
+                break
+            if gap < 0:
                 found.append(Graze(arb(turn) + _closing(series, late), watch, closes=True))
+                break
     return found
 
 

@@ -79,7 +79,9 @@ class Sampled:
             own = motion.nodes(end)
             if isinstance(motion, Periodic) and own[-1] < end:
                 if len(motions) == 1 and not np.any(motion.shift):
-                    end = float(own[-1])
+                    # Two intervals of the next period, so that what turns where one ends is seen.
+                    own = np.append(own, own[-1] + own[1:3])
+                    end = min(end, float(own[-1]))
                 else:
                     periods = end / own[-1] if own[-1] > 0.0 else math.inf
                     if (periods + 1.0) * len(own) > _MOST_NODES:
