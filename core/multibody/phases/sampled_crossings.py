@@ -22,6 +22,7 @@ from core.multibody.phases.taylor_crossings import ORDER
 from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.watches import Watch
 from core.multibody.table.table import Table
+from core.multibody.trajectory.turns import closer_at_ends, dips
 
 _NOISE = 2.0**-44
 """Share of its terms below which the sign of something sampled in doubles is noise."""
@@ -33,7 +34,8 @@ _MOST_NARROWINGS = 8
 """Of the bracket of an event, by a factor of 32 each: bounces rise and fall in a small part of an interval."""
 KNOWN = 2.0**-46
 """Share of the noise of doubles below which a value that is known in pairs is zero."""
-_SOONEST = 1e-6
+_HALVINGS = 20
+_SOONEST = 2.0**-_HALVINGS
 """Share of the first interval in which a return to zero is looked for; sooner ones are told by the Taylor series."""
 _MOST_NODES = 200_000
 
@@ -134,7 +136,7 @@ class Sampled:
         while True:
             times, singular = self.grid(reach)
             # A motion followed further has other steps: without the time before, there would be a gap at the seam.
-            chosen = times[max(int(np.searchsorted(times, before, side="right")) - 1, 0) :]
+            chosen = closer_at_ends(times[max(int(np.searchsorted(times, before, side="right")) - 1, 0) :], _HALVINGS)
             hit = self._look(chosen) if len(chosen) > 1 else None
             if near is not None and (hit is None or near[0] < hit[0]) and near[0] <= times[-1]:
                 return near
@@ -199,7 +201,8 @@ class Sampled:
         # What is zero at the start may be negative by rounding there.
         lost[0] = lost[0] and times[0] > 0.0
         first = int(np.argmax(lost)) if lost.any() else len(curve)
-        for i in self._dips(curve, first):
+        low = np.flatnonzero(dips(times, curve) < 0.5 * np.abs(curve))
+        for i in low[low < first]:
             closer = self._closer(times[i - 1], times[i + 1], 4 * _CLOSER)
             if (closer[1] < -closer[2]).any():
                 start, (times, curve, noise) = times[0], closer
@@ -230,18 +233,6 @@ class Sampled:
                 break
         a, b = curve[before], curve[first]
         return float(times[before] + (times[first] - times[before]) * (a / (a - b) if a > 0 else 0.5))
-
-    @staticmethod
-    def _dips(f: Floats, until: int) -> list[int]:
-        """Return where a parabola through three samples comes near zero."""
-        if len(f) < 3:
-            return []
-        left, middle, right = f[:-2], f[1:-1], f[2:]
-        bend = left - 2 * middle + right
-        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            lowest = middle - (right - left) ** 2 / (8 * bend)
-            low = (middle <= left) & (middle <= right) & (bend > 0) & (lowest < 0.5 * np.abs(middle))
-        return [int(i) + 1 for i in np.flatnonzero(low) if i + 1 < until]
 
 
 def rates_along(line: LinearForm, q: Floats, v: Floats) -> tuple[Floats, Floats]:

@@ -21,14 +21,13 @@ from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phase_states import columns_in, states_in
 from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.trajectory.along import watched_times
+from core.multibody.trajectory.turns import closer_at_ends
 from core.systems.trajectory import Column, How
 
 MOST_ARCS = 2000
 """Bounces, of those that accumulate, that are followed one by one."""
 _GONE = 2.0**-60
 """Share of the first of them below which a bounce is nothing."""
-_EARLY = 2.0 ** -np.arange(8.0, 0.0, -1.0)
-"""Shares of the first interval at which a stretch is looked at: what begins at a value may come back to it soon."""
 _ROUNDED = 2.0**-51
 
 
@@ -75,14 +74,11 @@ class Stretch:
         phase = replace(self.phase, bounces=None)
         return columns_in(phase, [self.start + float(t) for t in times], self.states(times), how, [group])
 
-    def grid(self, every: int = 1) -> Floats:
+    def grid(self) -> Floats:
         """Return times from zero to the length between which nothing turns twice."""
         if self.arc is not None:
             return np.linspace(0.0, self.length, 5)
-        found = watched_times(self.phase.models[0].whole, self.length, every)
-        if len(found) < 2:
-            return found
-        return np.unique(np.concatenate([found, _EARLY * found[1]]))
+        return closer_at_ends(watched_times(self.phase.models[0].whole, self.length))
 
 
 def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from flint import arb
@@ -24,13 +25,15 @@ from core.multibody.phases.stretches import Stretch
 from core.multibody.start import energy_of
 from core.multibody.table.connection_effects import Unilateral, Work
 from core.multibody.table.momenta import work_of_potential
-from core.multibody.trajectory.along import State, path_speeds, power_of, watched_times
+from core.multibody.trajectory.along import State, power_of, speed_of, velocities_of, watched_times
 from core.multibody.trajectory.integrals import integrated
+from core.multibody.trajectory.turns import reversals
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
 _TELL = 4.0
 _PARTS = 8
+_NONE = np.zeros(0)
 FRICTION, IMPACTS = "friction.work", "impacts.work"
 
 Power = Callable[[State], tuple[Floats, Floats]]
@@ -73,8 +76,9 @@ class SumsInPhases:
         frames = self.motion.base.measures.coordinates.frames
         sums = {f"{name}.path": self._sum() for name in frames}
         for number, piece in enumerate(self.pieces):
-            for name, speed in path_speeds(frames).items():
-                self._integrate(sums[f"{name}.path"], number, piece, _sized(speed))
+            for name, velocity in velocities_of(frames).items():
+                corners = _reversals(piece, velocity)
+                self._integrate(sums[f"{name}.path"], number, piece, _sized(partial(speed_of, velocity)), corners)
         return {name: self._column(one, "m") for name, one in sums.items()}
 
     def works(self) -> dict[str, Column]:
@@ -141,7 +145,7 @@ class SumsInPhases:
         one.values[mine], one.errors[mine] = one.carried + values[:-1], one.error + errors[:-1]
         one.add(float(values[-1]), float(errors[-1]))
 
-    def _integrate(self, one: _Sum, number: int, piece: Stretch, function: Power) -> None:
+    def _integrate(self, one: _Sum, number: int, piece: Stretch, function: Power, corners: Floats = _NONE) -> None:
         mine, times = self._local(number, piece)
 
         def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
@@ -153,7 +157,7 @@ class SumsInPhases:
             nodes = watched_times(piece.phase.models[0].whole, piece.length, _PARTS)
         else:
             nodes = np.array([0.0, piece.length])
-        values, errors = integrated(integrand, nodes, times)
+        values, errors = integrated(integrand, np.concatenate([nodes, corners]), times)
         # An event that comes later or earlier changes what is summed up by as much as the summands on either side.
         ends = np.abs(integrand(np.array([0.0, piece.length]))[0])
         one.error += piece.late * float(ends[0])
@@ -250,6 +254,16 @@ def _sized(function: Callable[[State], Floats]) -> Power:
         return found, np.abs(found)
 
     return sized
+
+
+def _reversals(piece: Stretch, velocity: Callable[[State], Floats]) -> Floats:
+    """Return the times since its start at which a velocity turns against itself in a stretch."""
+
+    def followed(times: Floats) -> Floats:
+        states = piece.states(times)
+        return velocity((states.q, states.v))
+
+    return reversals(followed, piece.grid())
 
 
 def _nothing(mine: Integers, times: Floats) -> tuple[Integers, Floats, Floats]:

@@ -18,6 +18,7 @@ from core.multibody.table.connection_effects import Work
 from core.multibody.table.frames import Frame
 from core.multibody.table.momenta import work_of_potential
 from core.multibody.trajectory.integrals import Integrand, integrated
+from core.multibody.trajectory.turns import closer_at_ends, reversals
 from core.systems.trajectory import Column, How
 
 MOST_NODES = 20_000
@@ -105,15 +106,27 @@ class Along:
             if work.potential is not None:
                 found[f"{work.name}.work"] = self._by_potential(work)
             else:
-                found[f"{work.name}.work"] = self._integral(power_of(self.whole, work), "J")
+                nodes = partial(watched_times, self.whole, every=_PARTS)
+                found[f"{work.name}.work"] = self._integral(power_of(self.whole, work), nodes, "J")
         return found
 
     def paths(self) -> dict[str, Column]:
         """Return the lengths of the paths of centres of mass (m)."""
         found = {}
-        for name, speed in path_speeds(self.whole.measures.coordinates.frames).items():
-            found[f"{name}.path"] = self._integral(speed, "m")
+        for name, velocity in velocities_of(self.whole.measures.coordinates.frames).items():
+            nodes = partial(self._nodes, velocity)
+            found[f"{name}.path"] = self._integral(partial(speed_of, velocity), nodes, "m")
         return found
+
+    def _nodes(self, velocity: Callable[[State], Floats], end: float) -> Floats:
+        """Return times up to `end` between which the length of a velocity is smooth."""
+
+        def followed(times: Floats) -> Floats:
+            states = self.whole.states(times, finer=self.finer)
+            return velocity((states.q, states.v))
+
+        times = watched_times(self.whole, end)
+        return np.concatenate([times[::_PARTS], times[-1:], reversals(followed, closer_at_ends(times))])
 
     def _by_potential(self, work: Work) -> Column:
         states = self.whole.states(self.times, finer=self.finer)
@@ -125,24 +138,29 @@ class Along:
             error += _TELL * float(np.max(np.abs(done - other), initial=0.0))
         return Column(done, "J", error, self.how)
 
-    def _integral(self, function: Callable[[State], Floats], unit: str) -> Column:
+    def _integral(self, function: Callable[[State], Floats], nodes: Callable[[float], Floats], unit: str) -> Column:
         def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
             states = self.whole.states(times, finer=self.finer)
             own = function((states.q, states.v))
             return own, own if states.reference is None else function(states.reference), np.abs(own)
 
-        total, error = _from_the_start(self.whole, integrand, self.times)
+        total, error = _from_the_start(self.whole, integrand, nodes, self.times)
         return Column(total, unit, float(np.max(error, initial=0.0)), self.how)
 
 
-def path_speeds(frames: Mapping[str, Frame]) -> dict[str, Callable[[State], Floats]]:
-    """Return the speeds of the centres of mass of bodies, as functions of the state."""
+def velocities_of(frames: Mapping[str, Frame]) -> dict[str, Callable[[State], Floats]]:
+    """Return the velocities of the centres of mass of bodies, as functions of the state, each of shape (t, k)."""
 
-    def speed(where: Sequence[int], state: State) -> Floats:
-        rates: Floats = np.linalg.norm(state[1][:, where, 0], axis=1)
-        return rates
+    def velocity(where: Sequence[int], state: State) -> Floats:
+        return state[1][:, where, 0]
 
-    return {name: partial(speed, list(frame.position)) for name, frame in frames.items()}
+    return {name: partial(velocity, list(frame.position)) for name, frame in frames.items()}
+
+
+def speed_of(velocity: Callable[[State], Floats], state: State) -> Floats:
+    """Return the length of a velocity in states, shape (t,)."""
+    speed: Floats = np.linalg.norm(velocity(state), axis=1)
+    return speed
 
 
 def power_of(whole: Whole, work: Work) -> Callable[[State], Floats]:
@@ -165,28 +183,32 @@ def power_of(whole: Whole, work: Work) -> Callable[[State], Floats]:
     return power
 
 
-def _from_the_start(whole: Whole, integrand: Integrand, times: Floats) -> tuple[Floats, Floats]:
+def _from_the_start(
+    whole: Whole, integrand: Integrand, nodes: Callable[[float], Floats], times: Floats
+) -> tuple[Floats, Floats]:
     total, error = np.zeros(len(times)), np.zeros(len(times))
     for way in (1.0, -1.0):
         chosen = way * times > 0.0
         if np.any(chosen):
-            total[chosen], error[chosen] = _one_way(whole, integrand, times[chosen])
+            total[chosen], error[chosen] = _one_way(whole, integrand, nodes, times[chosen])
     return total, error
 
 
-def _one_way(whole: Whole, integrand: Integrand, times: Floats) -> tuple[Floats, Floats]:
+def _one_way(
+    whole: Whole, integrand: Integrand, nodes: Callable[[float], Floats], times: Floats
+) -> tuple[Floats, Floats]:
     """Return integrals to times of one sign; of a motion that repeats, those of whole periods are multiples of one."""
     end = float(times[np.argmax(np.abs(times))])
     period = period_within(whole, abs(end))
     if period is None:
-        return integrated(integrand, watched_times(whole, end, _PARTS), times)
+        return integrated(integrand, nodes(end), times)
     once = copysign(float(period), end)
     counts = np.floor(np.abs(times) / abs(once))
     with precision(BITS):
         pairs = zip(times.tolist(), counts.tolist(), strict=True)
         late = np.array([float(arb(abs(t)) - arb(k) * period) for t, k in pairs])
     within = np.append(np.copysign(np.clip(late, 0.0, abs(once)), end), once)
-    found, errors = integrated(integrand, watched_times(whole, once, _PARTS), within)
+    found, errors = integrated(integrand, nodes(once), within)
     total = counts * found[-1] + found[:-1]
     rounding = 2.0**-51 * (np.abs(total) + np.abs(found[-1]))
     return total, counts * errors[-1] + errors[:-1] + rounding

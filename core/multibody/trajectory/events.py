@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from math import copysign
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.errors import NotApplicable
@@ -17,6 +16,7 @@ from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.uniform import Uniform, first_zero
 from core.multibody.motion.whole import Whole, values
 from core.multibody.table.connection_effects import Limit
+from core.multibody.trajectory.turns import HALVINGS, closer_at_ends, dips
 from core.systems.trajectory import MotionEvent
 
 _SECTIONS = 33
@@ -27,8 +27,6 @@ _GROWN = 16.0
 _MOST_REACHES = 5
 _NEIGHBOURS = 8
 """Samples after one by which the size is judged there: those of a motion that grows without bound say nothing of it."""
-_HALVINGS = 48
-"""How often the first interval is halved towards the start: what is thrown may turn in much less time than a mode."""
 _CLOSER = 4
 """How often the neighbourhood of a lowest value is looked at, each time 66 times as closely."""
 
@@ -139,10 +137,7 @@ def _reaches(whole: Whole, end: float) -> list[float]:
 
 def _grid(whole: Whole, end: float) -> Floats:
     times = np.unique(np.abs(np.concatenate([motion.nodes(end) for _, motion in whole.parts] or [np.zeros(1)])))
-    first = times[times > 0.0][:1]
-    early = np.outer(first, 2.0 ** -np.arange(_HALVINGS, 0.0, -1.0)).ravel()
-    times = np.union1d(times, early)
-    return copysign(1.0, end) * times[times <= abs(end)]
+    return copysign(1.0, end) * closer_at_ends(times[times <= abs(end)])
 
 
 def _curves(whole: Whole, watched: Sequence[Limit], times: Floats, *, judged: bool = False) -> tuple[Floats, Floats]:
@@ -166,21 +161,21 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Moti
     largest = np.maximum.accumulate(np.maximum(np.abs(curve), limit.scale))
     ahead = np.arange(len(curve)) + _NEIGHBOURS
     # Where intervals double, two of them are far enough.
-    ahead[:_HALVINGS] -= _NEIGHBOURS - 2
+    ahead[:HALVINGS] -= _NEIGHBOURS - 2
     if limit.force is not None and limit.scale == 0.0:
         # A tension of zero at the start has no size before the first whole interval.
-        ahead = np.maximum(ahead, _HALVINGS + 1 + _NEIGHBOURS)
+        ahead = np.maximum(ahead, HALVINGS + 1 + _NEIGHBOURS)
     threshold = -_NOISE * largest[np.minimum(ahead, len(curve) - 1)]
     lost = curve < threshold
     if lost[0]:
         return MotionEvent(limit.event, limit.name, 0.0, 0.0)
     low, high = None, None
-    dips = _dips(grid, curve)
+    low_enough = dips(grid, curve) < 0.25 * np.abs(np.append(curve[:1], curve[:-1]))
     for i in range(1, len(curve)):
         if lost[i]:
             low, high = _sign_change(grid, curve, i)
             break
-        if dips[i]:
+        if low_enough[i]:
             bracket = _dip_below(whole, limit, float(grid[i - 1]), float(grid[i + 1]), float(threshold[i]))
             if bracket is not None:
                 low, high = bracket
@@ -201,20 +196,6 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Moti
     off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(size))
     error = off / abs(slope) if slope != 0.0 else abs(high)
     return MotionEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))
-
-
-def _dips(grid: Floats, curve: Floats) -> NDArray[np.bool_]:
-    """Return where a parabola through three samples comes near zero, so that the curve is to be looked at closely."""
-    dips = np.zeros(len(curve), dtype=bool)
-    if len(curve) > 2:
-        left, middle, right = curve[:-2], curve[1:-1], curve[2:]
-        before, after = np.diff(grid)[:-1], np.diff(grid)[1:]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            bend = ((right - middle) / after - (middle - left) / before) / (before + after)
-            slope = (middle - left) / before + bend * before
-            lowest = middle - slope**2 / (4 * bend)
-        dips[1:-1] = (middle <= left) & (middle <= right) & (bend > 0) & (lowest < 0.25 * np.abs(left))
-    return dips
 
 
 def _sign_change(grid: Floats, curve: Floats, below: int) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.motion.whole import Whole
 from core.multibody.trajectory.along import period_within, watched_times
+from core.multibody.trajectory.turns import closer_at_ends, dips
 from core.near_names import did_you_mean
 from core.systems.trajectory import Column
 
@@ -87,6 +88,7 @@ def occurrences(grid: Floats, sampler: Sampler, search: When, most: int = MOST_F
     sampler : callable
     """
     wanted = most if search.nth is None else search.nth
+    grid = closer_at_ends(grid)
     crossings = brackets(grid, sampler(grid).values - search.equals, sampler, search.equals, wanted)
     numbered = list(enumerate(crossings, 1))
     if search.nth is not None:
@@ -97,7 +99,7 @@ def occurrences(grid: Floats, sampler: Sampler, search: When, most: int = MOST_F
 def brackets(grid: Floats, curve: Floats, sampler: Sampler, equals: float, wanted: int) -> list[tuple[float, float]]:
     """Return where a curve on a grid, a quantity less a value, is zero after the start: between which times."""
     crossings: list[tuple[float, float]] = []
-    touching = _touching(curve)
+    touching = _touching(grid, curve)
     for k in range(len(grid) - 1):
         if len(crossings) >= wanted:
             break
@@ -116,42 +118,56 @@ def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> Scene
     """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
     period = period_within(whole, end)
     end = end if period is None else float(period)
-    return extremes_on(watched_times(whole, end), sampler, quantity, periodic=period is not None)
+    return extremes_on(closer_at_ends(watched_times(whole, end)), sampler, quantity, periodic=period is not None)
 
 
 def extremes_on(grid: Floats, sampler: Sampler, quantity: str, *, periodic: bool = False) -> SceneExtremes:
     """Return the least and the largest value on a grid of times from zero, between which nothing turns twice."""
     column = sampler(grid)
-    signs, which = (-1.0, 1.0), [int(np.argmax(sign * column.values)) for sign in (-1.0, 1.0)]
-    found = [(float(column.values[k]), float(grid[k])) for k in which]
-    windows = [(grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]) for k in which]
+    ends = len(grid) - 1
+    found: list[tuple[float, float]] = []
+    windows: list[tuple[float, float]] = []
+    signs: list[float] = []
+    for sign in (-1.0, 1.0):
+        curve = sign * column.values
+        k = int(np.argmax(curve))
+        found.append((float(curve[k]), float(grid[k])))
+        # To the top it is less than four times as far as a parabola says.
+        above = curve - 4.0 * (dips(grid, -curve) + curve) > curve[k] + _FLAT * abs(curve[k])
+        near = np.union1d(np.flatnonzero(above), [k])
+        windows.extend(zip(grid[np.maximum(near - 1, 0)], grid[np.minimum(near + 1, ends)], strict=True))
+        signs.extend([sign] * len(near))
+    window, which = np.array(windows), np.array(signs)
     for _ in range(_ROUNDS):
-        fine = [np.linspace(low, high, _SECTIONS) for low, high in windows]
-        values = sampler(np.concatenate(fine)).values.reshape(2, _SECTIONS)
-        for number, sign in enumerate(signs):
-            i = int(np.argmax(sign * values[number]))
-            if sign * values[number, i] >= sign * found[number][0]:
-                found[number] = (float(values[number, i]), float(fine[number][i]))
-            windows[number] = (fine[number][max(i - 1, 0)], fine[number][min(i + 1, _SECTIONS - 1)])
-        # Where both are flat to rounding, looking closer tells nothing more.
+        fine = np.linspace(window[:, 0], window[:, 1], _SECTIONS, axis=1)
+        values = which[:, None] * sampler(fine.ravel()).values.reshape(fine.shape)
+        i = np.argmax(values, axis=1)[:, None]
+        sides = np.hstack([np.maximum(i - 1, 0), np.minimum(i + 1, _SECTIONS - 1)])
+        top, least = (np.take_along_axis(values, k, axis=1).min(axis=1) for k in (i, sides))
+        go = np.zeros(len(which), dtype=bool)
+        for number, sign in enumerate((-1.0, 1.0)):
+            own = np.flatnonzero(which == sign)
+            k = own[np.argmax(top[own])]
+            if top[k] >= found[number][0]:
+                found[number] = float(top[k]), float(fine[k, i[k, 0]])
+            go[own] = 2.0 * top[own] - least[own] >= found[number][0]
+            go[k] = True
+        # Where all are flat to rounding, looking closer tells nothing more.
         if np.all(np.ptp(values, axis=1) <= _FLAT * np.abs(values).max(axis=1)):
             break
+        window, which = np.take_along_axis(fine, sides, axis=1)[go], which[go]
     (least, low), (largest, high) = found
+    least = -least
     error = sampler(np.array([low, high])).error
     return SceneExtremes(quantity, column.unit, least, low, largest, high, error, float(grid[-1]), periodic)
 
 
-def _touching(curve: Floats) -> np.ndarray:
+def _touching(grid: Floats, curve: Floats) -> np.ndarray:
     """Return whether the curve may cross zero twice between a value and the next but one, as a parabola says."""
     found = np.zeros(len(curve), dtype=bool)
-    if len(curve) > 2:
-        left, middle, right = curve[:-2], curve[1:-1], curve[2:]
-        bend = left - 2 * middle + right
-        with np.errstate(divide="ignore", invalid="ignore"):
-            turn = middle - (right - left) ** 2 / (8 * bend)
-        sign = np.sign(middle)
-        nearest = (sign * middle <= sign * left) & (sign * middle <= sign * right) & (sign * bend > 0)
-        found[:-2] = nearest & (sign * left > 0) & (sign * right > 0) & (sign * turn < 0.25 * np.abs(left))
+    for own in (curve, -curve):
+        near = (dips(grid, own)[1:-1] < 0.25 * own[:-2]) & (own[1:-1] > 0.0)
+        found[: len(near)] |= near
     return found
 
 

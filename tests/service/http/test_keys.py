@@ -7,6 +7,7 @@ import hashlib
 import os
 import sys
 import threading
+from functools import partial
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -137,12 +138,11 @@ def test_an_allowance_never_grows_beyond_its_most(clock: Clock) -> None:
 
 
 def test_a_key_with_a_rate_of_zero_may_ask_nothing(clock: Clock) -> None:
-    for rate, work in ((0.0, inf), (inf, 0.0)):
+    for rate, work, use in ((0.0, inf, Key.request), (inf, 0.0, partial(Key.work, seconds=1e-3))):
         key = Key("suspended", rate, work, 1)
         for _ in range(2):
             with pytest.raises(Refusal) as refused:
-                key.request()
-                key.work(1e-3)
+                use(key)
             assert refused.value.problem.retry_after == 3600.0
             clock.now += 1e6
 

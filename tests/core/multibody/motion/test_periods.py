@@ -20,6 +20,8 @@ def test_a_place_after_up_to_1e25_periods_is_the_elliptic_function_within_its_er
     with mpmath.workdps(80):
         # sin(theta/2) = k cd(omega t, k), with k the sine of half the amplitude
         k = mpmath.sin(mpmath.mpf("1.25"))
-        half = mpmath.asin(k * mpmath.ellipfun("cd", mpmath.sqrt(mpmath.mpf(10) ** strength) * mpmath.mpf(time), m=k * k))
+        half = mpmath.asin(
+            k * mpmath.ellipfun("cd", mpmath.sqrt(mpmath.mpf(10) ** strength) * mpmath.mpf(time), m=k * k)
+        )
         assert abs(mpmath.sin(2 * half) - place.values[0, 0]) <= place.error
     assert place.error < max(1e-14, 10.0 ** (strength / 2 - 26) * time)

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from mpmath import mp
 
 from core.multibody.solve import solve_scene
+from tests.core.multibody.swings import Swing
 from tests.core.multibody.worked_examples import column, read
 
+SCENES = Path(__file__).parents[4] / "examples" / "scenes"
 DISCS: dict[str, Any] = {
     "bodies": {
         "a": {"mass": 1, "inertia": 0.02, "radius": 0.2, "at": [-1, 0.1], "velocity": [3, 0]},
@@ -114,3 +118,31 @@ def test_a_bounce_of_microseconds_is_found_in_a_long_time() -> None:
     first = answer.events[0]
     assert (first.kind, first.name) == ("touch", "floor")
     assert abs(first.time - float(root)) <= first.error + math.ulp(first.time) / 2
+
+
+@pytest.mark.parametrize("speed", [1e-2, 1e-5, 1e-8])
+def test_a_swing_meets_the_wall_it_came_from_just_before_its_period_ends(speed: float) -> None:
+    swing = Swing(-speed)
+    wall = {
+        "kind": "contact",
+        "place": "bob",
+        "on": {"at": ["sin(0.5)", 0], "slope": {"degrees": 90}},
+        "restitution": 1,
+    }
+    events = solve_scene(swing.scene(wall=wall), [10.0]).events
+    with mp.workdps(40):
+        # From the wall through the lowest place to the other side and back.
+        once = 4 * swing.quarter - 2 * (swing.quarter - swing.phase(mp.mpf("0.5")))
+        assert [event.kind for event in events] == ["touch"] * int(10 / once)
+        for number, event in enumerate(events, 1):
+            assert abs(number * once - event.time) <= event.error
+
+
+def test_events_cost_as_much_as_they_are_however_late_the_horizon_is() -> None:
+    question = json.loads((SCENES / "block-tips-over.json").read_text())
+    scene = read({name: part for name, part in question.items() if name != "times"})
+    early, late = (solve_scene(scene, [end]).events for end in (40.0, 4e6))
+    # It rocks from corner to corner, ever less high, until it is not known whether it still lifts off.
+    assert len(early) == 129
+    assert late[:129] == early
+    assert late[-1].kind == "grazing-contact"

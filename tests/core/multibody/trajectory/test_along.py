@@ -10,6 +10,7 @@ from mpmath import mp
 
 from core.errors import BudgetExceeded
 from core.multibody.solve import solve_scene
+from tests.core.multibody.swings import Swing
 from tests.core.multibody.worked_examples import column, points, read
 
 SCENES = Path(__file__).parents[4] / "examples" / "scenes"
@@ -111,3 +112,29 @@ def test_a_path_through_a_place_of_rest_has_a_corner_in_its_speed():
     path = column(solve_scene(ball, [1.7], ["paths-in-time"]), "b.path")
     assert path.values[0] == pytest.approx(9.81 / 2 * (1 + 0.49), abs=path.error + 1e-15)
     assert path.error < 1e-12
+
+
+@pytest.mark.parametrize("speed", [1.9, 0.93, -0.55, 0.054, 0.0027, -3.5e-4, 9.3e-6, -8.1e-7, 4.1e-9])
+def test_a_path_turns_back_wherever_the_swing_does(speed):
+    """By Jacobi's functions; the speed has a corner at every turn, the first of them soon after the start."""
+    swing = Swing(speed)
+    times = [0.3, 0.684, 2.0, 5.1, 11.9]
+    found = column(solve_scene(swing.scene(), times, ["paths-in-time"]), "bob.path")
+    with mp.workdps(40):
+        off = max(
+            float(abs(swing.path(mp.mpf(t)) - mp.mpf(float(x)))) for t, x in zip(times, found.values, strict=True)
+        )
+    assert off <= found.error < 1e-13
+
+
+def test_a_path_turns_back_at_the_top_of_every_throw():
+    """h = v^2/2g up and down again, between bounces that keep 0.6 of the speed and across the horizon."""
+    ball = {"mass": 1, "at": [0, 0], "velocity": [0, 5]}
+    floor = {"kind": "contact", "place": "ball", "on": {"at": [0, 0]}, "restitution": 0.6}
+    scene = read({"gravity": [0, -10], "bodies": {"ball": ball}, "connections": [floor]})
+    # At 1.9 s the third flight, of 0.36 s, has lasted 0.3 s.
+    found = column(solve_scene(scene, [0.503, 1.9], ["paths-in-time"]), "ball.path")
+    assert found.values == pytest.approx(
+        [1.25 + 0.5 * 10 * 0.003**2, 2 * 1.25 + 2 * 0.45 + 0.162 + 5 * 0.12**2], abs=1e-14
+    )
+    assert found.error < 1e-13

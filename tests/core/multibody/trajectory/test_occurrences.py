@@ -4,13 +4,16 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 from mpmath import ellipk, mp
 
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.multibody.solve import solve_scene
-from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.multibody.trajectory.occurrences import ExtremesOf, When, extremes_on
 from core.systems.methods.explicit_euler import ExplicitEuler
+from core.systems.trajectory import Column
+from tests.core.multibody.swings import Swing
 from tests.core.multibody.worked_examples import points, read
 
 PENDULUM = read(points((1,), (2.5,), (2,)))
@@ -115,3 +118,33 @@ def test_a_search_needs_times_and_the_motion_itself():
         solve_scene(PENDULUM, [1.0], [When("r0.force", 1.0)], method=ExplicitEuler(step=0.1))
     with pytest.raises(BudgetExceeded):
         solve_scene(PENDULUM, [1e6], [When("r0.force", 1.0)])
+
+
+@pytest.mark.parametrize("speed", [1e-2, 1e-4, -1e-2, -1e-4])
+def test_what_happens_between_the_start_and_the_first_look_counts(speed):
+    """By Jacobi's functions: half-way in angle to the turn, soon after the start or before the end of a period."""
+    swing = Swing(speed)
+    with mp.workdps(40):
+        between = (mp.mpf("0.5") + swing.amplitude) / 2
+        equals = float(mp.sin(between))
+        up = swing.phase(mp.asin(mp.mpf(equals))) - swing.start
+        exact = [up + 4 * k * swing.quarter for k in range(3)]
+        exact += [2 * swing.quarter - 2 * swing.start - up + 4 * k * swing.quarter for k in range(3)]
+        exact = sorted(t for t in exact if t > 0)[:4]
+        largest = mp.sin(swing.amplitude)
+    found, errors = times_of(swing.scene(), 5.0, When("bob.position.x", equals))
+    for time, error, right in zip(found[:4], errors[:4], exact, strict=True):
+        assert abs(time - right) <= error < 1e-10
+    (extremes,) = solve_scene(swing.scene(), [5.0], [ExtremesOf("bob.position.x")]).extremes
+    assert abs(extremes.largest - largest) <= extremes.error < 1e-15
+    assert abs(extremes.least + largest) <= extremes.error
+
+
+def test_the_highest_of_several_tops_is_found_whichever_sample_is_highest():
+    def sampler(times):
+        humps = np.exp(-(((times - 0.25) / 0.1) ** 2)) + 1.0001 * np.exp(-(((times - 0.69) / 0.1) ** 2))
+        return Column(humps, "m", 1e-15, "closed form")
+
+    found = extremes_on(np.linspace(0.0, 1.0, 13), sampler, "height")
+    assert found.largest == pytest.approx(1.0001, abs=1e-8)
+    assert found.largest_time == pytest.approx(0.69, abs=1e-6)
