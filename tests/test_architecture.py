@@ -248,8 +248,7 @@ TESTED_IN |= {
         "trajectory/test_nearest": "motion/attitudes",
         "phases/test_sums_in_phases": "phases/stretches",
         "motion/test_numerical": (
-            "equations/packed motion/periods motion/products motion/returns motion/series "
-            "motion/series_pairs motion/vertical_symmetry"
+            "equations/packed motion/products motion/returns motion/series motion/series_pairs motion/vertical_symmetry"
         ),
         "phases/test_phase_answer": "phases/phase_states",
         "test_solve": (

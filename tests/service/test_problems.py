@@ -52,6 +52,17 @@ def test_faults_are_bounded_in_number_and_length() -> None:
     assert len(Problem(REGISTRY["invalid-parameter"], "bad", long).body()) <= MOST_BYTES + 20
 
 
+def test_a_single_fault_is_listed_however_long_it_is() -> None:
+    document = orjson.loads(Problem(REGISTRY["invalid-parameter"], "d" * MOST_BYTES, (Fault("/a", "x"),)).body())
+    assert [fault["pointer"] for fault in document["errors"]] == ["/a"]
+
+
+def test_a_remedy_is_given_with_its_fault_alone() -> None:
+    document = orjson.loads(problem_of(errors.InvalidParameter("a", "be less", remedy="make it smaller")).body())
+    assert document["errors"] == [{"pointer": "/a", "detail": "must be less", "remedy": "make it smaller"}]
+    assert {"remedy", "rule", "path"}.isdisjoint(document)
+
+
 def test_codes_are_unique_and_published() -> None:
     published = registry()
     assert [entry["code"] for entry in published] == list(REGISTRY)

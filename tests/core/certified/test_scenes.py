@@ -205,6 +205,7 @@ def test_a_thousand_digits_of_a_period():
         (lambda: exact_scene(RodInHole, {**ROD, "mass": "heavy"}), ("mass",)),
         (lambda: exact_scene(RodInHole, {**ROD, "mass": "-1"}), ("mass",)),
         (lambda: exact_scene(RodInHole, {**ROD, "mass": "1e400"}), ("mass",)),
+        (lambda: exact_scene(RodInHole, {**ROD, "mass": "1e-301"}), ("mass",)),
         (lambda: exact_scene(RodInHole, {**ROD, "length": "2"}), ("length",)),
         (lambda: exact_scene(UnwindingShafts, {**SHAFTS, "masses": ["1", "x"]}), ("masses", 1)),
         (

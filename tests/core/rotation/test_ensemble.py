@@ -27,6 +27,7 @@ def test_limits_name_what_is_too_much():
     body = diagonal((1.0, 2.0, 3.0))
     with pytest.raises(BudgetExceeded):
         ensemble(body, np.ones((3, 3)), np.linspace(0, 1, 4), budget=Budget(samples=11))
+    assert len(ensemble(body, np.ones((3, 3)), np.linspace(0, 1, 4), budget=Budget(samples=12)).members) == 3
     with pytest.raises(InvalidParameter):
         ensemble(body, np.ones((0, 3)), np.linspace(0, 1, 4))
 
@@ -58,6 +59,7 @@ def test_warnings_of_many_members_are_merged():
     assert (notice.code, notice.path) == ("accuracy-not-reached", ("method",))
     errors = [member.accuracy.error for member in many.members]
     worst = int(np.argmax(errors))
+    assert many.error == errors[worst] > min(errors)
     assert f"{errors[worst]:.3g}" in notice.detail
     assert f"3 of 6 members (3, 4, 5); of these member {worst} has the largest error" in notice.detail
     alike = ensemble(body, starts[3:], times, method=ExplicitEuler(0.01)).warnings

@@ -45,6 +45,23 @@ async def test_polhodes_of_either_side_and_the_separatrix_are_distinguished() ->
     told = texts(found)
     for words in ("largest moment", "middle moment", "smallest moment", "separatrix", "E = 1 J", "ω x", "ω z"):
         assert words in told, words
+    (longest,) = (line for line in told.splitlines() if line.startswith("ω z"))
+    assert "smallest moment" in longest
+    (shortest,) = (line for line in told.splitlines() if line.startswith("ω x"))
+    assert "largest moment" in shortest
+
+
+@pytest.mark.parametrize(("side", "opacity"), [(1.0, None), (-1.0, "0.35")])
+def test_a_curve_on_the_side_of_the_viewer_is_drawn_over_the_other(side: float, opacity: str | None) -> None:
+    towards = View(np.eye(3), np.ones(3)).towards
+    aside = np.cross(towards, [1.0, 0.0, 0.0])
+    points = side * towards + 0.1 * np.outer([-1.0, 0.0, 1.0], aside)
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    curve = {"regime": "about one axis", "points": points}
+    answer = {"energy": 0.5, "semi_axes": [1.0] * 3, "axes": np.eye(3), "polhodes": [curve]}
+    found = ElementTree.fromstring(ellipsoid_figure(answer))
+    (drawn,) = (line for line in found.iter(f"{SVG}polyline") if line.get("stroke") == COLOURS[0])
+    assert drawn.get("stroke-opacity") == opacity
 
 
 async def test_of_numerals_the_figure_is_that_of_doubles() -> None:
