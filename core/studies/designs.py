@@ -45,14 +45,14 @@ class Design:
         independent draws.
     count : int or None
         Of members, for the last two.
-    seed : int
-        Of the last two.
+    seed : int or None
+        Of the last two, where None stands for 0.
     """
 
     inputs: tuple[StudyInput, ...]
     kind: Kind = "product"
     count: int | None = None
-    seed: int = 0
+    seed: int | None = None
 
     def __post_init__(self) -> None:
         if self.kind in ("sobol", "random"):
@@ -70,6 +70,9 @@ class Design:
         if self.count is not None:
             remedy = "each varied input has its own count"
             raise InvalidParameter("count", f"be left out in the design {self.kind}", remedy=remedy)
+        if self.seed is not None:
+            remedy = "only the designs random and sobol draw members"
+            raise InvalidParameter("seed", f"be left out in the design {self.kind}", remedy=remedy)
         for k, entry in enumerate(self.inputs):
             if entry.levels is None:
                 rule = f"be given in the design {self.kind}"
@@ -124,7 +127,7 @@ class Design:
     def _random(self, start: int, stop: int) -> Floats:
         found = np.empty((stop - start, len(self.inputs)))
         for block in range(start // BLOCK, -(-stop // BLOCK)):
-            child = np.random.SeedSequence(self.seed, spawn_key=(block,))
+            child = np.random.SeedSequence(self.seed or 0, spawn_key=(block,))
             drawn = np.random.Generator(np.random.PCG64(child)).random((BLOCK, len(self.inputs)))
             low, high = max(start, block * BLOCK), min(stop, (block + 1) * BLOCK)
             found[low - start : high - start] = drawn[low - block * BLOCK : high - block * BLOCK]
@@ -133,7 +136,7 @@ class Design:
     def _sobol(self, start: int, stop: int) -> Floats:
         from scipy.stats import qmc
 
-        chance = np.random.Generator(np.random.PCG64(np.random.SeedSequence(self.seed)))
+        chance = np.random.Generator(np.random.PCG64(np.random.SeedSequence(self.seed or 0)))
         sequence = qmc.Sobol(len(self.inputs), scramble=True, rng=chance)
         if start:
             sequence.fast_forward(start)

@@ -11,11 +11,14 @@ for compiling in ("core.elliptic.functions", "core.multibody.motion.generic_equa
     import_module(compiling)
 
 from service.execution.worker import handler_of, terms_of  # noqa: E402
+from service.observability.logs import configure  # noqa: E402
 from service.routing import TABLE  # noqa: E402
 from service.settings import Settings  # noqa: E402
 
 # Settings come from the environment, which the fork server inherits like the server processes.
-handler_of(terms_of(Settings(), TABLE))
+_settings = Settings()
+configure(_settings.log_level)
+handler_of(terms_of(_settings, TABLE))
 # The collector writes into every object that it visits: pages that processes share would be copied for each.
 gc.freeze()
 gc.enable()

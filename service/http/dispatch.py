@@ -16,7 +16,7 @@ from service.execution.request_handler import RequestHandler
 from service.execution.response_cache import ResponseCache
 from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.keys import Keys
-from service.http.limits import Bodies, ClientGone, negotiated, require_readable
+from service.http.limits import Bodies, ClientGone, negotiated, parameters_of, refuse_parameters, require_readable
 from service.http.request_context import VARY, RequestContext
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
@@ -81,6 +81,8 @@ class Dispatcher:
             if self._starting() and isinstance(route, PostRoute | StudyRoute):
                 detail = "kernels are being compiled; GET /readyz answers 200 when that is done"
                 raise Refusal("not-ready", detail, retry_after=2.0)
+            if isinstance(route, PostRoute | StudyRoute):
+                refuse_parameters(parameters_of(scope), "must be left out: all of a question is in its body")
             if isinstance(route, StudyRoute):
                 await self._study(route, context)
             elif isinstance(route, PostRoute):

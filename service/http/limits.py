@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import re
-from collections.abc import Awaitable, Callable, Mapping, MutableMapping, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Mapping, MutableMapping, Sequence
 from time import monotonic
 from typing import Any
+from urllib.parse import parse_qs
 
-from service.problems import Refusal
+from starlette.types import Scope
+
+from service.problems import MOST_FAULTS, Fault, Refusal, headline
 
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Headers = Mapping[bytes, bytes]
 
 LONGEST_ACCEPT = 1_024
 """Bytes of an Accept header that is read."""
+
+LONGEST_PARAMETER = 40
+"""Letters of an unknown parameter's name that are repeated in its refusal."""
 
 # Java sends ".2", which RFC 9110 does not have.
 _WEIGHT = re.compile(r"0(\.\d{0,3})?|\.\d{1,3}|1(\.0{0,3})?")
@@ -23,6 +29,19 @@ _CLOSE = ("Connection", "close")
 
 class ClientGone(Exception):
     """The client closed the connection."""
+
+
+def parameters_of(scope: Scope) -> dict[str, list[str]]:
+    """Return the parameters in the address of a request."""
+    query: bytes = scope.get("query_string", b"")
+    return parse_qs(query.decode("latin-1"), keep_blank_values=True) if query else {}
+
+
+def refuse_parameters(names: Iterable[str], rule: str) -> None:
+    """Refuse a request with parameters in its address that it must not have, if there are any."""
+    faults = [Fault(f"?{name[:LONGEST_PARAMETER]}", rule) for name in names]
+    if faults:
+        raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
 
 
 def require_readable(headers: Headers) -> bool:

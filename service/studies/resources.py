@@ -5,16 +5,15 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Any
-from urllib.parse import parse_qs
 
 import orjson
 
 from core.errors import BudgetExceeded
 from service.execution.admission import Compute
 from service.execution.daemon_thread import run_in_daemon_thread
-from service.http.limits import negotiated
+from service.http.limits import negotiated, parameters_of, refuse_parameters
 from service.http.request_context import RequestContext
-from service.problems import MOST_FAULTS, Fault, Refusal, headline
+from service.problems import Fault, Refusal, headline
 from service.responses import npz as archive
 from service.responses.svg import SVG
 from service.routes.studies import PATH
@@ -37,9 +36,6 @@ LONGEST_PAGE = 10_000
 
 WORDS_OF_PAGE = ("start", "count")
 """What a page of results may be chosen by."""
-
-LONGEST_WORD = 40
-"""Characters of an unknown name that are repeated."""
 
 
 EVENTS_EVERY = 0.25
@@ -183,7 +179,7 @@ class Studies:
             if media == JSON_TYPE:
                 await self._page(context, study, found)
             else:
-                _require_no_page(context, media)
+                refuse_parameters(parameters_of(context.scope), f"must be left out: {media} has all members")
                 pieces = {
                     archive.MEDIA_TYPE: found.archive,
                     tables.MEDIA_TYPE: lambda: tables.table(found),
@@ -200,11 +196,9 @@ class Studies:
             raise Refusal("results-not-ready", detail, retry_after=2.0) from None
 
     async def _page(self, context: RequestContext, study: Study, found: Results) -> None:
-        query = _query(context)
-        faults = [Fault(f"?{name[:LONGEST_WORD]}", "is not known here") for name in query if name not in WORDS_OF_PAGE]
-        faults += [Fault(f"?{name}", "must be given once") for name in WORDS_OF_PAGE if len(query.get(name, ())) > 1]
-        if faults:
-            raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
+        query = parameters_of(context.scope)
+        refuse_parameters((name for name in query if name not in WORDS_OF_PAGE), "is not known here")
+        refuse_parameters((name for name in WORDS_OF_PAGE if len(query.get(name, ())) > 1), "must be given once")
         start = _whole(query, "start", 0, study.count - 1, 0)
         size = _whole(query, "count", 1, LONGEST_PAGE, PAGE)
         stop = min(study.count, start + size)
@@ -297,18 +291,6 @@ def _stored(pieces: Iterator[bytes]) -> Iterator[bytes]:
 
 def _owner(context: RequestContext) -> str:
     return "" if context.key is None else context.key.name
-
-
-def _query(context: RequestContext) -> dict[str, list[str]]:
-    return parse_qs(context.scope.get("query_string", b"").decode("latin-1"), keep_blank_values=True)
-
-
-def _require_no_page(context: RequestContext, media: str) -> None:
-    """Refuse to choose a page of what has all members."""
-    rule = f"must be left out: {media} has all members"
-    faults = [Fault(f"?{name[:LONGEST_WORD]}", rule) for name in _query(context)]
-    if faults:
-        raise Refusal("invalid-parameter", headline(faults), faults=faults[:MOST_FAULTS])
 
 
 def _whole(query: dict[str, list[str]], name: str, least: int, most: int, default: int) -> int:

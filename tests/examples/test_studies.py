@@ -71,7 +71,7 @@ def test_the_spread_of_an_attitude_is_within_the_error_that_one_answer_states() 
     found = run(request)
     inner = request["question"]["request"]
     request["vary"] = [{"pointer": "/body/moments/0", "values": [inner["body"]["moments"][0]]}]
-    del request["count"]
+    del request["count"], request["seed"]
     middle = run(request | {"design": "product"}).figures[0]
     attitudes, velocities = found.figures[:, :4], found.figures[:, 4:7]
     angles = 2.0 * np.arccos(np.minimum(1.0, np.abs(attitudes @ middle[:4])))

@@ -2642,7 +2642,7 @@ class StudyRequest(TypedDict):
     vary: Sequence[StudyInput]
     design: NotRequired[Literal["product", "zip", "sobol", "random"]]
     count: NotRequired[int | None]
-    seed: NotRequired[int]
+    seed: NotRequired[int | None]
     quantities: Sequence[str]
     statistics: NotRequired[Sequence[Literal["mean", "std", "quantiles", "extremes", "histogram", "failures"]]]
     probabilities: NotRequired[Numbers]

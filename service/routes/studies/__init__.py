@@ -59,7 +59,10 @@ class StudyRequest(Request):
         "random: independent draws; sobol: scrambled Sobol points.",
     )
     count: Count | None = Field(default=None, description="Of members, in the designs random and sobol.")
-    seed: Seed = Field(default=0, description="Of drawn members; equal requests have equal members.")
+    seed: Seed | None = Field(
+        default=None,
+        description="Of the designs random and sobol, 0 by default: equal requests draw alike.",
+    )
     quantities: list[str] = Field(
         min_length=1,
         max_length=MOST_QUANTITIES,

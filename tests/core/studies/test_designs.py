@@ -79,6 +79,7 @@ def test_sobol_points_fill_the_square_better_than_random_ones() -> None:
         (((A, U),), ("vary", 1, "count")),
         (((A, B), "zip"), ("vary", 1)),
         (((A, B), "product", 5), ("count",)),
+        (((A, B), "product", None, 0), ("seed",)),
         (((U,), "random"), ("count",)),
         (((A,), "random", 5), ("vary", 0, "count")),
         (((U,), "sobol", MOST_MEMBERS + 1), ("count",)),

@@ -181,6 +181,15 @@ async def test_an_unknown_path_is_answered_with_the_nearest_one(client: httpx.As
     assert document["request_id"] == response.headers["x-request-id"] == "mine"
 
 
+async def test_a_question_has_no_parameters_in_its_address(client: httpx.AsyncClient) -> None:
+    response = await client.post("/v1/toy?digits=30&" + "n" * 100 + "=1", json=GOOD)
+    document = response.json()
+    assert (response.status_code, document["code"]) == (422, "invalid-parameter")
+    assert [fault["pointer"] for fault in document["errors"]] == ["?digits", "?" + "n" * 40]
+    assert "body" in document["detail"]
+    assert (await client.post("/v1/toy?", json=GOOD)).status_code == 200
+
+
 async def test_unknown_paths_and_methods(client: httpx.AsyncClient) -> None:
     for path in ("/v1", "/v1/toy/", "/V1/TOY", "/v1//toy", "/..%2f..%2fetc/passwd", "/page/", "/page/../settings.py"):
         response = await client.post(path, json=GOOD)

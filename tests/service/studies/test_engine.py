@@ -46,7 +46,7 @@ def test_a_member_has_the_figures_of_its_single_request(desk_on: Desks, in_proce
 
 def test_refused_members_are_results(desk_on: Desks, in_process: str) -> None:
     request = UNIFORM | {"vary": [{"pointer": "/body/moments/2", "values": [3.0, 7.0, -1.0, 4.0]}], "design": "product"}
-    del request["count"]
+    del request["count"], request["seed"]
     desk = desk_on(in_process)
     _, figures, failed, _ = finished(desk, request)
     assert failed == b'["", "unphysical-inertia", "invalid-parameter", ""]'
@@ -58,7 +58,7 @@ def test_faults_of_the_service_are_results_too(desk_on: Desks, in_process: str) 
     request = UNIFORM | {"vary": [{"pointer": "/behaviour", "values": values}], "design": "product"}
     request["question"] = {"path": "/v1/toy", "request": GOOD | {"behaviour": "well"}}
     request["quantities"] = ["/position/2/2"]
-    del request["count"]
+    del request["count"], request["seed"]
     _, _, failed, statistics = finished(desk_on(in_process), request)
     assert failed == b'["", "internal-error", "internal-error", "accuracy-unreachable"]'
     assert b'"failures": {"accuracy-unreachable": 1, "internal-error": 2}' in statistics
@@ -84,7 +84,7 @@ def test_a_member_that_ends_its_process_is_found_and_the_others_are_answered(des
     values = ["well", "well", "die", "well"]
     request = UNIFORM | {"vary": [{"pointer": "/behaviour", "values": values}], "design": "product"}
     request["question"] = {"path": "/v1/toy", "request": GOOD | {"behaviour": "well"}}
-    del request["count"]
+    del request["count"], request["seed"]
     _, figures, failed, _ = finished(desk_on(processes), request, 0.01)
     assert failed == b'["", "", "worker-lost", ""]'
     assert np.isnan(np.frombuffer(figures).reshape(4, 2)).any(axis=1).tolist() == [False, False, True, False]
