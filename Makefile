@@ -17,7 +17,7 @@ serve: $(ENV)/runs
 
 test: environment
 	@$(MAKE) --no-print-directory -j2 check kernels
-	$(BIN)/python -m pytest -q -n 2 --dist worksteal
+	$(BIN)/python -m pytest -q -n 3 --dist worksteal
 
 check: environment
 	$(BIN)/ruff check .
@@ -92,7 +92,7 @@ newest:
 	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
 	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --upgrade uvicorn
 	$(NEWEST)/bin/python -m pip list 2>/dev/null | grep -i uvicorn
-	$(NEWEST)/bin/python -m pytest -q -n 2 --dist worksteal
+	$(NEWEST)/bin/python -m pytest -q -n 3 --dist worksteal
 
 # The pages in a real Chromium (Debian: apt-get install chromium), driven from an environment of its own.
 BROWSER := .venv-browser

@@ -118,7 +118,8 @@ class SearchInPhases:
                 inside.pop()
             for low, high in inside:
                 one = located(sampler, search, low, high, 0)
-                yield replace(one, time=nearest(piece.start + arb(one.time)), error=one.error + piece.late)
+                time = nearest(piece.start + arb(one.time))
+                yield replace(one, time=time, error=one.error + piece.late + 2.0**-52 * abs(time))
             if curve[-1] == 0.0 or self._begins(number + 1, samplers, search):
                 yield self._at_end(piece, sampler, search, end)
 

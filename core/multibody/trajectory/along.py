@@ -205,10 +205,12 @@ def _one_way(
     once = copysign(float(period), end)
     counts = np.floor(np.abs(times) / abs(once))
     with precision(BITS):
-        pairs = zip(times.tolist(), counts.tolist(), strict=True)
-        late = np.array([float(arb(abs(t)) - arb(k) * period) for t, k in pairs])
-    within = np.append(np.copysign(np.clip(late, 0.0, abs(once)), end), once)
-    found, errors = integrated(integrand, nodes(once), within)
+        late = [arb(abs(t)) - arb(k) * period for t, k in zip(times.tolist(), counts.tolist(), strict=True)]
+        within = np.append(np.clip([float(t) for t in late], 0.0, abs(once)), abs(once))
+        rounded = np.array([float(t - arb(own)) for t, own in zip([*late, period], within.tolist(), strict=True)])
+    found, errors = integrated(integrand, nodes(once), np.copysign(within, end))
+    # An eccentric orbit goes far in what a double leaves of a period at its pericentre.
+    found = found + integrand(np.copysign(within, end))[0] * np.copysign(1.0, end) * rounded
     total = counts * found[-1] + found[:-1]
     rounding = 2.0**-51 * (np.abs(total) + np.abs(found[-1]))
     return total, counts * errors[-1] + errors[:-1] + rounding

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +53,7 @@ def test_block_slides_on_a_plank_with_a_damper_until_it_sticks() -> None:
         ]
     (stick,) = answer.events
     assert (stick.kind, stick.name) == ("stick", "top")
-    assert abs(stick.time - float(together)) <= stick.error + math.ulp(stick.time) / 2
+    assert abs(stick.time - together) <= stick.error
     found = column(answer, "plank.velocity")
     assert np.max(np.abs(found.values[:, 0] - expected)) <= found.error + 1e-16
     assert answer.energy is not None
@@ -117,7 +116,7 @@ def test_a_bounce_of_microseconds_is_found_in_a_long_time() -> None:
         root = mpmath.findroot(lambda t: motion(t)[0], (2e-6, 3e-6))
     first = answer.events[0]
     assert (first.kind, first.name) == ("touch", "floor")
-    assert abs(first.time - float(root)) <= first.error + math.ulp(first.time) / 2
+    assert abs(first.time - root) <= first.error
 
 
 @pytest.mark.parametrize("speed", [1e-2, 1e-5, 1e-8])

@@ -29,7 +29,8 @@ def found(scene: Any, end: float, search: When) -> tuple[Occurrence, ...]:
 
 
 def require_at(one: Occurrence, time: Any) -> None:
-    assert abs(one.time - float(time)) <= one.error + 2.0**-52 * one.time
+    with mp.workdps(30):
+        assert abs(one.time - mpf(time)) <= one.error
     assert one.error <= 1e-12
 
 
