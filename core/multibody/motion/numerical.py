@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -27,7 +26,10 @@ _SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a judge's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 
 _CHUNK = 2**21
-"""Bytes for the first steps of a run; memory that is not used is not touched."""
+"""Bytes for the first steps of a run in pairs, twice those of as many in doubles; what is not used is not touched.
+
+Both together are so much less than twice the larger that the C library does not map them anew for every run.
+"""
 # A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
 # motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
 ORDER, TOLERANCE = 24, 2.0**-56
@@ -210,7 +212,7 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
     starts, series = [], []
     steps = 0
     shape = (len(q), order + 1) if kind == "doubles" else (len(q), order + 1, 2)
-    many = max(16, _CHUNK // (8 * math.prod(shape)))
+    many = max(16, _CHUNK // (16 * len(q) * (order + 1)))
     while True:
         chunk_starts, chunk = np.empty((many + 1, 2)), np.empty((many, *shape))
         take = advance if kind == "doubles" else advance_pairs
