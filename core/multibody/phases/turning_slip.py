@@ -8,6 +8,7 @@ it; below `ENDED` of the largest rate the rest is passed over at the last rate o
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -144,14 +145,15 @@ class TurningSlip:
         run = self.run(kind, float(np.max(times, initial=0.0)))
         n = len(self.table.names)
         q, v = np.zeros((len(times), n, 2)), np.zeros((len(times), n, 2))
-        starts = np.array([float(x) for x in run.starts])
         with precision(_BITS):
             for s, t in enumerate(times):
-                k = int(np.clip(np.searchsorted(starts, t, side="right") - 1, 0, max(len(run.steps) - 1, 0)))
                 if not run.steps:
                     q[s], v[s] = [pair(x, 0) for x in self.table.q], [pair(x, 0) for x in self.table.v]
                     continue
-                late = min(arb(float(t)), run.starts[-1]) - run.starts[k]
+                at = min(arb(float(t)), run.starts[-1])
+                # In balls: the last steps are shorter than what doubles tell apart.
+                k = min(max(bisect_right(run.starts, at) - 1, 0), len(run.steps) - 1)
+                late = at - run.starts[k]
                 for i, series in enumerate(run.steps[k].places):
                     q[s, i], v[s, i] = pair(value(series, late), 0), pair(value(slope(series), late), 0)
         return q, v

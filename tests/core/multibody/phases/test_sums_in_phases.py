@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -229,3 +230,18 @@ def test_impulses_that_could_be_shared_otherwise_have_no_work_of_their_own() -> 
     assert sum(event.energy_loss for event in answer.events) == pytest.approx(9.81 + 0.005, rel=1e-14)
     ends[0]["friction"] = ends[1]["friction"] = 0  # Without friction each end takes half.
     require_balance(solve_scene(read(scene), [0.4, 0.6], ALL, 1e-9))
+
+
+def test_the_path_of_a_stone_across_a_slope_is_what_friction_takes() -> None:
+    """mu m g cos(a) times the path is what speed and height have lost, when the slip has ended at 0.69 s too."""
+    stone = {"mass": 1, "at": [0, 0, 0], "velocity": [0, 2, 0]}
+    on = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    slope = {"kind": "contact", "place": "stone", "on": on, "friction": 0.5}
+    gravity = ["9.81*sin(0.3)", 0, "-9.81*cos(0.3)"]
+    scene = read({"gravity": gravity, "bodies": {"stone": stone}, "connections": [slope]})
+    answer = solve_scene(scene, [0.2, 0.5, 0.6914766235042755, 1.0], ["trajectory", "paths-in-time"])
+    path, place, speed = (named(answer, f"stone.{name}") for name in ("path", "position", "velocity"))
+    kinetic = 0.5 * np.sum(speed.values**2, axis=1)
+    lost = 2.0 - kinetic + 9.81 * math.sin(0.3) * place.values[:, 0]
+    assert 0.5 * 9.81 * math.cos(0.3) * path.values == pytest.approx(lost, rel=1e-14)
+    assert path.error < 1e-15
