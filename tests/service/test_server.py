@@ -38,6 +38,15 @@ def post(server: Server, body: bytes, headers: dict[str, str] = JSON) -> tuple[i
         connection.close()
 
 
+def post_until_admitted(server: Server, body: bytes) -> int:
+    """Send a question until a process whose compute processes have been started takes it; return its status."""
+    until = time.monotonic() + 60
+    while (status := post(server, body)[0]) == 503:
+        assert time.monotonic() < until
+        time.sleep(0.1)
+    return status
+
+
 def raw(server: Server, *pieces: bytes) -> bytes:
     """Send bytes and return all that comes back."""
     with socket.create_connection(("127.0.0.1", server.port), timeout=10) as connection:
@@ -260,10 +269,11 @@ def test_what_waited_for_a_server_process_that_was_killed_is_not_counted_for_eve
     steps = {"kind": "runge-kutta-4", "step": 1e-4}
     heavy = json.dumps(hostile.QUESTION | {"times": {"start": 0.0, "stop": 400.0, "count": 11}, "method": steps})
     with ThreadPoolExecutor(4) as threads:
-        flying = [threads.submit(post, server, heavy.encode()) for _ in range(4)]
+        flying = [threads.submit(post_until_admitted, server, heavy.encode()) for _ in range(4)]
         # Both wait for the answer to a question by then, and the gauge says so.
-        until = time.monotonic() + 30
+        until = time.monotonic() + 60
         while "polhode_backlog_seconds 0.0" in server.get("/metrics").text:
+            assert not all(one.done() for one in flying), [one.result() for one in flying]
             assert time.monotonic() < until
         for process in server_processes(server):
             os.kill(process, signal.SIGKILL)
