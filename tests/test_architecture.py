@@ -236,7 +236,7 @@ TESTED_IN |= {
         "contacts/test_complementarity": "contacts/contact_forces contacts/contact_responses contacts/contact_states",
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
-            "motion/turning phases/crossings phases/phase phases/phase_ends phases/phases "
+            "phases/crossings phases/phase phases/phase_ends phases/phases "
             "phases/sampled_crossings phases/taylor_crossings phases/tracks phases/watches start "
             "table/contact_places"
         ),

@@ -220,6 +220,8 @@ class _StepSearch:
                 break
             corrected += 1
             step *= (self._error / own) ** (1.0 / self._member.order)
+            if not 0.0 < step < inf:
+                break
             if alike < ALIKE:
                 # A step that is far too long shows little yet; one of about this error does.
                 continue

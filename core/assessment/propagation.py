@@ -8,6 +8,7 @@ entries of a symmetric tensor) is changed together with the numbers beside it th
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -49,7 +50,8 @@ def numbers_of(request: Any, path: Path = (), *, zeros: bool = False) -> Iterato
     elif isinstance(request, list):
         for i, entry in enumerate(request):
             yield from numbers_of(entry, (*path, i), zeros=zeros)
-    elif type(request) in (int, float) and (zeros or request):
+    elif type(request) in (int, float) and (zeros or request) and abs(request) <= sys.float_info.max:
+        # Whole numbers beyond are refused where the question is answered.
         yield path, float(request)
 
 

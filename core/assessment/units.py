@@ -24,7 +24,8 @@ IMPORT = 1_000_000
 """Units of work (`core.work`) that importing pint counts for: it takes about a second, once in each process."""
 
 _PLAIN = re.compile(r"[\w°%µμ·*/^()²³⁻¹. +-]+")
-_NUMBERS = re.compile(r"\d{2}|(?<![\^*(-])(?<![A-Za-z_])\d|\d\.|\.\d")
+_POWER = re.compile(r"(?<=[\w)°%µμ])\s*(?:\^|\*\*)\s*(?:-?[1-9]|\(-?[1-9]\))(?!\s*(?:\d|\.|\^|\*\*))")
+_NUMBER = re.compile(r"(?<![A-Za-z_])\d")
 _RECIPROCAL = re.compile(r"\s*1\s*/")
 _FACTOR = re.compile(r"([*/]?)([A-Za-z]+)(?:\^(-?\d))?")
 _DERIVED = {
@@ -112,8 +113,9 @@ def _registry() -> Any:
 
 def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     registry, remedy = _registry(), "the quantity is a pure number" if unit == "1" else f"the quantity is in {unit}"
-    # A text that is none of a unit's is not given to the parser, and no power may be large.
-    if not _PLAIN.fullmatch(given) or _NUMBERS.search(_RECIPROCAL.sub("/", given, count=1)):
+    # A text that is none of a unit's is not given to the parser, and numbers are nothing but powers of one digit: the
+    # parser would work out 9**9**9.
+    if not _PLAIN.fullmatch(given) or _NUMBER.search(_POWER.sub("", _RECIPROCAL.sub("/", given, count=1))):
         return "be a product of powers of units", remedy
     try:
         parsed = registry.parse_units(given)

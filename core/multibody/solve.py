@@ -29,7 +29,7 @@ from core.quantities import Tolerance, Uncertainty, check_value
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.rounding import Digits
-from core.systems.solve import checked_times
+from core.systems.solve import check_without_times, checked_times
 from core.systems.trajectory import MotionEvent
 
 Output = Literal[
@@ -45,13 +45,15 @@ Output = Literal[
     "equilibria",
 ]
 OUTPUTS: tuple[Output, ...] = get_args(Output)
+OF_MOTION: tuple[Output, ...] = ("trajectory", *(name for name in OUTPUTS if name.endswith("-in-time")))
+"""What needs times."""
 DEFAULT_OUTPUTS: tuple[Output, ...] = ("accelerations", "forces", "energy", "trajectory")
 
 
 def solve_scene(
     scene: Scene,
     times: Sequence[float] | Floats = (),
-    outputs: Sequence[Output | When | ExtremesOf | RestOf] = DEFAULT_OUTPUTS,
+    outputs: Sequence[Output | When | ExtremesOf | RestOf] | None = None,
     accuracy: float = 1e-9,
     *,
     method: AbstractMethod | None = None,
@@ -66,9 +68,9 @@ def solve_scene(
     scene : Scene
     times : sequence of float
         Seconds from the given state, of either sign and in any order.
-    outputs : sequence of str, When, ExtremesOf and RestOf
-        Some of `OUTPUTS`, what is to be searched between the start and the latest time, and of which numbers the range
-        is wanted in which the scene stays at rest.
+    outputs : sequence of str, When, ExtremesOf and RestOf, optional
+        Some of `OUTPUTS`, by default `DEFAULT_OUTPUTS`; what is to be searched between the start and the latest time;
+        and of which numbers the range is wanted in which the scene stays at rest.
     accuracy : float
         Largest error of any column, relative to its largest value, that is tolerated.
     method : AbstractMethod, optional
@@ -84,7 +86,7 @@ def solve_scene(
     Raises
     ------
     InvalidParameter
-        For a scene that cannot be, with the path to the fault.
+        For a scene that cannot be, with the path to the fault; for what only a motion has, without times.
     AccuracyUnreachable
         Where neither doubles nor pairs of doubles reach the accuracy.
     BudgetExceeded
@@ -98,6 +100,12 @@ def solve_scene(
         check_value("input_uncertainty", Uncertainty, input_uncertainty)
     empty = isinstance(times, Sized) and len(times) == 0
     moments = np.zeros(0) if empty else checked_times(times, budget)
+    if empty:
+        check_without_times(method=method, round=digits)
+        for output in outputs or ():
+            if output in OF_MOTION:
+                raise InvalidParameter("times", f"be given where {output} is requested")
+    outputs = DEFAULT_OUTPUTS if outputs is None else outputs
     for i, output in enumerate(outputs):
         if isinstance(output, (When, ExtremesOf)):
             check_search(output, i)

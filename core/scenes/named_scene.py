@@ -27,7 +27,7 @@ from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
 from core.systems.question import MotionQuestion
 from core.systems.rounding import Digits
-from core.systems.solve import as_requested, checked_times
+from core.systems.solve import as_requested, check_without_times, checked_times
 from core.systems.system import Model
 from core.systems.trajectory import HORIZON, Accuracy, Trajectory, Work
 from core.work import spend
@@ -188,8 +188,8 @@ class NamedScene(ABC):
         Raises
         ------
         InvalidParameter
-            For an unknown output, a trajectory without times, times that are not finite or before the beginning, a
-            method that fails with its setting.
+            For an unknown output; a trajectory, a method or digits without times; times that are not finite or before
+            the beginning; a method that fails with its setting.
         AccuracyUnreachable
             If the bound of the error is larger than `accuracy`.
         BudgetExceeded
@@ -201,7 +201,9 @@ class NamedScene(ABC):
         wanted = self.wanted(outputs, timed=times is not None)
         budget = budget or Budget()
         question = None
-        if times is not None:
+        if times is None:
+            check_without_times(method=method, round=digits)
+        else:
             question = MotionQuestion(checked_times(times, budget), accuracy, method, budget=budget)
         found = self._answered(question, wanted, accuracy)
         if question is None or found.trajectory is None:

@@ -82,6 +82,13 @@ def as_requested(found: Trajectory, question: MotionQuestion, digits: Digits | N
     return found if digits is None else shortened(found, digits)
 
 
+def check_without_times(**options: object) -> None:
+    """Raise `InvalidParameter` for an option that is given (not None), and that only a motion has."""
+    for name, option in options.items():
+        if option is not None:
+            raise InvalidParameter(name, "be left out where there are no times", remedy="give times, or leave it out")
+
+
 def checked_times(times: ArrayLike, budget: Budget) -> Floats:
     """Return times as an array.
 

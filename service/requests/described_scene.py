@@ -224,10 +224,11 @@ class DescribedSceneRequest(SceneDescription):
         "the origin, angular momenta.",
     )
 
-    def requested(self) -> tuple[Output | When | ExtremesOf | RestOf, ...]:
-        """Return the outputs as core takes them."""
-        outputs = DEFAULT_OUTPUTS if self.outputs is None else self.outputs
-        return tuple(_searched(output, ("outputs", i)) for i, output in enumerate(outputs))
+    def requested(self) -> tuple[Output | When | ExtremesOf | RestOf, ...] | None:
+        """Return the outputs as core takes them, None for those that it chooses."""
+        if self.outputs is None:
+            return None
+        return tuple(_searched(output, ("outputs", i)) for i, output in enumerate(self.outputs))
 
 
 def _searched(output: Any, path: Path) -> Any:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from core.errors import InvalidParameter
 from service.problems import Refusal
 from service.responses.npz import METADATA
 
@@ -27,10 +28,32 @@ MOST_MEMBERS = 600
 ENTRY = b"PK\x01\x02"
 """How the entry of a member begins in the directory of an archive."""
 
-Arrays = Mapping[str, NDArray[Any]]
-
 _HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 """By version of the format; the third is for names of fields, which arrays of plain numbers have not."""
+
+
+class Arrays:
+    """The arrays of an archive by name, each of which the document has to name.
+
+    Parameters
+    ----------
+    members : mapping of str to ndarray
+    """
+
+    def __init__(self, members: Mapping[str, NDArray[Any]]) -> None:
+        self._members, self._unnamed = members, set(members)
+
+    def named(self, name: str) -> NDArray[Any]:
+        """Return an array, or raise `InvalidParameter` where there is none of this name."""
+        if name not in self._members:
+            raise InvalidParameter((), f"name an array of the archive, which has no member {name[:40]}.npy")
+        self._unnamed.discard(name)
+        return self._members[name]
+
+    def require_all_named(self) -> None:
+        """Raise `Refusal` for an array that the document does not name: it would be ignored."""
+        for name in sorted(self._unnamed):
+            raise _invalid(f'has an array that its document does not name by {{"array": name}}: {name[:40]!r}')
 
 
 def unpacked(body: bytes, most_bytes: int) -> tuple[bytes, Arrays]:
@@ -63,7 +86,7 @@ def unpacked(body: bytes, most_bytes: int) -> tuple[bytes, Arrays]:
     document = contents.pop(METADATA, None)
     if document is None:
         raise _invalid(f"has no member {METADATA}")
-    return document, {name.removesuffix(".npy"): _array(name, content) for name, content in contents.items()}
+    return document, Arrays({name.removesuffix(".npy"): _array(name, content) for name, content in contents.items()})
 
 
 def _plain(member: ZipInfo) -> bool:
@@ -130,7 +153,7 @@ def _has_list(choices: Any) -> bool:
 def _array_for(value: Any, info: Any) -> Any:
     """Return the array that a value names, anything else as it is."""
     name = value.get("array") if type(value) is dict and len(value) == 1 else None
-    return info.context.get(name, value) if type(name) is str else value
+    return info.context.named(name) if type(name) is str else value
 
 
 def _arrays_within(value: Any, info: Any) -> Any:

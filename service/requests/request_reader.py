@@ -93,6 +93,7 @@ class Reader(Generic[Q]):
                 question: Q = self._validate(document, strict=True)
             else:
                 question = self._validate_with_arrays(document, strict=True, context=arrays)
+                arrays.require_all_named()
             require_distinct_keys(document)
             if self._keeps_digits:
                 question = cast(Any, question).with_digits(json.loads(document, parse_float=_decimal))

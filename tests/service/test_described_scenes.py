@@ -196,6 +196,14 @@ HOSTILE: dict[str, tuple[Any, str]] = {
     "too many samples": (PENDULUM | {"times": {"start": 0, "stop": 1, "count": 10**9}}, "/times/count"),
     "an unknown output": (PENDULUM | {"outputs": ["everything"]}, "/outputs/0"),
     "an accuracy of two": (PENDULUM | {"accuracy": 2}, "/accuracy"),
+    "a trajectory without times": (PENDULUM | {"outputs": ["trajectory"]}, "/times"),
+    "work without times": (PENDULUM | {"outputs": ["work-in-time"]}, "/times"),
+    "a method without times": (PENDULUM | {"method": {"kind": "explicit-euler", "step": 0.1}}, "/method"),
+    "digits without times": (PENDULUM | {"round": 3}, "/round"),
+    "a value that no double has": (
+        PENDULUM | {"times": [1], "outputs": [{"when": {"quantity": "p.position.x", "equals": 10**400}}]},
+        "/outputs/0/when/equals",
+    ),
 }
 
 
@@ -214,10 +222,13 @@ async def test_what_cannot_be_answered_is_refused_with_its_place(case: str) -> N
 IMMODERATE: dict[str, tuple[str, tuple[str | int, ...], str, str]] = {
     "periods so many that their phase is lost": ("pendulum-timed", ("gravity", 0), "1e60", "/accuracy"),
     "a place far from all others": ("atwood-machine", ("bodies", "heavy", "at", 0), "1e300", "/bodies"),
-    "a spin that turns once in 1e-309 s": ("lagrange-top", ("bodies", "top", "angular_velocity", 0), "1e309", "/times"),
-    "a start of 1e308 m/s": ("conical-pendulum", ("bodies", "bob", "velocity", 1), "1e308", "/times"),
-    "a start of 1e-400 m": ("harmonic-ellipse", ("bodies", "bob", "at", 0), "1e-400", "/outputs"),
-    "a mass of 1e434294 kg": ("binary-stars", ("bodies", "a", "mass"), "cosh(1e6)", "/times"),
+    "a spin that turns once in 1e-299 s": ("lagrange-top", ("bodies", "top", "angular_velocity", 0), "1e299", "/times"),
+    "a start of 1e299 m/s": ("conical-pendulum", ("bodies", "bob", "velocity", 1), "1e299", "/times"),
+    "a mass of 1e260 kg": ("binary-stars", ("bodies", "a", "mass"), "cosh(600)", "/times"),
+    "a mass of 1e434294 kg": ("binary-stars", ("bodies", "a", "mass"), "cosh(1e6)", "/bodies/a/mass"),
+    "a start of 1e-400 m": ("harmonic-ellipse", ("bodies", "bob", "at", 0), "1e-400", "/bodies/bob/at/0"),
+    "an impact at 1e299 m/s": ("slip-to-roll", ("bodies", "disc", "velocity", 1), "-1e299", "/bodies"),
+    "steps of 1e300 s": ("stone-across-slope", ("bodies", "stone", "velocity", 0), "1e299", "/times"),
 }
 """Worked scenes with one number that is valid and leads beyond the range of doubles, and where the refusal points."""
 

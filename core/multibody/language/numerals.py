@@ -21,6 +21,9 @@ from core.formulas import FUNCTIONS, LARGEST_EXPONENT, Arithmetic, Formula, is_n
 from core.multibody.algebra.polynomials import Ball, is_zero
 
 MOST_DIGITS = 200
+_ROUNDED = 1 + arb(2) ** -52
+LARGEST, LEAST = 10**300 * _ROUNDED, 1 / (10**300 * _ROUNDED)
+"""Size between which numbers other than zero are, as decimals or doubles: these hold them with all their digits."""
 LARGEST_POWER = 100
 """To which something is raised in a formula."""
 SHIFT = 2.0**-70
@@ -101,9 +104,13 @@ class Numerals:
         Raises
         ------
         InvalidParameter
-            If it is none, not finite, or too long, or divides by zero.
+            If it is none, not finite, near or beyond the ends of the range of doubles, too long, or divides by zero.
         """
         found = self.instead[path] if path in self.instead else self._written(value, path)
+        if abs(found) > LARGEST or 0 < abs(found) < LEAST:
+            raise InvalidParameter(
+                path, "be zero or between 1e-300 and 1e300 in size", remedy="describe the scene in other units"
+            )
         self.every[path] = found
         return found
 

@@ -25,14 +25,14 @@ def scene_from(description: Any) -> Scene:
     bodies = given.get("bodies")
     if isinstance(bodies, Mapping):
         if len(bodies) > MOST_BODIES:
-            raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(bodies)}")
+            raise InvalidParameter("bodies", f"have at most {MOST_BODIES} entries, not {len(bodies)}")
         given["bodies"] = {
             name: SceneBody(**_object(body, member(("bodies",), name), SceneBody)) for name, body in bodies.items()
         }
     connections = given.get("connections", ())
     if isinstance(connections, Sequence) and not isinstance(connections, str):
         if len(connections) > MOST_CONNECTIONS:
-            raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(connections)}")
+            raise InvalidParameter("connections", f"have at most {MOST_CONNECTIONS} entries, not {len(connections)}")
         given["connections"] = tuple(_connection(entry, ("connections", i)) for i, entry in enumerate(connections))
     return Scene(**given)
 

@@ -92,11 +92,13 @@ class Scene:
         if not isinstance(self.bodies, Mapping) or not self.bodies:
             raise InvalidParameter("bodies", "name at least one body")
         if len(self.bodies) > MOST_BODIES:
-            raise InvalidParameter("bodies", f"be at most {MOST_BODIES}, not {len(self.bodies)}")
+            raise InvalidParameter("bodies", f"have at most {MOST_BODIES} entries, not {len(self.bodies)}")
         if isinstance(self.connections, (str, Mapping)) or not isinstance(self.connections, Sequence):
             raise InvalidParameter("connections", "be a list")
         if len(self.connections) > MOST_CONNECTIONS:
-            raise InvalidParameter("connections", f"be at most {MOST_CONNECTIONS}, not {len(self.connections)}")
+            raise InvalidParameter(
+                "connections", f"have at most {MOST_CONNECTIONS} entries, not {len(self.connections)}"
+            )
         for name, body in self.bodies.items():
             check_name(name, member(("bodies",), name))
             if not isinstance(body, SceneBody):

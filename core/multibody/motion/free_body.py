@@ -22,13 +22,15 @@ from core.errors import AccuracyUnreachable, MechanicsError
 from core.multibody.algebra.directions import cross
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, is_zero
 from core.multibody.equations.packed import pair, two_to
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import States, check_looks
 from core.multibody.motion.turning_body import TurningBody
 from core.multibody.table.table import Table
 
 _SMALL = 2.0**-98
 _ENOUGH = 110
 """Bits to which an axis has to be known."""
+_PER_RADIAN = 8
+_MOST_NODES = 40_000
 
 Sample = Callable[[Ball], tuple[list[Ball], list[Ball]]]
 """From a time to the angular velocity in body axes and the quaternion from the axes of the start."""
@@ -87,10 +89,14 @@ class FreeBody:
         return [[sum((r[m][k] * start[m][i] for m in range(3)), ZERO) for i in range(3)] for k in range(3)]
 
     def nodes(self, end: float) -> Floats:
-        """Return times in each of which the body turns by a sixteenth at most, as far as they are few."""
-        fastest = 3.0 * max(abs(float(x)) for x in self.body.angular_velocity)
-        count = min(4096, 16 + int(16 * fastest * abs(end) / 6.0))
-        return np.linspace(0.0, end, count + 1)
+        """Return eight times to a radian at the fastest that the body could turn with its angular momentum."""
+        tensor = [[float(x) for x in row] for row in self.body.tensor]
+        omega = [float(x) for x in self.body.angular_velocity]
+        least = float(np.linalg.eigvalsh(np.array(tensor), UPLO="U")[0])
+        fastest = float(np.linalg.norm(np.array(tensor) @ omega)) / least if least > 0.0 else np.inf
+        count = fastest * abs(end) * _PER_RADIAN
+        check_looks(count, _MOST_NODES)
+        return np.linspace(0.0, end, 17 + int(count))
 
 
 def freely_turning(table: Table, body: TurningBody) -> FreeBody | None:

@@ -19,11 +19,10 @@ from flint import acb, acb_mat, acb_poly, arb, arb_mat, ctx
 
 from core.arrays import Floats
 from core.balls import precision
-from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import States, check_looks
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table
 from core.work import spend
@@ -325,14 +324,7 @@ class Modes:
         """Return times eight to the shortest period."""
         fastest = self._fastest
         count = abs(end) * fastest * 2.0
-        if count > MOST_NODES:
-            raise BudgetExceeded(
-                "looks for events",
-                int(min(count, 1e18)),
-                MOST_NODES,
-                path=("times",),
-                remedy="ask for a shorter time; lengths or tensions may reach zero on the way",
-            )
+        check_looks(count, MOST_NODES)
         return np.linspace(0.0, end, 33 + int(count))
 
     def lowest(self, poly: Poly) -> float:

@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from core.arrays import Floats
+from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair
 from core.multibody.table.table import Table
@@ -33,6 +34,18 @@ class States:
     reference: tuple[Floats, Floats] | None = None
 
 
+def check_looks(count: float, most: int) -> None:
+    """Raise `BudgetExceeded` where a motion would have to be looked at more often than it may be."""
+    if count > most:
+        raise BudgetExceeded(
+            "looks for events",
+            count,
+            most,
+            path=("times",),
+            remedy="ask for a shorter time; lengths, gaps or forces may reach zero on the way",
+        )
+
+
 class Motion(Protocol):
     """The motion of one part of a scene from its start."""
 
@@ -52,7 +65,13 @@ class Motion(Protocol):
         """Return the states at times of shape (t,), finer ones where there is a choice."""
 
     def nodes(self, end: float) -> Floats:
-        """Return times between 0 and `end` close enough that nothing turns twice between two of them."""
+        """Return times between 0 and `end`, or over one period, so close that nothing turns twice between two of them.
+
+        Raises
+        ------
+        BudgetExceeded
+            Where they would be too many.
+        """
 
     @property
     def period(self) -> Ball | None:

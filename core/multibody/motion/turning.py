@@ -12,11 +12,11 @@ from flint import arb
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States
+from core.multibody.motion.motion import States, check_looks
 from core.multibody.table.table import Table
 
 _PER_RADIAN = 8
-_MOST_NODES = 100_000
+_MOST_NODES = 400_000
 FEW_RADIANS = 64.0
 """Up to which the sine of an angle in doubles is right to 2^-46."""
 
@@ -85,9 +85,12 @@ class Turning:
         return 0.999 * FEW_RADIANS / abs(float(self.rate)) if float(self.rate) else math.inf
 
     def nodes(self, end: float) -> Floats:
-        """Return eight times to a radian."""
-        count = min(_MOST_NODES, int(abs(float(self.rate) * end) * _PER_RADIAN))
-        return np.linspace(0.0, end, 33 + count)
+        """Return eight times to a radian, over one turn or up to `end`."""
+        period = self.period
+        reach = end if period is None else math.copysign(min(abs(end), float(period)), end)
+        count = abs(float(self.rate) * reach) * _PER_RADIAN
+        check_looks(count, _MOST_NODES)
+        return np.linspace(0.0, reach, 33 + int(count))
 
 
 def turning(part: Table, chosen: Sequence[int]) -> Turning | None:

@@ -125,9 +125,10 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
     z_rate, z_gain = table.v[2], acceleration[2]
     if is_zero(z_rate) and is_zero(z_gain):
         radius = table.q[0] * table.q[0] + table.q[1] * table.q[1]
-        if is_zero(radius):
+        turning = table.q[0] * table.v[1] - table.q[1] * table.v[0]
+        if is_zero(radius) or is_zero(turning):
             return None
-        steady = Steady(table, (table.q[0] * table.v[1] - table.q[1] * table.v[0]) / radius)
+        steady = Steady(table, turning / radius)
         return Shifted(steady, centre) if shifted else steady
     units = units_of(table, acceleration)
     arrays = packed(table, chosen, units)

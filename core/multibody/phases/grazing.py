@@ -7,6 +7,7 @@ more, and both outcomes are told.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,7 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats
+from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ZERO, Ball, size
 from core.multibody.equations.expansion import Expansion, expansion, slope, value
 from core.multibody.equations.polynomial_roots import changes
@@ -30,6 +32,8 @@ _RISEN = 2.0**-40
 """Share of its terms that a gap is to have had before it turns back."""
 _SOONEST: Ball = arb(2.0**-60)
 _HALVINGS = 60
+_DOUBLINGS = 1200
+"""More than would leave the range of doubles."""
 _ORDER = 8
 _NEWTON = 60
 """Rounds of Newton's method: a gap may turn back as slowly as the fourth power of time."""
@@ -149,8 +153,14 @@ def _lowest(sampled: Sampled, low: float, high: float) -> float | None:
 def _closing(series: Sequence[Ball], late: Ball) -> Ball:
     """Return about when before its lowest value a gap closes."""
     before = _SOONEST
-    while not value(series, late - before) > 0:
+    for _ in range(_DOUBLINGS):
+        if value(series, late - before) > 0:
+            break
         before = before * 2
+    else:
+        raise AccuracyUnreachable(
+            None, math.inf, "a gap closes near its lowest value, and when is not known", path=("times",)
+        )
     low, high = before / 2, before
     for _ in range(_HALVINGS):
         middle = arb(((low + high) / 2).mid())

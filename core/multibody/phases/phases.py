@@ -15,7 +15,7 @@ from dataclasses import replace
 from flint import arb
 
 from core.balls import precision
-from core.errors import AccuracyUnreachable, InvalidParameter
+from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero
 from core.multibody.contacts.complementarity import LOOKED, Decided, decided
 from core.multibody.contacts.contact_responses import gap_rate, slip_rate
@@ -225,9 +225,15 @@ class _Run:
                 impulses["friction"] = nearest(rub)
             time, late = nearest(self.tracks.time), self.tracks.late()
             work = outcome.works[i]
-            known = None if i in outcome.shared else work
+            loss, known = nearest(ZERO - work), None if i in outcome.shared else work
+            if not all(map(math.isfinite, [loss, *impulses.values()])):
+                raise NotApplicable(
+                    f"the impulse of {one.name}, or the energy that it takes, leaves the range of doubles",
+                    path=("bodies",),
+                    remedy="choose units in which the numbers are moderate",
+                )
             self.motion.impacts.append((len(self.motion.phases), one.name, known))
-            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, nearest(ZERO - work)))
+            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss))
 
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""

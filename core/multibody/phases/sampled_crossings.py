@@ -8,12 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import LinearForm, evaluated, is_zero
 from core.multibody.equations.expansion import expansion
 from core.multibody.equations.packed import two_to
 from core.multibody.equations.polynomial_roots import first_of_quadratic
 from core.multibody.motion.modes import Modes
+from core.multibody.motion.motion import check_looks
 from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.periods import Periodic
 from core.multibody.motion.turning import Turning
@@ -79,23 +79,16 @@ class Sampled:
         nodes = [np.array([0.0, end])]
         for motion in motions:
             own = motion.nodes(end)
-            if isinstance(motion, Periodic) and own[-1] < end:
-                if len(motions) == 1 and not np.any(motion.shift):
+            if own[-1] < end:
+                # It repeats, but for what only winds on.
+                if len(motions) == 1 and not (isinstance(motion, Periodic) and np.any(motion.shift)):
                     # Two intervals of the next period, so that what turns where one ends is seen.
                     own = np.append(own, own[-1] + own[1:3])
                     end = min(end, float(own[-1]))
                 else:
                     periods = end / own[-1] if own[-1] > 0.0 else math.inf
-                    if (periods + 1.0) * len(own) > _MOST_NODES:
-                        raise BudgetExceeded(
-                            "looks for events",
-                            (periods + 1.0) * len(own),
-                            _MOST_NODES,
-                            path=("times",),
-                            remedy="ask for a shorter time",
-                        )
-                    count = math.ceil(periods)
-                    own = (np.arange(count)[:, None] * own[-1] + own[None, :]).ravel()
+                    check_looks((periods + 1.0) * len(own), _MOST_NODES)
+                    own = (np.arange(math.ceil(periods))[:, None] * own[-1] + own[None, :]).ravel()
             nodes.append(own)
         times = np.unique(np.concatenate(nodes))
         return times[(times >= 0.0) & (times <= end)], singular

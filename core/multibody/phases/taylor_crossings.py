@@ -72,10 +72,11 @@ def _expanded(table: Table, whole: Whole, time: float, kind: str) -> Expansion:
 
 def _cut_off(motion: Expansion, units: Sequence[str], step: float) -> float:
     """Return the last term of every series at a step, relative to the largest term of its unit."""
-    last: dict[str, float] = {}
-    largest: dict[str, float] = {}
+    last: dict[str, arb] = {}
+    largest: dict[str, arb] = {}
     for unit, series in zip(units, motion.places, strict=True):
-        terms = [abs(float(x.mid())) * abs(step) ** k for k, x in enumerate(series)]
-        last[unit] = max(last.get(unit, 0.0), terms[-1])
-        largest[unit] = max(largest.get(unit, 0.0), *terms)
-    return max((last[unit] / x for unit, x in largest.items() if x > 0.0), default=0.0)
+        # Powers of a step that is much too long are beyond doubles, not beyond balls.
+        terms = [abs(x.mid()) * arb(abs(step)) ** k for k, x in enumerate(series)]
+        last[unit] = max(last.get(unit, arb(0)), terms[-1])
+        largest[unit] = max(largest.get(unit, arb(0)), *terms)
+    return max((float(last[unit] / x) for unit, x in largest.items() if x > 0), default=0.0)

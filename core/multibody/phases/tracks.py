@@ -7,6 +7,7 @@ is, and every sign at an event is decided in balls of that width.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -110,7 +111,8 @@ class Tracks:
     def own_time(self) -> float:
         """Return the time in which the scene moves by its own size."""
         place, rate = (largest.get("m", 0.0) for largest in self._largest)
-        return place / rate if rate > 0.0 else 1.0
+        # Where nothing is away from the origin or moves, any time is as good.
+        return max(place / rate, sys.float_info.min) if place > 0.0 and rate > 0.0 else 1.0
 
     def follow_scales(
         self, time: float, before: Sequence[Ball], after: Sequence[Ball], acceleration: Sequence[Ball]

@@ -37,7 +37,7 @@ from core.multibody.table.table import Row, Table, identity
 ENDED = 2.0**-72
 """Share of the largest rate below which slip ends."""
 _BITS = 256
-_MOST_STEPS = 1000
+_MOST_STEPS = 250
 _PART, _LONGEST = 0.5, 1e6
 _KINDS = {"fine": (32, 2.0**-96), "check": (30, 2.0**-90)}
 """Order and tolerance of the two runs."""
@@ -172,8 +172,10 @@ def _length(motion: Expansion, units: Sequence[str], fastest: dict[str, float], 
         for k in (len(series) - 2, len(series) - 1):
             # Terms of a slip that is about to end are beyond the range of doubles.
             last = exponent(k * series[k])
-            if last is not None and fastest[unit] > 0.0:
-                h = min(h, 2.0 ** ((math.log2(tolerance * fastest[unit]) - last) / (k - 1)))
+            if last is not None and tolerance * fastest[unit] > 0.0:
+                # More than the longest, whose power of two may be beyond doubles, is not needed.
+                power = (math.log2(tolerance * fastest[unit]) - last) / (k - 1)
+                h = min(h, 2.0 ** min(power, math.log2(_LONGEST)))
     return arb(h)
 
 

@@ -19,7 +19,7 @@ from core.balls import Undetermined, precision
 from core.certified.adaptive_precision import bits_for, check_digits, until_determined, working_bits
 from core.certified.decimals import decimal, floor_below, place_of
 from core.certified.exact_inputs import enclosed
-from core.errors import NotApplicable
+from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
 from core.multibody.answer import Energy, PartModel, SceneModel
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
@@ -39,6 +39,7 @@ from core.systems.trajectory import HORIZON
 
 PROVEN_OUTPUTS = ("accelerations", "forces", "energy", "trajectory")
 """What is answered to many digits."""
+LATEST = 10**300
 _BITS_OF_A_SECOND = 30
 """What a second of motion in several coordinates loses, about; at the first precision so many are added."""
 _MOST_ADDED = 300
@@ -79,7 +80,7 @@ def proven_answer(
     scene: Scene,
     digits: int,
     times: Sequence[Fraction] = (),
-    outputs: Sequence[str] = PROVEN_OUTPUTS,
+    outputs: Sequence[str] | None = None,
 ) -> ProvenAnswer:
     """Answer a question about a scene with so many significant digits.
 
@@ -100,9 +101,19 @@ def proven_answer(
             path=("connections",),
             remedy="ask POST /v1/scenes, or hold what touches by a connection of another kind",
         )
+    if outputs is not None and "trajectory" in outputs and not times:
+        raise InvalidParameter("times", "be given where trajectory is requested")
+    outputs = PROVEN_OUTPUTS if outputs is None else outputs
+    check_instants(times)
     farthest = max((abs(float(t)) for t in times), default=0.0)
     bits = bits_for(digits) + int(min(_MOST_ADDED, _BITS_OF_A_SECOND * farthest))
     return until_determined(lambda: _Proof(scene, digits, bits).answer(times, outputs), bits)
+
+
+def check_instants(times: Sequence[Fraction]) -> None:
+    """Raise `InvalidParameter` for a time that no double is near: the end of a motion is looked for in doubles."""
+    if any(abs(time) > LATEST for time in times):
+        raise InvalidParameter("times", "be between -1e300 and 1e300 s", remedy="describe the scene in other units")
 
 
 class _Proof:

@@ -69,15 +69,21 @@ def _described(
     load, pull = equations.arrays.load, equations.arrays.stiffness @ q
     left = load - pull + equations.jacobian(q).T @ multipliers
     terms = np.abs(load).max(initial=0.0) + np.abs(pull).max(initial=0.0)
-    modes, stable = _small_motion(equations, q, multipliers)
+    try:
+        modes, stable = _small_motion(equations, q, multipliers)
+    except np.linalg.LinAlgError as fault:
+        raise _out_of_range("the masses differ by more than doubles can resolve") from fault
     rate = two_to(-time)
     shown = tuple((float(w * rate), float(g * rate)) for w, g in modes)
     if not np.isfinite(shown).all():
-        reason = "the search for equilibria leaves the range of doubles"
-        remedy = "ask without equilibria, or choose units in which the numbers are moderate"
-        raise AccuracyUnreachable(None, np.inf, reason, path=("outputs",), remedy=remedy)
+        raise _out_of_range("the search for equilibria leaves the range of doubles")
     residual = float(np.abs(left).max(initial=0.0) / terms) if terms else 0.0
     return Equilibrium(*resting.shown(q), stable, shown, residual)
+
+
+def _out_of_range(reason: str) -> AccuracyUnreachable:
+    remedy = "ask without equilibria, or choose units in which the numbers are moderate"
+    return AccuracyUnreachable(None, np.inf, reason, path=("outputs",), remedy=remedy)
 
 
 def _small_motion(
@@ -88,6 +94,8 @@ def _small_motion(
     z = _directions(equations.jacobian(q)) if m else np.eye(n)
     if not z.shape[1]:
         return [], True
+    # Directions are scaled so that each has the same mass: light bodies beside heavy ones are then resolved as well.
+    z = z * _one_over_root(np.diag(z.T @ equations.mass @ z))
     mass = z.T @ equations.mass @ z
     damping = z.T @ equations.damping_at(q) @ z
     stiffness = z.T @ (equations.arrays.stiffness - np.einsum("rji,r->ji", equations.slopes, multipliers)) @ z
@@ -115,9 +123,31 @@ def _small_motion(
     return modes, True if convex else None
 
 
+def _one_over_root(masses: Floats) -> Floats:
+    positive = masses > 0.0
+    roots: Floats = 1.0 / np.sqrt(np.where(positive, masses, 1.0))
+    return roots
+
+
 def _directions(w: Floats) -> Floats:
-    """Return an orthonormal basis of what rows of shape (m, n) leave free, by their singular values."""
-    _, sizes, right = np.linalg.svd(w)
-    rank = int(np.sum(sizes > np.finfo(float).eps * max(w.shape) * sizes.max(initial=0.0)))
-    free: Floats = right[rank:].T
-    return free
+    """Return a basis of what rows of shape (m, n) leave free, by Gauss and Jordan's elimination with full pivoting.
+
+    Each vector moves one free coordinate and those that depend on it. An orthonormal basis would mix coordinates at
+    will, and rounding at the heavy bodies would then hide the light ones.
+    """
+    rows, held = w.copy(), list[int]()
+    least = np.finfo(float).eps * max(w.shape) * np.abs(w).max(initial=0.0)
+    for k in range(min(w.shape)):
+        i, j = np.unravel_index(np.argmax(np.abs(rows[k:])), rows[k:].shape)
+        if abs(rows[k + i, j]) <= least:
+            break
+        rows[k], rows[k + i] = rows[k + i].copy(), rows[k].copy()
+        rows[k] /= rows[k, j]
+        others = np.arange(len(rows)) != k
+        rows[others] -= np.outer(rows[others, j], rows[k])
+        held.append(int(j))
+    free = [j for j in range(w.shape[1]) if j not in held]
+    basis = np.zeros((w.shape[1], len(free)))
+    basis[free, np.arange(len(free))] = 1.0
+    basis[held] = -rows[: len(held)][:, free]
+    return basis

@@ -120,7 +120,7 @@ def _newton(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats
     for _ in range(_ROUNDS):
         left, terms, _off = linearised(arrays, q, multipliers, system, right)
         largest, far = _largest(multipliers), _largest(q)
-        singular = solve(system, right)
+        singular = _step(arrays, system, right)
         dwarfed = dwarfed + 1 if singular and (largest > _DWARFED * terms or far > _REMOTE) else 0
         q += right[:n]
         multipliers += right[n:]
@@ -130,9 +130,42 @@ def _newton(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats
         # Beyond a step as short as this there is only rounding; where the equations are nearly singular, a step may be
         # short though they are not solved.
         short = _largest(right[:n]) <= _ENDED * (1.0 + far) and _largest(right[n:]) <= _ENDED * (1.0 + held)
-        if short and (not singular or left <= _ENDED * terms):
+        if short and (not singular or left <= _ENDED):
             break
     return True
+
+
+@kernel()
+def _step(arrays: StaticArrays, system: Floats, right: Floats) -> bool:
+    """Put Newton's step in place of the right side; return whether the system is nearly singular.
+
+    A connection is measured by the lightest that it pulls, and the forces on a coordinate by the largest of them:
+    without that, what hangs below something much heavier would be lost in rounding.
+    """
+    n, m = len(arrays.load), len(arrays.offset)
+    scales, heaviest = np.ones(m), _largest(arrays.weights)
+    for r in range(m):
+        least = heaviest
+        for j in range(n):
+            if arrays.touched[r, j]:
+                least = min(least, arrays.weights[j])
+        if least > 0.0:
+            scales[r] = least / heaviest
+        for j in range(n):
+            system[j, n + r] *= scales[r]
+    for j in range(n):
+        largest = _largest(system[j])
+        if largest > 0.0:
+            system[j] /= largest
+            right[j] /= largest
+    for r in range(m):
+        largest = _largest(system[:, n + r])
+        if largest > 0.0:
+            system[:, n + r] /= largest
+            scales[r] /= largest
+    singular = solve(system, right)
+    right[n:] *= scales
+    return singular
 
 
 @kernel()
@@ -141,11 +174,11 @@ def _is_solution(arrays: StaticArrays, q: Floats, multipliers: Floats, system: F
     n = len(q)
     left, terms, off = linearised(arrays, q, multipliers, system, right)
     size, largest = 1.0 + _largest(q), _largest(multipliers)
-    singular = solve(system, right)
+    singular = _step(arrays, system, right)
     if singular and (largest > _DWARFED * terms or size > _REMOTE):
         return False
     # A step alone may be short where the equations are nearly singular and not solved.
-    solved = left <= _CONVERGED * terms and off < _CONVERGED * size**2
+    solved = left <= _CONVERGED and off < _CONVERGED * size**2
     settled = _largest(right[n:]) <= _SETTLED * (largest + terms)
     return solved and settled and _largest(right[:n]) < _CONVERGED * size
 

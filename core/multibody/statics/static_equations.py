@@ -37,6 +37,10 @@ class StaticArrays(NamedTuple):
         Angle and direction at the start (rad).
     tie_factors : ndarray, shape (t,)
         Unit of the row.
+    weights : ndarray, shape (n,)
+        What the force of each coordinate is compared with: a light body's weight, not that of a heavy one beside it.
+    touched : ndarray, shape (m, n)
+        Which coordinates each row may pull.
     """
 
     load: Floats
@@ -49,6 +53,8 @@ class StaticArrays(NamedTuple):
     tie_forms: Floats
     tie_starts: Floats
     tie_factors: Floats
+    weights: Floats
+    touched: np.ndarray
 
 
 class StaticEquations:
@@ -92,6 +98,8 @@ class StaticEquations:
             np.empty((0, 3, n + 1)),
             np.empty((0, 2)),
             np.empty(0),
+            _weights(np.diag(self.mass), packed.load[:, 0], stiffness),
+            (lines != 0.0) | (self.slopes != 0.0).any(axis=2),
         )
 
     def tie(self, row: int, found: Described, small: Reduced, units: Units, frame: Frame, factor: float) -> None:
@@ -132,6 +140,15 @@ class StaticEquations:
         return total
 
 
+def _weights(mass: Floats, load: Floats, stiffness: Floats) -> Floats:
+    """Return the force on each coordinate at the largest acceleration of any, or that of its springs if larger."""
+    heavy = mass > 0.0
+    fastest = np.max(np.abs(load[heavy]) / mass[heavy], initial=0.0)
+    own = np.maximum.reduce([mass * fastest, np.abs(load), np.abs(stiffness).max(axis=1, initial=0.0)])
+    weights: Floats = np.where(own > 0.0, own, np.max(own, initial=0.0))
+    return weights
+
+
 @kernel()
 def linearised(
     arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats, right: Floats
@@ -150,7 +167,8 @@ def linearised(
     Returns
     -------
     left, terms, off : float
-        The largest force left over, the size of the forces but those of the connections, the largest of the measures.
+        The largest share that is left over of the forces on a coordinate, the size of the forces but those of the
+        connections, the largest of the measures.
     """
     n, m = len(q), len(multipliers)
     system[:] = 0.0
@@ -172,7 +190,16 @@ def linearised(
         for r in range(m):
             right[j] -= multipliers[r] * system[n + r, j]
             system[j, n + r] = system[n + r, j]
-        left = max(left, abs(right[j]))
+    for j in range(n):
+        total = arrays.weights[j]
+        for r in range(m):
+            if arrays.touched[r, j]:
+                size = 0.0
+                for i in range(n):
+                    size = max(size, abs(system[n + r, i]))
+                total += abs(multipliers[r]) * size
+        if right[j] != 0.0:
+            left = max(left, abs(right[j]) / total) if total > 0.0 else np.inf
     for r in range(m):
         right[n + r] = -arrays.offset[r]
         for j in range(n):

@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
+from flint import arb
 
 from core.arrays import Floats
 from core.multibody.motion.attitudes import quaternions
 from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.turning import Turning
 from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.motion.whole import values as values_of
 from core.multibody.table.connection_effects import Force
@@ -213,8 +215,15 @@ class Columns:
 
     def _angle(self, direction: tuple[int, int], name: str) -> Column:
         """Return an unwrapped angle: the principal one, with the full turns that the way there has made."""
+        table = self.whole.measures.table
+        if isinstance(self.whole.motion_of(direction), Turning):
+            # At any horizon, where the turns are too many to be counted on the way.
+            (x, y), (x_rate, y_rate) = ([of[i] for i in direction] for of in (table.q, table.v))
+            rate, at_start = x * y_rate - y * x_rate, self.whole.measures.coordinates.start_angle(name)
+            values = np.array([float(at_start + rate * arb(float(t))) for t in self.times])
+            return Column(values, "rad", _stated(values, np.zeros(len(values))), self.how)
         c, s = (self.states.q[:, i, 0] for i in direction)
-        start = [float(self.whole.measures.table.q[i]) for i in direction]
+        start = [float(table.q[i]) for i in direction]
         first = float(self.whole.measures.coordinates.start_angle(name))
         principal = np.arctan2(start[0] * s - start[1] * c, start[0] * c + start[1] * s)
         turns = np.round((self._followed(direction) - principal) / (2 * math.pi))

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import NotApplicable
-from core.multibody.algebra.polynomials import is_zero, substituted
+from core.multibody.algebra.polynomials import ZERO, is_zero, substituted
 from core.multibody.motion.kepler import Kepler
 from core.multibody.motion.modes import Modes
 from core.multibody.motion.numerical import Numerical
@@ -20,6 +20,8 @@ from core.multibody.trajectory.turns import HALVINGS, closer_at_ends, dips
 from core.systems.trajectory import MotionEvent
 
 _SECTIONS = 33
+_LEAST = 2.0**-1000
+"""Force (N) beside which others are lost below the range of doubles."""
 _NOISE = 2.0**-40
 """Share of a force's size below which its sign is noise."""
 _GROWN = 16.0
@@ -93,8 +95,10 @@ def _require_known(watched: Sequence[Limit], curves: Floats) -> None:
 
 
 def _require_weight(whole: Whole, watched: Sequence[Limit], curves: Floats) -> None:
-    """Raise for forces that are zero in doubles where a mass is, too: whether they stay positive is not known."""
-    weightless = any(not is_zero(x) and float(x) == 0.0 for x in whole.measures.table.mass.values())
+    """Raise for forces that are zero in doubles, as what moves a mass is: whether they stay positive is not known."""
+    fastest = max((abs(x) for x in whole.acceleration), key=float, default=ZERO)
+    moved = [abs(x) * fastest for x in whole.measures.table.mass.values()]
+    weightless = any(not is_zero(x) and float(x) < _LEAST for x in moved)
     for limit, curve in zip(watched, curves, strict=True):
         if weightless and limit.force is not None and not curve.any():
             raise NotApplicable(

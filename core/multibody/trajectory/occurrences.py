@@ -7,6 +7,7 @@ most once; where a parabola through three values comes near, it is looked at mor
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -226,7 +227,9 @@ def check_search(search: When | ExtremesOf, index: int) -> None:
         raise InvalidParameter((*where, key), "name a column of the trajectory, or a component of one")
     if isinstance(search, ExtremesOf):
         return
-    if isinstance(search.equals, bool) or not isinstance(search.equals, (int, float)) or not np.isfinite(search.equals):
+    number = isinstance(search.equals, (int, float)) and not isinstance(search.equals, bool)
+    # A whole number may be too large for a double.
+    if not number or not abs(search.equals) <= sys.float_info.max:
         raise InvalidParameter((*where, "equals"), "be a finite number")
     nth = search.nth
     if nth is not None and (isinstance(nth, bool) or not isinstance(nth, int) or not 1 <= nth <= MOST_FOUND):

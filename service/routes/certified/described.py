@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from core.certified.adaptive_precision import check_digits
-from core.multibody.proven.proven_answer import PROVEN_OUTPUTS, proven_answer
+from core.certified.exact_inputs import nearest
+from core.multibody.proven.proven_answer import PROVEN_OUTPUTS, check_instants, proven_answer
 from core.systems.budget import Budget
 from service.requests.decimal_models import DecimalTimes, DigitCount, ends, instants
 from service.requests.described_scene import SceneDescription
@@ -74,7 +75,7 @@ def answer_certified_scene(question: CertifiedSceneRequest, budget: Budget) -> A
     digits = question.digits
     _samples(question, budget)
     times = () if question.times is None else instants(question.times)
-    found = proven_answer(question.scene(), digits, times, question.outputs or PROVEN_OUTPUTS)
+    found = proven_answer(question.scene(), digits, times, question.outputs)
     answer: Answer = {
         "model": model_fields(found.model),
         "accuracy": accuracy(digits),
@@ -110,7 +111,7 @@ def certified_scene_cost(question: CertifiedSceneRequest, budget: Budget) -> flo
     set_up = SET_UP + 2e-3 * (bodies + len(question.connections))
     if question.times is None:
         return set_up
-    first, last = (float(time) for time in ends(question.times))
+    first, last = (nearest(time) for time in ends(question.times))
     seconds = min(LONGEST, max(0.0, last) - min(0.0, first))
     moving = float(PER_SECOND * seconds * bodies**2.5 * (question.digits / 28.0) ** 1.5)
     return set_up + min(LONGEST, moving) + 1e-4 * samples * bodies
@@ -121,6 +122,7 @@ def certified_scene_probe(question: CertifiedSceneRequest, budget: Budget) -> Pl
     if question.times is None:
         return PlanningProbe(answer_certified_scene(question, budget))
     times = instants(question.times)
+    check_instants(times)
     few = [float(times[k]) for k in few_of(len(times), FEW_CERTIFIED)]
     reach = max(map(abs, few))
     near = [time * min(1.0, NEAR / reach) for time in few] if reach else few

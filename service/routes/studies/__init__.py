@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -13,6 +13,7 @@ from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.propagation import at
 from core.assessment.varied_input import LONGEST_WORD
 from core.errors import BudgetExceeded, InvalidParameter, MechanicsError, Path
+from core.formulas import Formula
 from core.quantities import Quantity
 from core.studies.designs import Design, Kind
 from core.studies.statistics import BINS, PROBABILITIES, STATISTICS, Statistic
@@ -80,8 +81,11 @@ class StudyRequest(Request):
         Raises
         ------
         InvalidParameter
-            If the inputs do not fit the design.
+            If the inputs do not fit the design, or an option is given for a statistic that is not wanted.
         """
+        for option, statistic in (("bins", "histogram"), ("probabilities", "quantiles")):
+            if option in self.model_fields_set and statistic not in self.statistics:
+                raise InvalidParameter(option, f"be left out where the statistics have no {statistic}")
         return Design(tuple(self.vary), self.design, self.count, self.seed)
 
 
@@ -172,9 +176,13 @@ def _paths(question: StudyRequest) -> tuple[list[Path], list[Path]]:
             *((("vary", k, "also", i), other) for i, other in enumerate(entry.also)),
         ):
             path = _steps(pointer, within)
-            if at(question.question.request, path) is None:
+            present = at(question.question.request, path)
+            if present is None:
                 remedy = "what varies has to be in the request of the question"
                 raise InvalidParameter(within, "lead to a value in the request", remedy=remedy)
+            if entry.values is None and isinstance(present, str) and not _is_number(present, question.question.request):
+                remedy = "words vary by values"
+                raise InvalidParameter(within, "lead to a number or a formula in the request", remedy=remedy)
             if any(path[: len(other)] == other or other[: len(path)] == path for other in taken):
                 raise InvalidParameter(within, "vary nothing that another entry varies")
             taken.add(path)
@@ -186,6 +194,15 @@ def _paths(question: StudyRequest) -> tuple[list[Path], list[Path]]:
             raise InvalidParameter(("quantities", k), "name another figure than those before it")
         figures.append(path)
     return inputs, figures
+
+
+def _is_number(text: str, request: Any) -> bool:
+    """Return whether a text is a decimal, or a formula over the names of a request."""
+    try:
+        Formula.read(text, request.get("let") or ())
+    except InvalidParameter:
+        return False
+    return True
 
 
 def _steps(pointer: str, within: Path) -> Path:

@@ -69,7 +69,7 @@ def test_other_errors_are_taken_for_no_method(seed: int) -> None:
     late = right.copy()
     late[50:] += 0.1
     search = MethodSearch(system, times, right)
-    for rows in (noisy, late, right[:, [1, 0, 2]], np.zeros_like(right), 1e200 * right):
+    for rows in (noisy, late, right[:, [1, 0, 2]], np.zeros_like(right), 1e200 * right, 1e307 * right):
         assert search.consistent(rows) is None
 
 

@@ -79,6 +79,8 @@ def test_many_numbers_are_changed_together_by_random_signs() -> None:
 def test_settings_and_zeros_are_no_uncertain_data() -> None:
     request = {"times": [1.0], "accuracy": 1e-3, "body": {"moments": [1, 0.0, True], "kind": "x"}, "round": 4}
     assert dict(numbers_of(request)) == {("body", "moments", 0): 1.0}
+    # Where the question is answered, a number that no double is near is refused.
+    assert dict(numbers_of({"mass": 10**400, "length": 2})) == {("length",): 2.0}
 
 
 def test_a_request_is_copied_before_it_is_changed() -> None:

@@ -83,6 +83,7 @@ def test_units_of_other_quantities_are_wrong(given_unit: str, unit: str) -> None
             "s" * 41,
         ),
         *("\u202em", "𝒎", "m^-", "^2", "m//s", "'m'", "m;s", "{m}", "%" * 9, "-", "...", "m^(2^9)", "𝟙"),
+        *("m**9**9**9**9", "kg*9**9**9**9", "((9)^9)^9", "m^9^9", "m ^ 9 ^ 9", "(kg)^9**9"),
     ],
 )
 def test_hostile_texts_are_no_units(hostile: str) -> None:

@@ -153,14 +153,14 @@ def test_pendulum_period_is_the_complete_integral(amplitude: str) -> None:
 
 
 @pytest.mark.parametrize("length", ["1e-3", "1", "1e-150"])
-def test_pendulum_in_the_strongest_gravity_that_doubles_hold(length: str) -> None:
+def test_pendulum_in_the_strongest_gravity_that_is_read(length: str) -> None:
     scene = {
-        "gravity": [0, -1e308],
+        "gravity": [0, -1e300],
         "bodies": {"bob": {"mass": 1, "at": [length, 0]}},
         "connections": [{"kind": "rod", "a": "bob", "b": [0, 0]}],
     }
     with mpmath.workdps(50):
-        period = 4 * mpmath.ellipk(mpmath.mpf(1) / 2) * mpmath.sqrt(mpmath.mpf(length) / mpmath.mpf(10) ** 308)
+        period = 4 * mpmath.ellipk(mpmath.mpf(1) / 2) * mpmath.sqrt(mpmath.mpf(length) / mpmath.mpf(10) ** 300)
     found = solve_scene(read(scene)).period
     assert found == pytest.approx(float(period), rel=1e-15, abs=0)
     with pytest.raises(NotApplicable, match="leaves the range of doubles"):

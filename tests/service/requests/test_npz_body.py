@@ -112,8 +112,16 @@ def test_times_that_are_no_times_are_refused_with_a_pointer() -> None:
     assert refusal(archive(question, t=np.zeros((2, 2))), reader) == ("invalid-parameter", "/times/0")
 
 
+def test_an_array_that_the_document_does_not_name_is_refused() -> None:
+    code, detail = refusal(archive({"body": BODY}, body__positions=POINTS, unused=POINTS))
+    assert code == "invalid-archive"
+    assert "'unused'" in detail
+
+
 def test_a_reference_to_nothing_is_no_array() -> None:
-    assert refusal(archive({"body": BODY}))[1] == "/body/positions"
+    with pytest.raises(Refusal, match=r"body/positions\.npy") as missing:
+        READER.read(archive({"body": BODY}), npz=True)
+    assert missing.value.problem.faults[0].pointer == "/body/positions"
     plain = json.dumps({"body": BODY}).encode()
     with pytest.raises(Refusal) as caught:
         READER.read(plain)

@@ -30,13 +30,24 @@ def exactly(value: Any) -> Any:
         return arb(fmpq(fraction.numerator, fraction.denominator))
 
 
-@given(st.floats(allow_nan=False, allow_infinity=False, min_value=-1e300, max_value=1e300))
+READ = st.just(0.0) | st.floats(1e-300, 1e300) | st.floats(-1e300, -1e-300)
+
+
+@given(READ)
 def test_a_double_is_its_shortest_decimal(number: float) -> None:
     assert ball(number).overlaps(exactly(repr(number)))
     assert float(ball(number)) == number
     assert ball(number, numbers="doubles") == Fraction(number) or ball(number, numbers="doubles").overlaps(
         exactly(number)
     )
+
+
+@pytest.mark.parametrize(
+    "number", [1.1e300, -1e301, 9e-301, 5e-324, "1e200*1e101", "1e-150^3", 10**301, Decimal("1e-301")]
+)
+def test_numbers_near_and_beyond_the_ends_of_the_doubles_are_refused(number: Any) -> None:
+    with pytest.raises(InvalidParameter, match="between 1e-300 and 1e300"):
+        ball(number)
 
 
 def test_tenths_add_up() -> None:

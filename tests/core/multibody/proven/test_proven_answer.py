@@ -175,6 +175,10 @@ def test_what_cannot_be_proven_is_refused_with_a_remedy() -> None:
     with pytest.raises(BudgetExceeded) as late:
         asked(SWING, 20, ["1e5"])
     assert late.value.path == ("times",)
+    for times, more in ((["1e400"], {}), (["0", "-1e301"], {}), ([], {"outputs": ("trajectory",)})):
+        with pytest.raises(InvalidParameter) as fault:
+            asked(SWING, 20, times, **more)
+        assert fault.value.path == ("times",)
     with pytest.raises(InvalidParameter):
         asked(SWING, 15)
 

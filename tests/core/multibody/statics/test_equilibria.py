@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -61,6 +62,25 @@ def test_double_pendulum_has_four_equilibria_and_known_modes() -> None:
     expected = [math.sqrt(9.81 * (2 - math.sqrt(2))), math.sqrt(9.81 * (2 + math.sqrt(2)))]
     assert [mode[0] for mode in found[0].modes] == pytest.approx(expected, rel=1e-13)
     assert max(e.residual for e in found) < 1e-14
+
+
+@pytest.mark.parametrize(("upper", "lower"), [("1", "1"), ("1e16", "1"), ("1", "1e12"), ("1e-12", "1"), ("1e100", "1")])
+def test_modes_of_a_double_pendulum_of_any_masses(upper: str, lower: str) -> None:
+    """Of M phi'' + K phi = 0 with M = [[m + n, n], [n, n]] and K = g diag(m + n, n), hanging, of lengths 1."""
+    found = solve_scene(read(points((1, 1), ("0.3", "0.2"), (upper, lower))), outputs=("equilibria",)).equilibria
+    assert found is not None
+    with mpmath.workdps(150):
+        share = mpmath.mpf(lower) / (mpmath.mpf(upper) + mpmath.mpf(lower))
+        # det(K - w^2 M) = 0 divided by m + n and by n: (g - w^2)^2 = share w^4.
+        squares = [mpmath.mpf("9.81") / (1 + sign * mpmath.sqrt(share)) for sign in (1, -1)]
+        expected = [float(mpmath.sqrt(square)) for square in squares]
+    assert [mode[0] for mode in found[0].modes] == pytest.approx(expected, rel=1e-11)
+    # Where the fastest mode is a million times the slowest, the sign of the slowest square is not decided.
+    assert found[0].stable is (True if expected[1] < 1e6 * expected[0] else None)
+    assert [one.stable for one in found[1:]] == [False] * 3
+    for name, reach in (("p0", 1.0), ("p1", 2.0)):
+        heights = sorted(abs(one.positions[name][1]) for one in found)
+        assert heights == pytest.approx([1.0] * 4 if name == "p0" else [0.0, 0.0, reach, reach], abs=1e-12)
 
 
 def test_strings_are_taut_in_an_equilibrium() -> None:

@@ -333,11 +333,3 @@ def test_a_length_that_does_not_fit_the_places_is_named(connection: dict[str, An
         solve_scene(read({"gravity": [0, -9.81], "bodies": bodies, "connections": [connection]}), [0.1])
     assert fault.value.path == ("connections", 0, "length")
     assert fault.value.remedy is not None
-
-
-def test_a_mass_below_the_range_of_doubles_does_not_hide_that_a_string_is_slack() -> None:
-    stone = {"mass": "1e-400", "at": [0, -0.5], "velocity": [4, 0]}
-    string = {"kind": "string", "name": "s", "through": ["stone", [0, 0]]}
-    with pytest.raises(NotApplicable, match="range of doubles") as refused:
-        solve_scene(read({"gravity": [0, -9.81], "bodies": {"stone": stone}, "connections": [string]}), [0.6])
-    assert refused.value.path == ("bodies",)

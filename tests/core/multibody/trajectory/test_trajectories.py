@@ -69,20 +69,21 @@ def test_rounding_beyond_the_accuracy_is_reported() -> None:
     assert warning.code == "rounded-beyond-accuracy"
 
 
-def thrown(mass: float | str, strings: int) -> dict[str, Any]:
+def thrown(mass: float | str, strings: int, faster: str = "1") -> dict[str, Any]:
     """Return a bob that is too slow for the top of its circle, on strings between the same ends."""
     return {
-        "gravity": [0, -9.81],
-        "bodies": {"bob": {"mass": mass, "at": [0, -1], "velocity": [6, 0]}},
+        "gravity": [0, f"-9.81*{faster}^2"],
+        "bodies": {"bob": {"mass": mass, "at": [0, -1], "velocity": [f"6*{faster}", 0]}},
         "connections": [{"kind": "string", "name": f"s{i}", "through": ["bob", [0, 0]]} for i in range(strings)],
     }
 
 
 def test_a_string_whose_force_leaves_the_doubles_is_not_said_to_stay_taut() -> None:
-    """At any mass it becomes slack after 0.48 s; in doubles the tension of this one is infinite."""
+    """At any mass it becomes slack after 0.48 s; in doubles the tension of these is infinite, or zero."""
     assert solve_scene(read(thrown("1e300", 1)), [0, 2]).events[0].kind == "slack"
-    with pytest.raises(NotApplicable, match="whether it stays positive"):
-        solve_scene(read(thrown("1e308", 1)), [0, 2])
+    for mass, faster in (("1e300", "1e5"), ("1e-300", "1e-15")):
+        with pytest.raises(NotApplicable, match="whether it stays positive"):
+            solve_scene(read(thrown(mass, 1, faster)), [0, 2 / float(faster)])
 
 
 def test_forces_that_are_not_determined_are_said_not_to_be_watched() -> None:
@@ -91,8 +92,8 @@ def test_forces_that_are_not_determined_are_said_not_to_be_watched() -> None:
 
 
 def test_a_phase_shorter_than_the_least_double_is_no_failure() -> None:
-    """With this friction, of which the exact value is used, it stops after 1e-410 s."""
-    contact = {"kind": "contact", "name": "c", "place": "b", "on": {"at": [0, 0]}, "friction": "1e400"}
-    bodies = {"b": {"mass": 1, "at": [0, 0], "velocity": ["1e-9", 0]}}
+    """With this friction it stops after 1e-401 s."""
+    contact = {"kind": "contact", "name": "c", "place": "b", "on": {"at": [0, 0]}, "friction": "1e300"}
+    bodies = {"b": {"mass": 1, "at": [0, 0], "velocity": ["1e-100", 0]}}
     with pytest.raises(MechanicsError, match="range of doubles"):
         solve_scene(read({"gravity": [0, -9.81], "bodies": bodies, "connections": [contact]}), [0, 1])
