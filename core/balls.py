@@ -1,4 +1,4 @@
-"""The working precision of ball arithmetic, which the library holds once per process, and the lock that protects it.
+"""The working precision of ball arithmetic, which the library holds once per process; balls in words.
 
 References
 ----------
@@ -10,13 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import isfinite
 from threading import RLock
 
-from flint import ctx
+from flint import arb, ctx
 
 
 class Undetermined(ArithmeticError):
     """An enclosure is too wide for a decision or a digit; a higher precision makes it narrower."""
+
+
+def as_text(ball: arb, digits: int) -> str:
+    """Return the middle of a ball as text; also beyond the range of doubles, where it is written with all digits."""
+    value = float(ball.mid())
+    plain = isfinite(value) and (value != 0.0 or ball.mid() == 0)
+    return f"{value:.{digits}g}" if plain else str(ball.mid().str(digits, radius=False))
 
 
 # Held while the precision is changed, so that no thread computes at the precision of another.

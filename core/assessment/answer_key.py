@@ -220,12 +220,8 @@ class AnswerKey:
         return self._figures.get((path, None))
 
     def figures_in(self, path: Path) -> list[str]:
-        """Return the fields of the object at a path that hold one value or null."""
-        return [
-            str(place[-1])
-            for (place, times), reference in self._figures.items()
-            if times is None and place[:-1] == path and not isinstance(reference.value, np.ndarray)
-        ]
+        """Return the fields of the object at a path that are figures."""
+        return sorted(str(place[-1]) for place, times in self._figures if times is None and place[:-1] == path)
 
     def samples(self, path: Path, times: Floats) -> Reference | None:
         """Return a column of samples at other times.

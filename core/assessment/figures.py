@@ -76,8 +76,8 @@ def inside(found: Any, step: str | int) -> Any:
     return None
 
 
-def single_values(answer: Any, path: Path) -> list[str]:
-    """Return the fields of the object at a path that hold one value or null; none where no object is."""
+def figures_within(answer: Any, path: Path) -> list[str]:
+    """Return the fields of the object at a path that are figures, null ones last; none where no object is."""
     found = answer
     for step in path:
         found = inside(found, step)
@@ -87,7 +87,12 @@ def single_values(answer: Any, path: Path) -> list[str]:
         found = vars(found)
     if not isinstance(found, Mapping):
         return []
-    return [str(name) for name, entry in found.items() if isinstance(entry, _ONE_VALUE) and str(name)[:1] != "_"]
+    figures = {
+        str(name): entry
+        for name, entry in found.items()
+        if isinstance(entry, (*_ONE_VALUE, list, tuple, np.ndarray)) and str(name)[:1] != "_"
+    }
+    return sorted(figures, key=lambda name: (figures[name] is None, name))
 
 
 def is_null(answer: Any, path: Path) -> bool:

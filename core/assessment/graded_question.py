@@ -17,11 +17,11 @@ from core.assessment.curves import dense
 from core.assessment.figures import (
     DESCRIBED,
     equal_moments,
+    figures_within,
     form_of,
     inside,
     is_null,
     names_of,
-    single_values,
     value_at,
 )
 from core.assessment.formula_variations import VARIATIONS, Parameters, Variation, Varied, drawn, tied_numbers
@@ -118,8 +118,8 @@ class GradedQuestion:
         return self._references[path]
 
     def figures_in(self, path: Path) -> list[str]:
-        """Return the fields of the object at a path of the answer that hold one value or null."""
-        return single_values(self.answer, path)
+        """Return the fields of the object at a path of the answer that are figures, null ones last."""
+        return figures_within(self.answer, path)
 
     def samples(self, path: Path, times: Floats) -> Reference | None:
         """Return a column of samples at other times, None if the path leads to no column.

@@ -65,7 +65,7 @@ class Question(Protocol):
         """Return the reference at a path of the answer, None if nothing that can be compared stands there."""
 
     def figures_in(self, path: Path) -> Sequence[str]:
-        """Return the fields of the object at a path of the answer that hold one value or null."""
+        """Return the fields of the object at a path of the answer that are figures, null ones last."""
 
     def samples(self, path: Path, times: Floats) -> Reference | None:
         """Return a column of samples at other times, None if the path leads to no column."""
@@ -244,7 +244,7 @@ class Grader:
 
     def _deeper(self, path: Path) -> str | None:
         """Return the remedy of a pointer that stops at an object: the figure that stands in it, or those that do."""
-        names = sorted(self._question.figures_in(path))
+        names = self._question.figures_in(path)
         names = ["value"] if "value" in names else names[:MOST_NAMED]
         pointers = [pointer_of((*path, name)) for name in names]
         return f"an object stands there; name its figure: {' or '.join(pointers)}" if pointers else None

@@ -26,6 +26,8 @@ IMPORT = 1_000_000
 _PLAIN = re.compile(r"[\w°%µμ·*/^()²³⁻¹. +-]+")
 _POWER = re.compile(r"(?<=[\w)°%µμ])\s*(?:\^|\*\*)\s*(?:-?[1-9]|\(-?[1-9]\))(?!\s*(?:\d|\.|\^|\*\*))")
 _NUMBER = re.compile(r"(?<![A-Za-z_])\d")
+_IN_FULL = re.compile(r"[A-Z][a-z]{3,}")
+_MILLISECOND = re.compile(r"(?<![A-Za-z])ms(?![A-Za-z])")
 _RECIPROCAL = re.compile(r"\s*1\s*/")
 _FACTOR = re.compile(r"([*/]?)([A-Za-z]+)(?:\^(-?\d))?")
 _DERIVED = {
@@ -111,6 +113,14 @@ def _registry() -> Any:
     return registry
 
 
+def _parsed(registry: Any, given: str) -> Any:
+    """Return a unit; names in full may begin with a capital letter, as some of those do after whom they are called."""
+    try:
+        return registry.parse_units(given)
+    except Exception:
+        return registry.parse_units(_IN_FULL.sub(lambda name: name[0].lower(), given))
+
+
 def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     registry, remedy = _registry(), "the quantity is a pure number" if unit == "1" else f"the quantity is in {unit}"
     # A text that is none of a unit's is not given to the parser, and numbers are nothing but powers of one digit: the
@@ -118,7 +128,7 @@ def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     if not _PLAIN.fullmatch(given) or _NUMBER.search(_POWER.sub("", _RECIPROCAL.sub("/", given, count=1))):
         return "be a product of powers of units", remedy
     try:
-        parsed = registry.parse_units(given)
+        parsed = _parsed(registry, given)
         quantity = registry.Quantity(1.0, parsed)
         reference = registry.parse_units("" if unit == "1" else unit)
     except Exception:
@@ -127,6 +137,8 @@ def _by_pint(given: str, unit: str) -> float | tuple[str, str]:
     powers = dict(quantity.unit_items())
     angular = any(name.endswith(_ANGLES) for name in powers)
     if parsed.dimensionality != reference.dimensionality or (unit == "1" and angular):
+        if _MILLISECOND.search(given) and {"m", "s"} <= set(re.findall("[a-z]+", unit)):
+            remedy += "; ms is a millisecond, and metres times seconds are m s"
         return "measure the same kind of quantity", remedy
     try:
         value = float(quantity.to(reference).magnitude)

@@ -6,7 +6,7 @@ core builds exact objects from what was given, and checks meaning.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
@@ -21,7 +21,7 @@ from core.certified.decimals import FEWEST_DIGITS, MOST_DIGITS
 from core.certified.exact_bodies import UNIFORM, exact_body
 from core.certified.exact_inputs import LONGEST_NUMERAL, NUMERAL, evenly_spaced, exact, exact_numbers
 from core.certified.exact_mass import ExactMass
-from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
+from core.errors import BudgetExceeded, InvalidParameter, NotApplicable, Path
 from core.quantities import Quantity, TaggedBy
 from core.rows import Rows
 from service.schemas import ObjectOrArray, Request
@@ -168,6 +168,18 @@ class DecimalSpan(Request):
 
 DecimalTimes = Annotated[DecimalSpan | Annotated[list[DecimalTime], Field(min_length=1)], ObjectOrArray()]
 """Times from the given state, of either sign, in any order."""
+
+
+def inexact_doubles(value: Any, path: Path = ()) -> Iterator[Path]:
+    """Yield the places of the JSON numbers of a question that, as doubles, are not the decimals that they read as."""
+    if isinstance(value, BaseModel):
+        for name in value.model_fields_set:
+            yield from inexact_doubles(getattr(value, name), (*path, name))
+    elif isinstance(value, (list, tuple)):
+        for i, entry in enumerate(value):
+            yield from inexact_doubles(entry, (*path, i))
+    elif type(value) is float and Fraction(repr(value)) != Fraction(value):
+        yield path
 
 
 def body_of(body: BaseModel) -> ExactMass:

@@ -3,9 +3,9 @@
 from threading import Thread
 
 import pytest
-from flint import ctx
+from flint import arb, ctx
 
-from core.balls import precision
+from core.balls import as_text, precision
 
 
 def test_precision_is_put_back() -> None:
@@ -36,3 +36,12 @@ def test_another_thread_waits() -> None:
         assert ctx.prec == 400
     other.join()
     assert seen == [200]
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [("0.25", "0.25"), ("0", "0"), ("-1234.5", "-1.23e+03"), ("2e400", "2.00e+400"), ("3e-400", "3.00e-400")],
+)
+def test_balls_as_text(number: str, text: str) -> None:
+    with precision(400):
+        assert as_text(arb(number), 3) == text

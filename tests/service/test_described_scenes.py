@@ -195,6 +195,19 @@ HOSTILE: dict[str, tuple[Any, str]] = {
     "a time that is no number": (PENDULUM | {"times": [0, None]}, "/times/1"),
     "too many samples": (PENDULUM | {"times": {"start": 0, "stop": 1, "count": 10**9}}, "/times/count"),
     "an unknown output": (PENDULUM | {"outputs": ["everything"]}, "/outputs/0"),
+    "a wheel without sides": (
+        PENDULUM
+        | {
+            "bodies": {
+                "p": POINT,
+                "q": POINT | {"at": [1, -4]},
+                "w": {"mass": 1, "inertia": 1, "radius": 1, "at": [2, 0]},
+            },
+            "connections": [{"kind": "string", "through": ["p", "w", "q"]}],
+        },
+        "/connections/0/sides/w",
+    ),
+    "a mass with its unit": (of_point(mass="1 kg"), "/bodies/p/mass"),
     "an accuracy of two": (PENDULUM | {"accuracy": 2}, "/accuracy"),
     "a trajectory without times": (PENDULUM | {"outputs": ["trajectory"]}, "/times"),
     "work without times": (PENDULUM | {"outputs": ["work-in-time"]}, "/times"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from core.balls import as_text
 from core.errors import InvalidParameter
 from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import rate_along
@@ -54,7 +55,7 @@ def assemble_contacts(base: Described) -> ContactStart:
         elif gap < 0:
             raise InvalidParameter(
                 paths.get(one.name.split(".")[0], ()),
-                f'start with what cannot overlap apart: "{one.name}" is missed by {float(-gap):.3g}',
+                f'start with what cannot overlap apart: "{one.name}" is missed by {as_text(-gap, 3)}',
                 remedy="move the bodies apart",
             )
     rows = [Row.held(unilateral[i].name, unilateral[i].gap) for i in touching]

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from flint import arb, arb_mat
 
+from core.balls import as_text
 from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, evaluated, is_zero, size
 from core.multibody.algebra.rank import Elimination, Line, independent
@@ -39,8 +40,8 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
         if not abs(residual) < CLOSE * scale:
             raise InvalidParameter(
                 paths.get(row.name, ()),
-                f'agree with the positions: "{row.name}" misses them by {float(abs(residual)):.3g}'
-                f" ({float(abs(residual) / scale):.2g} of its terms)",
+                f'agree with the positions: "{row.name}" misses them by {as_text(abs(residual), 3)}'
+                f" ({as_text(abs(residual) / scale, 2)} of its terms)",
                 remedy="move the bodies so that what is connected meets",
             )
         if row.name not in moved:
@@ -119,16 +120,19 @@ def assemble_rates(
             raise InvalidParameter(
                 paths.get(row.name, ()), f'agree with the other connections: the rates that "{row.name}" holds do not'
             )
-    scale = max((float(abs(entry.value)) for entry in given), default=0.0)
+    # In balls: rates may be beyond the range of doubles.
+    scale = ZERO
+    for entry in given:
+        scale = scale.max(abs(entry.value))
     for entry in given:
         left = elimination.add(entry.line, entry.value)
         if left is None or is_zero(left):
             continue
-        if not float(abs(left)) <= CLOSE_RATE * scale:
+        if not abs(left.mid()) <= CLOSE_RATE * scale:
             follows = entry.value - left
             raise InvalidParameter(
                 entry.path,
-                f"agree with the connections and the velocities before it, from which {float(follows):.10g} follows",
+                f"agree with the connections and the velocities before it, from which {as_text(follows, 10)} follows",
                 remedy="leave it out, or change what it contradicts",
             )
         noticed.append("/".join(map(str, entry.path)))

@@ -134,7 +134,8 @@ class Numerals:
         try:
             found = Formula.read(text, self.let).value(self.let, BALLS)
         except InvalidParameter as fault:
-            raise fault.inside(*path) from None
+            remedy = fault.remedy or 'write a formula such as "sqrt(2)/2", in SI units and without a unit'
+            raise InvalidParameter((*path, *fault.path), fault.rule, remedy=remedy) from None
         if not found.is_finite():
             raise InvalidParameter(path, "be finite")
         return found

@@ -86,36 +86,41 @@ class ProvenSeries:
             # Steps may become longer, but where twice as many are needed they do not become long enough.
             least = float(waiting[-1][0] - start) / (2 * self.most - steps)
             h, tail = self._tail(q, v, series, order, way, least)
+            if not tail:
+                # Later steps are shorter, the more so the more digits are lost on the way.
+                reach = float(start) + 0.25 * float(h) * (self.most - steps)
+                raise self._too_long(reach, float(waiting[-1][0]), self.most)
             steps += 1
             if steps > self.most:
-                raise self._too_long()
+                raise self._too_long(float(start), float(waiting[-1][0]), steps)
             while waiting and not waiting[0][0] > start + h:
                 time, k = waiting.pop(0)
                 found[k] = ProvenStep(*_at(series, tail, way * (time - start), order), path)
             q, v = _at(series, tail, way * h, order)
             start, path = start + h, [*path, q]
 
-    def _too_long(self) -> BudgetExceeded:
-        remedy = "ask for earlier times, or for an answer that is measured against pairs: POST /v1/scenes"
-        return BudgetExceeded("proven steps", 2 * self.most, self.most, path=("times",), remedy=remedy)
+    def _too_long(self, reach: float, end: float, steps: int) -> BudgetExceeded:
+        """Return the refusal of a motion of which so many steps reach to about some time (s) before its end."""
+        remedy = (
+            f"ask for times up to about {reach:.2g} s, or for an answer that is measured against pairs: POST /v1/scenes"
+        )
+        needed = math.ceil(steps * end / reach) if reach > 0.0 else math.inf
+        return BudgetExceeded("proven steps", max(needed, self.most + 1), self.most, path=("times",), remedy=remedy)
 
     def _tail(
         self, q: Vector, v: Vector, series: list[Vector], order: int, way: int, least: float
     ) -> tuple[Ball, list[Vector]]:
         """Return the length of a step, a double, and the coefficients of the order left out over all of it.
 
-        Raises
-        ------
-        BudgetExceeded
-            If the step is shorter than `least`.
+        There are none if the step is shorter than `least`.
         """
         small = arb(2) ** (_SPARE - ctx.prec)
         size = max((float(abs(x).upper()) for x in (*q, *v)), default=0.0) or 1.0
         last = max((float(abs(x[order]).upper()) for x in series), default=0.0)
         h = float((small * size / last) ** (arb(1) / order)) if last > 0.0 else 1e3
         for _ in range(_HALVINGS):
-            if not least <= h < math.inf:
-                raise self._too_long()
+            if not 0.0 < h < math.inf:
+                return arb(0), []
             step = arb(h)
             box = self._box(q, v, step * way)
             if box is not None:
@@ -125,7 +130,7 @@ class ProvenSeries:
                     tail = []
                 left = [x[order + 1] * step ** (order + 1) for x in tail]
                 if tail and all(float(abs(x).upper()) <= 64 * size * float(small) for x in left):
-                    return step, tail
+                    return step, tail if h >= least else []
             h = float(f"{0.7 * h:.3g}")
         raise Undetermined
 

@@ -133,12 +133,16 @@ def _knots(measures: Measures, connection: Any, path: Path) -> list[Knot]:
 
 
 def _sides(value: Any, count: int, path: Path) -> list[str | None]:
+    rule = f"be {'a side' if count == 1 else 'two sides'} out of {', '.join(SIDES)}"
+    if value is None:
+        remedy = "where the string touches the drum, as seen from its centre, where it comes and where it leaves"
+        raise InvalidParameter(path, f"be given, and {rule}", remedy=remedy)
     listed = [value] if isinstance(value, str) else value
     if isinstance(listed, Mapping) or not isinstance(listed, Sequence) or len(listed) != count:
-        raise InvalidParameter(path, f"be {'a side' if count == 1 else 'two sides'} out of {', '.join(SIDES)}")
+        raise InvalidParameter(path, rule)
     for side in listed:
         if not isinstance(side, str) or side not in SIDES:
-            raise InvalidParameter(path, f"be {'a side' if count == 1 else 'two sides'} out of {', '.join(SIDES)}")
+            raise InvalidParameter(path, rule)
     return list(listed)
 
 

@@ -94,7 +94,7 @@ def require_reached(columns: Mapping[str, Column], accuracy: float, *, before: f
             accuracy,
             reached,
             "rounding is amplified, by the motion or by what is computed of it in doubles",
-            remedy="ask for a shorter time or a larger accuracy"
-            if before is None
-            else f"ask for times before {before:.6g} s, or for a larger accuracy",
+            remedy="ask for "
+            + ("a shorter time" if before is None else f"times before {before:.6g} s")
+            + (" or a larger accuracy" if reached < 1.0 else ""),
         )

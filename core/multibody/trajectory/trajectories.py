@@ -198,8 +198,21 @@ class DescribedSystem:
         sums = Along(self.whole, times, self.how, finer=self.finer)
         columns |= sums.works() if "work-in-time" in self.outputs else {}
         columns |= sums.paths() if "paths-in-time" in self.outputs else {}
-        require_reached(columns, accuracy)
+        lost = worst(columns) > accuracy
+        require_reached(columns, accuracy, before=self._reached_until(times, accuracy) if lost else None)
         return columns
+
+    def _reached_until(self, times: Floats, accuracy: float) -> float | None:
+        """Return the time before which the accuracy is reached, None if that is at none of the times or of one sign."""
+        order = np.argsort(np.abs(times))
+        if len(times) < 2 or np.min(times) < 0.0:
+            return None
+        reached, lost = 0, len(times)
+        while lost - reached > 1:
+            middle = (reached + lost) // 2
+            known = worst(self._columns(times[order[:middle]], finer=self.finer)) <= accuracy
+            reached, lost = (middle, lost) if known else (reached, middle)
+        return float(times[order[reached]]) if reached and times[order[reached - 1]] > 0.0 else None
 
     def _is_known(self, times: Floats, accuracy: float) -> bool:
         """Return whether the motion itself reaches an accuracy, so that only what doubles make of it does not.

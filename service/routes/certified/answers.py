@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from itertools import islice
 from typing import Any, Literal
 
 from pydantic import Field
@@ -12,6 +13,8 @@ from pydantic import Field
 from core.certified.decimals import decimal_of_fraction
 from core.certified.exact_mass import ExactMass
 from core.notices import Notice
+from core.systems.budget import Budget
+from service.requests.decimal_models import inexact_doubles
 from service.routing import Answer, PostRoute
 from service.schemas import DecimalString, Envelope, Ratio, View
 
@@ -44,7 +47,10 @@ class Certified(Envelope):
     accuracy: CertifiedAccuracy
 
 
-def certified_route(route: PostRoute, **own: Any) -> PostRoute:
+Handler = Callable[[Any, Budget], Answer]
+
+
+def certified_route(route: PostRoute, handle: Handler, *, description: str = "", **own: Any) -> PostRoute:
     """Return the route of the certified form of a question; `own` are the other fields of a `PostRoute`."""
     summary = f"{route.summary}; every digit proven"
     only_here = {
@@ -57,16 +63,36 @@ def certified_route(route: PostRoute, **own: Any) -> PostRoute:
         "certified_" + route.operation_id,
         summary,
         "certified",
+        handle=_saying_what_was_read(handle),
         **own,
-        description=DESCRIPTION,
+        description=f"{COMPUTED} {description or EXACTLY_AS_READ}",
         elsewhere=only_here,
     )
 
 
-DESCRIPTION = (
-    "Computed in ball arithmetic: every number of the answer is a decimal string of so many proven digits. "
-    'Numbers of the question are exact: JSON numbers are doubles, and decimal strings mean what they say ("0.1").'
+COMPUTED = "Computed in ball arithmetic: every number of the answer is a decimal string of so many proven digits."
+
+EXACTLY_AS_READ = (
+    "Numbers of the question are exact: decimal strings mean what they say, and JSON numbers are the doubles next to "
+    'them. "0.1" is not 0.1, which the answer warns of.'
 )
+
+
+def _saying_what_was_read(handle: Handler) -> Handler:
+    """Return a handler that warns of JSON numbers whose decimals no double has."""
+
+    def warning(question: Any, budget: Budget) -> Answer:
+        answer = handle(question, budget)
+        places = list(islice(inexact_doubles(question), 1))
+        if not places:
+            return answer
+        detail = (
+            "JSON numbers are read as doubles, and this one is not the decimal that is written: give decimals in "
+            "quotes where all the digits count"
+        )
+        return answer | {"warnings": [*answer.get("warnings", ()), Notice("read-as-double", detail, places[0])]}
+
+    return warning
 
 
 def naming_certified(route: PostRoute, paths: Iterable[str]) -> PostRoute:

@@ -135,6 +135,8 @@ CERTIFIED_DESCRIBED = certified_route(
     question=CertifiedSceneRequest,
     answer=CertifiedDescribedAnswer,
     handle=answer_certified_scene,
+    description="Numbers of the description are the decimals that are written, unless `numbers` says otherwise; JSON "
+    "numbers among the times are doubles, and decimal strings mean what they say.",
     price=certified_scene_cost,
     planning_probe=certified_scene_probe,
     representations={SVG: draw_described},

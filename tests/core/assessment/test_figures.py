@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from core.assessment.figures import equal_moments, form_of, is_null, names_of, single_values, steps_of, value_at
+from core.assessment.figures import equal_moments, figures_within, form_of, is_null, names_of, steps_of, value_at
 from core.errors import InvalidParameter, Path
 
 
@@ -129,10 +129,10 @@ def test_numbers_that_share_a_name_have_the_fields_around_them() -> None:
     )
 
 
-def test_the_single_values_of_an_object() -> None:
-    assert single_values(ANSWER, ("rows", 0)) == ["kind", "rate"]
-    assert single_values(ANSWER, ("rows", 1)) == ["kind", "rate"]
-    assert single_values(ANSWER, ("held",)) == ["error"]
-    assert single_values(ANSWER, ("a/b",)) == ["~"]
+def test_the_figures_within_of_an_object() -> None:
+    assert figures_within(ANSWER, ("rows", 0)) == ["kind", "rate"]
+    assert figures_within(ANSWER, ("rows", 1)) == ["kind", "rate"]
+    assert figures_within(ANSWER, ("held",)) == ["error"]
+    assert figures_within(ANSWER, ("a/b",)) == ["~"]
     for path in (("rows",), ("vector",), ("held", "error"), ("nothing", "deeper"), ("rows", 7)):
-        assert single_values(ANSWER, path) == []
+        assert figures_within(ANSWER, path) == []

@@ -93,7 +93,7 @@ def test_when_a_motion_can_be_answered_is_not_said_without_reveal() -> None:
     ("pointer", "remedy"),
     [
         ("/force", "an object stands there; name its figure: /force/value"),
-        ("/mass", "an object stands there; name its figure: /mass/own or /mass/total"),
+        ("/mass", "an object stands there; name its figure: /mass/own or /mass/parts or /mass/total"),
         ("/nothing", None),
         ("/nothing/deeper", None),
         ("/force/parts/5", None),

@@ -41,6 +41,8 @@ KNOWN = [
     ("kg m/s^2", "N", 1.0),
     ("N m s", "kg m^2 s^-1", 1.0),
     ("hours", "s", 3600.0),
+    ("Newton", "kg m s^-2", 1.0),
+    ("Meter/Second", "m s^-1", 1.0),
     ("h", "s", 3600.0),
     ("min", "s", 60.0),
     ("ms", "s", 1e-3),
@@ -65,6 +67,15 @@ def test_units_are_what_they_are_defined_to_be(given_unit: str, unit: str, value
 def test_units_of_other_quantities_are_wrong(given_unit: str, unit: str) -> None:
     with pytest.raises(InvalidParameter):
         factor(given_unit, unit)
+
+
+def test_metres_per_second_written_as_milliseconds_are_said_to_be() -> None:
+    with pytest.raises(InvalidParameter) as fault:
+        factor("ms^-2", "m s^-2")
+    assert "ms is a millisecond" in str(fault.value.remedy)
+    with pytest.raises(InvalidParameter) as other:
+        factor("ms", "kg")
+    assert "millisecond" not in str(other.value.remedy)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from typing import Any
 
@@ -175,6 +176,11 @@ def test_what_cannot_be_proven_is_refused_with_a_remedy() -> None:
     with pytest.raises(BudgetExceeded) as late:
         asked(SWING, 20, ["1e5"])
     assert late.value.path == ("times",)
+    # It says how far the steps reach, and there they do.
+    reach = re.search(r"up to about (\S+) s", str(late.value.remedy))
+    assert reach is not None
+    assert late.value.needed > late.value.limit
+    assert asked(SWING, 20, [str(0.9 * float(reach[1]))]).rows == [0]
     for times, more in ((["1e400"], {}), (["0", "-1e301"], {}), ([], {"outputs": ("trajectory",)})):
         with pytest.raises(InvalidParameter) as fault:
             asked(SWING, 20, times, **more)
