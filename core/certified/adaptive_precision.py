@@ -53,7 +53,7 @@ def bits_for(digits: int, magnitude: int = 0) -> int:
 
 
 def until_determined(evaluate: Callable[[], Answer], bits: int) -> Answer:
-    """Evaluate with `bits` of working precision, then with half as many more, and so on, until all digits are determined.
+    """Evaluate with `bits` of working precision, then with half as many more each time, until all is determined.
 
     A decision or a digit that a precision does not determine raises `Undetermined`. For inputs that are doubles or
     decimal strings of bounded length everything is determined well below the limit, unless the question has no answer

@@ -79,7 +79,7 @@ def test_a_bounce_below_what_is_known_of_the_state_is_not_passed_over() -> None:
     times = np.linspace(0.0, 2.0, 41)
     with pytest.raises(AccuracyUnreachable) as refused:
         solve_scene(scene, times, OUTPUTS, 1e-6)
-    before = re.fullmatch(r"ask for times before (.*) s, or for a larger accuracy", refused.value.remedy or "")
+    before = re.fullmatch(r"ask for times before (.*) s or a larger accuracy", refused.value.remedy or "")
     assert before is not None
     answer = solve_scene(scene, times[times < float(before[1])], OUTPUTS, 1e-6)
     assert answer.trajectory is not None
