@@ -35,6 +35,10 @@ SYNONYMS: Mapping[str, tuple[str, ...]] = {
     "discrete-moser-veselov": ("moser-veselov", "dmv", "variational"),
     "dormand-prince-853": ("dop853", "dopri", "dopri8", "dormand-prince", "rk45", "rk8", "ode45"),
     "lsoda": ("odeint", "adams", "bdf"),
+    # Scenes and studies.
+    "bodies": ("bodys", "body", "objects", "masses", "particles"),
+    "connections": ("joints", "constraints", "links", "contacts"),
+    "quantiles": ("median", "percentiles", "quartiles"),
     # Quantities.
     "angular_velocity": ("omega", "w", "omega0", "w0", "spin", "rate", "rates", "angular-rate", "angular-speed"),
     "angular_velocities": ("omegas", "spins", "rates"),

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from core.bodies import Body
 from core.near_names import LONGEST_NAME, plain
 from core.quantities import members_of
+from core.studies.statistics import Statistic
 from core.systems.methods import Method
 from service.requests.suggestions import SYNONYMS, count_in_place_of_step, nearest, nearest_path
 from service.routes import questions
@@ -24,7 +25,7 @@ def test_every_word_stands_for_a_name_that_there_is() -> None:
     fields = {name for route in questions() for name in _names(route.question)}
     outputs = {"time", "apex_tension", "tension", "acceleration", "accelerations"}
     inner = {"density", "moments", "tensor", "radius", "mass", "tolerance", "step"}
-    assert set(SYNONYMS) <= {*KINDS, *fields, *outputs, *inner}
+    assert set(SYNONYMS) <= {*KINDS, *fields, *outputs, *inner, *get_args(Statistic)}
 
 
 def _names(question: object) -> set[str]:
