@@ -42,7 +42,7 @@ def check_looks(count: float, most: int) -> None:
             count,
             most,
             path=("times",),
-            remedy="ask for a shorter time; lengths, gaps or forces may reach zero on the way",
+            remedy="ask for a shorter time; with fewer looks something could be passed over",
         )
 
 

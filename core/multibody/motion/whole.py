@@ -93,8 +93,12 @@ class Whole:
 
     def motion_of(self, coordinates: Sequence[int]) -> Motion | None:
         """Return the motion of the part that these coordinates of the scene follow, None where they stay."""
+        return next(iter(self.motions_of(coordinates)), None)
+
+    def motions_of(self, coordinates: Sequence[int]) -> list[Motion]:
+        """Return the motions of the parts that these coordinates of the scene follow."""
         seen = {key[0] for i in coordinates for key in self.reduced.expressions[i] if key}
-        return next((motion for indices, motion in self.parts if seen & set(indices)), None)
+        return [motion for indices, motion in self.parts if seen & set(indices)]
 
     def states(self, times: Floats, *, finer: bool = False) -> WholeStates:
         """Return the states at times of shape (t,)."""

@@ -26,6 +26,7 @@ from core.multibody.trajectory.occurrences import (
     When,
     brackets,
     component,
+    coordinates_of,
     extremes_on,
     located,
     unknown,
@@ -50,6 +51,10 @@ class SearchInPhases:
     def __init__(self, pieces: Sequence[Stretch], how: How) -> None:
         self.pieces, self.how = pieces, how
 
+    def _followed(self, search: When | ExtremesOf) -> Sequence[int] | None:
+        """Return the coordinates that the quantity follows, None where it may be any."""
+        return coordinates_of(search.quantity, self.pieces[0].phase.models[0].whole.measures.coordinates.frames)
+
     def occurrences(self, search: When, index: int) -> list[Occurrence]:
         """Return the times after the start at which a quantity takes a value."""
         wanted = MOST_FOUND if search.nth is None else search.nth
@@ -64,7 +69,7 @@ class SearchInPhases:
         """Return the least and the largest value."""
         found: list[SceneExtremes] = []
         for piece, sampler in zip(self.pieces, self._samplers(search, index), strict=True):
-            own = extremes_on(piece.grid(), sampler, search.quantity)
+            own = extremes_on(piece.grid(self._followed(search)), sampler, search.quantity)
             times = [nearest(piece.start + arb(t)) for t in (own.least_time, own.largest_time)]
             found.append(replace(own, least_time=times[0], largest_time=times[1]))
         low, high = min(found, key=lambda one: one.least), max(found, key=lambda one: one.largest)
@@ -103,7 +108,7 @@ class SearchInPhases:
     def _taken(self, search: When, samplers: Sequence[Sampler]) -> Iterator[Occurrence]:
         """Yield where the value is taken, in order."""
         for number, (piece, sampler) in enumerate(zip(self.pieces, samplers, strict=True)):
-            grid = piece.grid()
+            grid = piece.grid(self._followed(search))
             if len(grid) < 2:
                 continue
             column = sampler(grid)

@@ -74,11 +74,11 @@ class Stretch:
         phase = replace(self.phase, bounces=None)
         return columns_in(phase, [self.start + float(t) for t in times], self.states(times), how, [group])
 
-    def grid(self) -> Floats:
-        """Return times from zero to the length between which nothing turns twice."""
+    def grid(self, of: Sequence[int] | None = None) -> Floats:
+        """Return times from zero to the length between which nothing turns twice, or only some coordinates."""
         if self.arc is not None:
             return np.linspace(0.0, self.length, 5)
-        return closer_at_ends(watched_times(self.phase.models[0].whole, self.length))
+        return closer_at_ends(watched_times(self.phase.models[0].whole, self.length, of=of))
 
 
 def stretches(motion: PhaseMotion, end: float) -> Iterator[Stretch]:

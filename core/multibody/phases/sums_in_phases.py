@@ -77,8 +77,8 @@ class SumsInPhases:
         sums = {f"{name}.path": self._sum() for name in frames}
         for number, piece in enumerate(self.pieces):
             for name, velocity in velocities_of(frames).items():
-                corners = _reversals(piece, velocity)
-                self._integrate(sums[f"{name}.path"], number, piece, _sized(partial(speed_of, velocity)), corners)
+                speed, of = _sized(partial(speed_of, velocity)), list(frames[name].position)
+                self._integrate(sums[f"{name}.path"], number, piece, speed, _reversals(piece, velocity, of), of)
         return {name: self._column(one, "m") for name, one in sums.items()}
 
     def works(self) -> dict[str, Column]:
@@ -145,7 +145,15 @@ class SumsInPhases:
         one.values[mine], one.errors[mine] = one.carried + values[:-1], one.error + errors[:-1]
         one.add(float(values[-1]), float(errors[-1]))
 
-    def _integrate(self, one: _Sum, number: int, piece: Stretch, function: Power, corners: Floats = _NONE) -> None:
+    def _integrate(
+        self,
+        one: _Sum,
+        number: int,
+        piece: Stretch,
+        function: Power,
+        corners: Floats = _NONE,
+        of: Sequence[int] | None = None,
+    ) -> None:
         mine, times = self._local(number, piece)
 
         def integrand(times: Floats) -> tuple[Floats, Floats, Floats]:
@@ -154,7 +162,7 @@ class SumsInPhases:
             return own, own if states.reference is None else function(states.reference)[0], size
 
         if piece.arc is None:
-            nodes = watched_times(piece.phase.models[0].whole, piece.length, _PARTS)
+            nodes = watched_times(piece.phase.models[0].whole, piece.length, _PARTS, of=of)
         else:
             nodes = np.array([0.0, piece.length])
         values, errors = integrated(integrand, np.concatenate([nodes, corners]), times)
@@ -256,14 +264,14 @@ def _sized(function: Callable[[State], Floats]) -> Power:
     return sized
 
 
-def _reversals(piece: Stretch, velocity: Callable[[State], Floats]) -> Floats:
+def _reversals(piece: Stretch, velocity: Callable[[State], Floats], of: Sequence[int]) -> Floats:
     """Return the times since its start at which a velocity turns against itself in a stretch."""
 
     def followed(times: Floats) -> Floats:
         states = piece.states(times)
         return velocity((states.q, states.v))
 
-    return reversals(followed, piece.grid())
+    return reversals(followed, piece.grid(of))
 
 
 def _nothing(mine: Integers, times: Floats) -> tuple[Integers, Floats, Floats]:

@@ -32,13 +32,15 @@ _PARTS = 8
 State = tuple[Floats, Floats]
 
 
-def watched_times(whole: Whole, end: float, every: int = 1) -> Floats:
+def watched_times(whole: Whole, end: float, every: int = 1, *, of: Sequence[int] | None = None) -> Floats:
     """Return times from zero to `end` so close that nothing turns twice between two of them, whole periods included.
 
     Parameters
     ----------
     every : int, optional
         Of the times that each motion proposes, only each `every`-th is taken.
+    of : sequence of int, optional
+        Coordinates of the scene, if only these are watched.
 
     Raises
     ------
@@ -46,7 +48,8 @@ def watched_times(whole: Whole, end: float, every: int = 1) -> Floats:
         Where they would be too many.
     """
     found = [np.array([0.0, end])]
-    for _, motion in whole.parts:
+    motions = [motion for _, motion in whole.parts] if of is None else whole.motions_of(of)
+    for motion in motions:
         period = None if motion.period is None else float(motion.period)
         if period is None or period >= abs(end):
             found.append(motion.nodes(end)[::every])
@@ -113,19 +116,20 @@ class Along:
     def paths(self) -> dict[str, Column]:
         """Return the lengths of the paths of centres of mass (m)."""
         found = {}
-        for name, velocity in velocities_of(self.whole.measures.coordinates.frames).items():
-            nodes = partial(self._nodes, velocity)
+        frames = self.whole.measures.coordinates.frames
+        for name, velocity in velocities_of(frames).items():
+            nodes = partial(self._nodes, velocity, list(frames[name].position))
             found[f"{name}.path"] = self._integral(partial(speed_of, velocity), nodes, "m")
         return found
 
-    def _nodes(self, velocity: Callable[[State], Floats], end: float) -> Floats:
+    def _nodes(self, velocity: Callable[[State], Floats], of: Sequence[int], end: float) -> Floats:
         """Return times up to `end` between which the length of a velocity is smooth."""
 
         def followed(times: Floats) -> Floats:
             states = self.whole.states(times, finer=self.finer)
             return velocity((states.q, states.v))
 
-        times = watched_times(self.whole, end)
+        times = watched_times(self.whole, end, of=of)
         return np.concatenate([times[::_PARTS], times[-1:], reversals(followed, closer_at_ends(times))])
 
     def _by_potential(self, work: Work) -> Column:

@@ -8,7 +8,7 @@ most once; where a parabola through three values comes near, it is looked at mor
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from core.arrays import Floats
 from core.errors import InvalidParameter, Path
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.motion.whole import Whole
+from core.multibody.table.frames import Frame
 from core.multibody.trajectory.along import period_within, watched_times
 from core.multibody.trajectory.turns import closer_at_ends, dips
 from core.near_names import did_you_mean
@@ -115,11 +116,19 @@ def brackets(grid: Floats, curve: Floats, sampler: Sampler, equals: float, wante
     return crossings
 
 
+def coordinates_of(quantity: str, frames: Mapping[str, Frame]) -> Sequence[int] | None:
+    """Return the coordinates that a quantity follows, None where it may be any: those of a centre of mass are few."""
+    body, _, column = quantity.partition(".")
+    moves = body in frames and column.split(".", 1)[0] in ("position", "velocity")
+    return list(frames[body].position) if moves else None
+
+
 def extremes(whole: Whole, sampler: Sampler, quantity: str, end: float) -> SceneExtremes:
     """Return the least and the largest value between the start and `end`, or of a period that is shorter."""
     period = period_within(whole, end)
     end = end if period is None else float(period)
-    return extremes_on(closer_at_ends(watched_times(whole, end)), sampler, quantity, periodic=period is not None)
+    grid = watched_times(whole, end, of=coordinates_of(quantity, whole.measures.coordinates.frames))
+    return extremes_on(closer_at_ends(grid), sampler, quantity, periodic=period is not None)
 
 
 def extremes_on(grid: Floats, sampler: Sampler, quantity: str, *, periodic: bool = False) -> SceneExtremes:

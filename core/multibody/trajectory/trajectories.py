@@ -30,7 +30,16 @@ from core.multibody.trajectory.columns import COLUMNS_OF_STATES, NEAREST, Column
 from core.multibody.trajectory.events import first_event
 from core.multibody.trajectory.inherited import changes, horizon, looks
 from core.multibody.trajectory.nearest import Nearest
-from core.multibody.trajectory.occurrences import ExtremesOf, Sampler, When, component, extremes, occurrences, unknown
+from core.multibody.trajectory.occurrences import (
+    ExtremesOf,
+    Sampler,
+    When,
+    component,
+    coordinates_of,
+    extremes,
+    occurrences,
+    unknown,
+)
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
@@ -307,7 +316,8 @@ class DescribedSystem:
         with np.errstate(over="ignore", invalid="ignore"):
             for index, output in enumerate(self.outputs):
                 if isinstance(output, When):
-                    grid = watched_times(self.whole, end)
+                    of = coordinates_of(output.quantity, self.whole.measures.coordinates.frames)
+                    grid = watched_times(self.whole, end, of=of)
                     times_found.extend(occurrences(grid, self._sampler(output, index), output))
                 elif isinstance(output, ExtremesOf):
                     ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, end))

@@ -11,6 +11,7 @@ from core.multibody.algebra.polynomials import BITS
 from core.multibody.motion.free_body import FreeBody
 from core.multibody.motion.modelling import modelled
 from core.multibody.solve import solve_scene
+from core.multibody.trajectory.occurrences import ExtremesOf
 from tests.core.multibody.judge import judged, numerical
 from tests.core.multibody.worked_examples import column, read
 
@@ -107,3 +108,18 @@ def test_a_slow_approach_of_many_turns_is_refused_and_no_touch_is_missed():
     assert np.all(column(answer, "b.position").values[:, 2] + 2.0 * (y * z + w * x) > 0.0)
     with pytest.raises(BudgetExceeded, match="looks for events"):
         solve_scene(read(drifting(10_000)), [10_000], ("trajectory",))
+
+
+@pytest.mark.parametrize("horizon", [100.0, 3600.0, 1e5])
+def test_the_path_of_its_centre_is_followed_however_often_it_turns(horizon):
+    """v = (1, 0, 3 - g t): the path is that of a projectile, and the highest place is 9/(2g) above the start."""
+    start = {"at": [0, 0, 1], "velocity": [1, 0, 3], "angular_velocity": [0.1, 10, 0.1]}
+    scene = read({"gravity": [0, 0, -10], "bodies": {"b": {"mass": 1, "moments": [1, 2, 2.5]} | start}})
+    answer = solve_scene(scene, [horizon], ("paths-in-time", ExtremesOf("b.position.z")))
+
+    def length(w):
+        return (w * math.hypot(1.0, w) + math.asinh(w)) / 2.0
+
+    path = answer.trajectory.columns["b.path"]
+    assert path.values[0] == pytest.approx((length(10.0 * horizon - 3.0) + length(3.0)) / 10.0, rel=1e-14)
+    assert answer.extremes[0].largest == pytest.approx(1.45, abs=answer.extremes[0].error)
