@@ -17,6 +17,7 @@ from core.multibody.motion.motion import check_looks
 from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.periods import Periodic
 from core.multibody.motion.turning import Turning
+from core.multibody.motion.vertical_symmetry import Shifted
 from core.multibody.motion.whole import Whole, values
 from core.multibody.phases.taylor_crossings import ORDER
 from core.multibody.phases.tracks import SAFETY_FACTOR
@@ -80,8 +81,10 @@ class Sampled:
         for motion in motions:
             own = motion.nodes(end)
             if own[-1] < end:
-                # It repeats, but for what only winds on.
-                if len(motions) == 1 and not (isinstance(motion, Periodic) and np.any(motion.shift)):
+                # It repeats, unless each period turns it about the vertical, or something only winds on.
+                inner = motion.motion if isinstance(motion, Shifted) else motion
+                winds = isinstance(inner, Periodic) and (inner.winding != 0.0 or bool(np.any(inner.shift)))
+                if len(motions) == 1 and not winds:
                     # Two intervals of the next period, so that what turns where one ends is seen.
                     own = np.append(own, own[-1] + own[1:3])
                     end = min(end, float(own[-1]))
