@@ -56,8 +56,8 @@ class Steady:
         return States(q, v, np.abs(q[..., 0]) * 2.0**-100, np.abs(v[..., 0]) * 2.0**-100)
 
     def nodes(self, end: float) -> Floats:
-        """Return the two ends: no force or length changes."""
-        return np.linspace(0.0, end, 33)
+        """Return eight times to a radian, over one turn or up to `end`."""
+        return np.linspace(0.0, math.copysign(min(abs(end), float(self.period or math.inf)), end), 65)
 
 
 @dataclass(frozen=True)

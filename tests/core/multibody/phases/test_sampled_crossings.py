@@ -40,3 +40,14 @@ def test_a_wall_that_a_swing_in_a_plane_never_reaches_is_looked_for_in_one_perio
     scene = spherical_pendulum((0, 0, 0), "0")
     wall = {"kind": "contact", "name": "w", "place": "b", "on": {"at": [0, 1, 0], "normal": [0, -1, 0]}}
     assert not solve_scene(read(scene | {"connections": [*scene["connections"], wall]}), [1e6]).events
+
+
+@pytest.mark.parametrize("horizon", [1.5, 50.0, 5000.0])
+def test_a_wall_beside_a_conical_pendulum_is_met_in_the_first_turn(horizon: float) -> None:
+    """It circles at 0.6 m with sqrt(10/0.8) rad/s, and the wall is at 0.599 m on the other side."""
+    bob = {"mass": 1, "at": ["0.6", 0, "-0.8"], "velocity": [0, "0.6*sqrt(12.5)", 0]}
+    rod = {"kind": "rod", "a": "b", "b": [0, 0, 0]}
+    wall = {"kind": "contact", "name": "w", "place": "b", "on": {"at": ["-0.599", 0, 0], "normal": [1, 0, 0]}}
+    found = solve_scene(read({"gravity": [0, 0, -10], "bodies": {"b": bob}, "connections": [rod, wall]}), [horizon])
+    right = (np.pi - np.arccos(0.599 / 0.6)) / np.sqrt(12.5)
+    assert found.events[0].time == pytest.approx(right, rel=1e-13)
