@@ -140,8 +140,7 @@ def test_a_path_turns_back_at_the_top_of_every_throw():
     assert found.error < 1e-13
 
 
-@pytest.mark.parametrize("late", [5331460.0, 90634812.0, -5331460.0])
-def test_the_path_of_an_eccentric_orbit_is_that_of_whole_ellipses(late):
+def test_the_path_of_an_eccentric_orbit_is_that_of_whole_ellipses():
     """By complete and incomplete elliptic integrals; at its pericentre it goes 1e-9 m in what rounds the period."""
     scene = read(
         {
@@ -150,13 +149,15 @@ def test_the_path_of_an_eccentric_orbit_is_that_of_whole_ellipses(late):
             "connections": [{"kind": "inverse-square", "a": "p", "b": [0, 0], "strength": 2}],
         }
     )
-    found = column(solve_scene(scene, [late], ["paths-in-time"]), "p.path")
+    times = [5331460.0, 90634812.0, -5331460.0]
+    found = column(solve_scene(scene, times, ["paths-in-time"]), "p.path")
     with mp.workdps(60):
         a = 1 / (2 - mp.mpf("1.9999"))
         e, period = 1 - 1 / a, 2 * mp.pi * mp.sqrt(a**3 / 2)
-        count = mp.floor(abs(late) / period)
-        mean = 2 * mp.pi * (abs(late) / period - count)
-        anomaly = mp.findroot(lambda x: x - e * mp.sin(x) - mean, mp.pi)
         whole = mp.ellipe(e**2)
-        path = a * (4 * count * whole + mp.ellipe(anomaly + mp.pi / 2, e**2) - whole)
-        assert abs(mp.sign(late) * path - mp.mpf(float(found.values[0]))) <= found.error < 1e-8
+        for time, value in zip(times, found.values.tolist(), strict=True):
+            count = mp.floor(abs(time) / period)
+            mean = 2 * mp.pi * (abs(time) / period - count)
+            anomaly = mp.findroot(lambda x, mean=mean: x - e * mp.sin(x) - mean, mp.pi)
+            path = a * (4 * count * whole + mp.ellipe(anomaly + mp.pi / 2, e**2) - whole)
+            assert abs(mp.sign(time) * path - mp.mpf(value)) <= found.error < 1e-8
