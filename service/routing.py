@@ -148,7 +148,7 @@ class PostRoute:
     method: str = "POST"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class StudyRoute(PostRoute):
     """POST of a study: what is answered at once is what the study will be, which then is stored and worked on.
 
@@ -158,7 +158,7 @@ class StudyRoute(PostRoute):
         From question and budget to what answers the study's members.
     """
 
-    members: Callable[[Any, Budget], Any] = free
+    members: Callable[[Any, Budget], Any]
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ def solve_scene(
         Some of `OUTPUTS`, by default `DEFAULT_OUTPUTS`; what is to be searched between the start and the latest time;
         and of which numbers the range is wanted in which the scene stays at rest.
     accuracy : float
-        Largest error of any column, relative to its largest value, that is tolerated.
+        Largest error of any column, relative to the largest value in columns of its unit, that is tolerated.
     method : AbstractMethod, optional
         Computes the motion in place of the smallest model, and is answered whatever its error, with a warning where
         that is larger than the accuracy. Events are those of the motion itself.

@@ -78,7 +78,8 @@ class StartEnergy(View, Generic[N]):
     potential: Joules[N] | None
     total: Joules[N] | None
     conserved: bool = Field(
-        description="Whether nothing works on the scene: until the last time no friction and no impact costs energy."
+        description="Whether nothing works on the scene: no damper, motor or torque in space, and until the last time "
+        "no friction and no impact that costs energy."
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from core.errors import BudgetExceeded
 from core.multibody.answer import RestRange, SceneModel
+from core.multibody.language.scene import check_size
 from core.multibody.motion.generic_equation import weight_of
 from core.multibody.solve import OUTPUTS, solve_scene
 from core.multibody.trajectory.inherited import MOST_INPUTS
@@ -154,6 +155,8 @@ def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:
 
 def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]:
     """Return what is counted of a question; how many steps a motion takes is only known by running it."""
+    # What is refused anyway waits for no compute process.
+    check_size(question.bodies, question.connections)
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
     turning = sum(
         {"inertia", "moments", "tensor", "body"} & body.model_fields_set != set() for body in question.bodies.values()

@@ -78,9 +78,8 @@ class TestNumbers:
     @pytest.mark.parametrize("number", ["1e999", "-1e999", "1e99999999999999999999", "1e-99999999999999999999"])
     async def test_exponents_beyond_all_are_refused(self, number: str) -> None:
         response = await sent(json.dumps(of_point()).replace('"mass": 1', f'"mass": {number}').encode())
-        assert response.status_code == 422 or (number.startswith("1e-") and response.status_code == 200)
-        if response.status_code == 422:
-            assert response.json()["errors"][0]["pointer"].startswith("/bodies/p")
+        assert response.status_code == 422
+        assert response.json()["errors"][0]["pointer"].startswith("/bodies/p")
 
     async def test_angles_and_polar_coordinates(self) -> None:
         """An eighth of a turn below the horizontal: the two components of the acceleration are the same number."""

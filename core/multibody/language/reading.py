@@ -9,7 +9,7 @@ from typing import Any
 from core.errors import InvalidParameter, Path
 from core.multibody.language.connections import KINDS, NOT_YET
 from core.multibody.language.numerals import member
-from core.multibody.language.scene import MOST_BODIES, MOST_CONNECTIONS, Scene, SceneBody
+from core.multibody.language.scene import Scene, SceneBody, check_size
 from core.near_names import did_you_mean
 
 
@@ -24,15 +24,13 @@ def scene_from(description: Any) -> Scene:
     given = _object(description, (), Scene)
     bodies = given.get("bodies")
     if isinstance(bodies, Mapping):
-        if len(bodies) > MOST_BODIES:
-            raise InvalidParameter("bodies", f"have at most {MOST_BODIES} entries, not {len(bodies)}")
+        check_size(bodies, ())
         given["bodies"] = {
             name: SceneBody(**_object(body, member(("bodies",), name), SceneBody)) for name, body in bodies.items()
         }
     connections = given.get("connections", ())
     if isinstance(connections, Sequence) and not isinstance(connections, str):
-        if len(connections) > MOST_CONNECTIONS:
-            raise InvalidParameter("connections", f"have at most {MOST_CONNECTIONS} entries, not {len(connections)}")
+        check_size((), connections)
         given["connections"] = tuple(_connection(entry, ("connections", i)) for i, entry in enumerate(connections))
     return Scene(**given)
 

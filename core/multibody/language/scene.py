@@ -7,7 +7,7 @@ by `core.multibody.language.numerals`; what they mean is checked where the table
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal
@@ -66,6 +66,13 @@ class SceneBody:
     places: Mapping[str, Vector] = field(default_factory=lambda: MappingProxyType({}))
 
 
+def check_size(bodies: Sized, connections: Sized) -> None:
+    """Raise `InvalidParameter` for more bodies or connections than a scene may have."""
+    for name, given, most in (("bodies", bodies, MOST_BODIES), ("connections", connections, MOST_CONNECTIONS)):
+        if len(given) > most:
+            raise InvalidParameter(name, f"have at most {most} entries, not {len(given)}")
+
+
 @dataclass(frozen=True)
 class Scene:
     """Bodies and what connects them.
@@ -91,14 +98,9 @@ class Scene:
     def __post_init__(self) -> None:
         if not isinstance(self.bodies, Mapping) or not self.bodies:
             raise InvalidParameter("bodies", "name at least one body")
-        if len(self.bodies) > MOST_BODIES:
-            raise InvalidParameter("bodies", f"have at most {MOST_BODIES} entries, not {len(self.bodies)}")
         if isinstance(self.connections, (str, Mapping)) or not isinstance(self.connections, Sequence):
             raise InvalidParameter("connections", "be a list")
-        if len(self.connections) > MOST_CONNECTIONS:
-            raise InvalidParameter(
-                "connections", f"have at most {MOST_CONNECTIONS} entries, not {len(self.connections)}"
-            )
+        check_size(self.bodies, self.connections)
         for name, body in self.bodies.items():
             check_name(name, member(("bodies",), name))
             if not isinstance(body, SceneBody):

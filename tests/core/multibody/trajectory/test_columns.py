@@ -7,8 +7,9 @@ import pytest
 
 from core.multibody.solve import solve_scene
 from core.multibody.trajectory.column_errors import worst
+from core.systems.methods import RungeKutta4
 from core.systems.trajectory import Column
-from tests.core.multibody.worked_examples import column, read
+from tests.core.multibody.worked_examples import column, points, read
 
 
 def made(values: list[float], unit: str, error: float) -> Column:
@@ -42,3 +43,26 @@ def test_a_plank_on_two_strings_that_never_turns_is_answered() -> None:
     for name in ("plank.angle", "plank.angular_velocity"):
         found = column(answer, name)
         assert np.abs(found.values).max() <= found.error < 1e-25
+
+
+EVERY_COLUMN = ("trajectory", "energy-in-time", "momenta-in-time", "forces-in-time")
+
+
+@pytest.mark.parametrize("method", [None, RungeKutta4(step=0.0005)], ids=["doubles", "runge-kutta-4"])
+def test_every_error_of_a_chaotic_motion_covers_the_distance_from_the_motion_in_pairs(
+    method: RungeKutta4 | None,
+) -> None:
+    """After 12 s doubles have lost half of their digits, and what is derived of the states as many."""
+    scene, times = read(points((1, 1), ("2", "2.5"), (1, 1))), [5.0, 9.0, 12.0]
+    rough = solve_scene(scene, times, EVERY_COLUMN, 0.1, method=method).trajectory
+    right = solve_scene(scene, times, EVERY_COLUMN, 1e-11).trajectory
+    assert rough is not None
+    assert right is not None
+    assert {"energy.kinetic", "momentum", "p1.angular_momentum", "r1.force"} < set(rough.columns)
+    for name, own in rough.columns.items():
+        other = right.columns[name]
+        distance = np.abs(own.values - other.values)
+        largest = distance.max() if distance.ndim == 1 else np.linalg.norm(distance, axis=1).max()
+        assert other.error < 1e-12, name
+        assert largest > 1e-8, name
+        assert largest <= own.error, name
