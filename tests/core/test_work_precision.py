@@ -102,7 +102,7 @@ def test_failures_are_listed_and_beat_nobody() -> None:
     assert "100000 are allowed" in failed["explicit-euler"].failure
     assert "iterated" in failed["implicit-midpoint"].failure
     assert found.pareto_front == (found.curves[0].measurements[0],)
-    assert found.recommendation.method is None or found.recommendation.method == DormandPrince853(1e-9)
+    assert found.recommendation.method is None
 
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-5, 1e-8, 1e-11])

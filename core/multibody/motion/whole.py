@@ -30,8 +30,11 @@ class WholeStates:
     Attributes
     ----------
     q, v : ndarray, shape (t, n, 2)
+        As pairs of doubles.
     q_error, v_error : ndarray, shape (t, n)
-    reference : tuple of two ndarrays, or None
+        Errors of the values, rounding to doubles apart.
+    reference : tuple of two ndarrays of shape (t, n, 2), or None
+        Coordinates and rates of the run in pairs against which these were measured.
     """
 
     q: Floats
