@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import InvalidParameter, Path
+from core.errors import InvalidParameter, NotApplicable, Path
 from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.motion.whole import Whole
 from core.multibody.table.frames import Frame
@@ -169,6 +169,7 @@ def extremes_on(grid: Floats, sampler: Sampler, quantity: str, *, periodic: bool
     (least, low), (largest, high) = found
     least = -least
     error = sampler(np.array([low, high])).error
+    _require_in_range(quantity, least, largest, error)
     return SceneExtremes(quantity, column.unit, least, low, largest, high, error, float(grid[-1]), periodic)
 
 
@@ -225,7 +226,16 @@ def located(sampler: Sampler, search: When, low: float, high: float, number: int
     known = [2.0 * (2.0 * off / bend) ** 0.5] if bend > 0.0 else []
     error = min([off / slope, *known] if slope > 0.0 else [abs(high), *known])
     error += (high - low) + 2.0**-52 * abs(high)
+    _require_in_range(search.quantity, high, error)
     return Occurrence(search.quantity, search.equals, around.unit, number, float(high), float(error), around.how)
+
+
+def _require_in_range(quantity: str, *numbers: float) -> None:
+    if not np.isfinite(numbers).all():
+        remedy = "ask for a shorter time, or choose units in which the numbers are moderate"
+        raise NotApplicable(
+            f"what is found of {quantity} leaves the range of doubles", path=("outputs",), remedy=remedy
+        )
 
 
 def check_search(search: When | ExtremesOf, index: int) -> None:

@@ -148,3 +148,10 @@ def test_the_highest_of_several_tops_is_found_whichever_sample_is_highest():
     found = extremes_on(np.linspace(0.0, 1.0, 13), sampler, "height")
     assert found.largest == pytest.approx(1.0001, abs=1e-8)
     assert found.largest_time == pytest.approx(0.69, abs=1e-6)
+
+
+@pytest.mark.parametrize("search", [ExtremesOf("energy.kinetic"), When("p.position.x", 1e299)])
+def test_what_is_found_beyond_the_range_of_doubles_is_refused(search: ExtremesOf | When) -> None:
+    scene = {"gravity": [0, "-1e299"], "bodies": {"p": {"mass": 1, "at": [0, 0], "velocity": ["1e299", 0]}}}
+    with pytest.raises(NotApplicable, match="leaves the range of doubles"):
+        solve_scene(read(scene), [2.0], (search,))
