@@ -27,7 +27,7 @@ def test_it_goes_to_an_endpoint_and_is_answered_as_intended(answer_of, name):
     if name in REFUSED:
         assert (answer["code"], answer["errors"][0]["pointer"]) == REFUSED[name]
     else:
-        assert answer["signature"]["source"] == "polhode"
+        assert answer.get("signature", {}).get("source") == "polhode", answer
 
 
 def test_the_script_prints_the_answer(service, monkeypatch, capsys):
