@@ -86,7 +86,8 @@ class StaticEquations:
             r, j = packed.lines_at[e]
             self.slopes[r, j, i] = x
         self._gyration = [(*at, x) for at, x in zip(packed.gyre_at.tolist(), packed.gyre[:, 0], strict=True)]
-        at = np.argwhere(self.slopes)
+        # Where there is one slope only, numpy returns another layout, and kernels would be compiled for that again.
+        at = np.ascontiguousarray(np.argwhere(self.slopes))
         self.arrays = StaticArrays(
             packed.load[:, 0].copy(),
             stiffness,
