@@ -15,6 +15,7 @@ import re
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -116,7 +117,11 @@ class _CheckedCache(_FunctionCache):  # type: ignore[misc]
 
 
 def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
-    """Compile a function to machine code, on import if signatures are given, otherwise at the first call."""
+    """Compile a function to machine code, on import if signatures are given, otherwise at the first call.
+
+    Inside of it arrays are copied entry by entry. For an assignment to a slice, numba compiles the text of its error
+    message, in every process anew: two seconds.
+    """
 
     def compile_it(function: F) -> F:
         compiler: Any = numba.njit
@@ -131,6 +136,26 @@ def kernel(*signatures: object, **options: object) -> Callable[[F], F]:
                 dispatcher.compile(signature)
             dispatcher.disable_compile()
         return cast(F, dispatcher)
+
+    return compile_it
+
+
+def entry(*signatures: object) -> Callable[[F], F]:
+    """Compile a function, which only Python code calls, for arguments of given types, at its first call.
+
+    Without signatures it would be compiled for each function or layout of an array that it is given.
+    """
+
+    def compile_it(function: F) -> F:
+        @cache
+        def compiled() -> F:
+            return kernel(*signatures)(function)
+
+        @wraps(function)
+        def call(*arguments: Any) -> Any:
+            return compiled()(*arguments)
+
+        return cast(F, call)
 
     return compile_it
 

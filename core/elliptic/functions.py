@@ -175,7 +175,7 @@ def separatrix_at(xh: float, xl: float) -> tuple[float, float]:
     return tanh if xh >= 0.0 else -tanh, sech
 
 
-@kernel("void(float64[::1], float64, float64, float64[:, ::1])")
+@kernel()
 def _jacobi(u: NDArray[np.float64], m: float, m1: float, out: NDArray[np.float64]) -> None:
     if m1 == 0.0:
         for i in range(u.size):

@@ -26,7 +26,7 @@ from core.systems.system import DISCRETE_STEP
 ITERATIONS = 50
 
 
-@kernel("boolean(float64[::1], float64[::1], float64[::1])")
+@kernel()
 def _half_turn(moments: Floats, half: Floats, e: Floats) -> bool:
     """Solve r I e + e x I e = `half` for e by Newton's method, from where `e` begins, until rounding stops it."""
     a, b, c = moments[0], moments[1], moments[2]

@@ -15,7 +15,7 @@ import numpy as np
 from numba import types
 
 from core.arrays import Floats
-from core.compiled import kernel
+from core.compiled import entry, kernel
 from core.errors import AccuracyUnreachable, BudgetExceeded, NotApplicable
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod, Integration
@@ -83,7 +83,7 @@ def _norm_of_far(state: Floats, exact: Floats, inverse: float) -> float:
     return most * math.sqrt(norm) if most < math.inf else most
 
 
-@kernel(types.void(_rows, _rows, types.float64, _row, _row, _row))
+@entry(types.void(_rows, _rows, types.float64, _row, _row, _row))
 def _differences(
     states: Floats, reference: Floats, unit: float, errors: Floats, wrong: Floats, magnitudes: Floats
 ) -> None:

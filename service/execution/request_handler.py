@@ -16,6 +16,9 @@ from service.routing import Answer, PostRoute
 from service.schemas import SIGNATURE
 
 
+DESCRIBED_SCENES = "/v1/scenes"
+
+
 class RequestHandler:
     """Reads and answers the questions of routes, within a budget for each and limits on documents."""
 
@@ -36,18 +39,18 @@ class RequestHandler:
         """Return the whole answer: signature, warnings, fields."""
         return signed(route.handle(question, self._budget))
 
-    def warm(self, *, backwards: bool = False) -> None:
+    def warm(self, *, scenes_first: bool = False) -> None:
         """Have every kernel that can be reached compiled or loaded, so that no client waits for that.
 
-        Of two processes that start at the same time on empty caches, one goes backwards: each compiles half of the
-        kernels and loads the other half.
+        Of two processes that start at the same time on empty caches, one begins with the described scenes, the other
+        ends with them: each compiles about half of the kernels and loads the other half.
         """
         asked = [
             (route, question)
             for route in self._routes
             for question in (*(example.question for example in route.examples.values()), *route.warming)
         ]
-        for route, question in reversed(asked) if backwards else asked:
+        for route, question in sorted(asked, key=lambda each: (each[0].path == DESCRIBED_SCENES) != scenes_first):
             self.answer(route, self.read(route, orjson.dumps(question)))
         # Its first use would otherwise import it, and hold up the event loop.
         import_module("scipy.integrate")

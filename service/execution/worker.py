@@ -87,8 +87,8 @@ Work = Callable[[Terms, Task], Any]
 def handler_of(terms: Terms) -> RequestHandler:
     """Return this process's handler of requests, warm; inherited warm if the fork server has made it."""
     made = RequestHandler(_routes(terms.table).values(), terms.budget, terms.limits)
-    # The server process goes forwards at the same time.
-    made.warm(backwards=True)
+    # The server process ends with them at the same time.
+    made.warm(scenes_first=True)
     return made
 
 

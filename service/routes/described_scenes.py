@@ -300,6 +300,11 @@ def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> A
 
 
 HEAVY_BODY = scene_catalogue()["kovalevskaya-top"].question
+BY_METHOD = {
+    **scene_catalogue()["double-pendulum"].question,
+    "times": [0.0, 0.1],
+    "method": {"kind": "explicit-euler", "step": 0.1},
+}
 
 DESCRIBED_SCENES = (
     PostRoute(
@@ -312,8 +317,8 @@ DESCRIBED_SCENES = (
         solved,
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
-        # A heavy body about a point has kernels of its own, one of them for its start alone.
-        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}),
+        # A heavy body about a point has kernels of its own, one of them for its start alone; so has a named method.
+        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, BY_METHOD),
         description=DESCRIPTION,
         representations={SVG: draw_described},
     ),

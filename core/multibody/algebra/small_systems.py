@@ -50,9 +50,10 @@ def solve(system: Floats, x: Floats) -> bool:
     y = x.copy()
     regular = _eliminated(system.copy(), y)
     if not regular:
-        y[:] = x
+        y = x.copy()
         _shortest(system.copy(), y)
-    x[:] = y
+    for i in range(len(x)):
+        x[i] = y[i]
     return not regular
 
 

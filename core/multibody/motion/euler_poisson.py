@@ -248,9 +248,12 @@ def _advance(
         left = (end - clock[0]) - clock[1]
         if left * way <= 0.0:
             return DONE, step
-        c[:, 0] = y
+        for i in range(c.shape[0]):
+            c[i, 0, 0], c[i, 0, 1] = y[i, 0], y[i, 1]
         _coefficients(squares, torque, pull, c)
-        series[step] = c[3:]
+        for i in range(series.shape[1]):
+            for k in range(series.shape[2]):
+                series[step, i, k, 0], series[step, i, k, 1] = c[3 + i, k, 0], c[3 + i, k, 1]
         h = way * step_size(c[:, :, 0], group, tolerance)
         if not abs(h) > SHORTEST * max(1.0, abs(clock[0])):
             return LOST, step

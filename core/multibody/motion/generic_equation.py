@@ -26,7 +26,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import types
 
 from core.arrays import Floats, Integers
 from core.balls import precision
@@ -46,12 +45,7 @@ MOST_CORRECTIONS = 12
 QUADRATIC, ROUNDED = 1e-8, 4e-16
 """Newton's method ends at a correction of which the next one is the square; one of rounding's size changes nothing."""
 
-_row = types.float64[::1]
-_rows = types.float64[:, ::1]
-_integers = types.int64[::1]
-
-
-@kernel(types.boolean(_rows, _integers))
+@kernel()
 def _factor(a: Floats, order: Integers) -> bool:
     """Factor a matrix in place into triangles, rows exchanged by scaled pivots; return whether that is possible."""
     n = a.shape[0]
@@ -85,7 +79,7 @@ def _factor(a: Floats, order: Integers) -> bool:
     return True
 
 
-@kernel(types.void(_rows, _integers, _row, _row))
+@kernel()
 def _solve(a: Floats, order: Integers, right: Floats, found: Floats) -> None:
     """Solve a system whose matrix is factored."""
     n = a.shape[0]
@@ -101,7 +95,7 @@ def _solve(a: Floats, order: Integers, right: Floats, found: Floats) -> None:
         found[i] = total / a[i, i]
 
 
-@kernel(types.boolean(_row, _row, _rows, _integers, _row))
+@kernel()
 def _saddle(table: Floats, q: Floats, a: Floats, order: Integers, lines: Floats) -> bool:
     """Fill in W at a place and the factors of [M -W^T; W 0]; return whether there are any."""
     n, m, entries, slopes = int(table[1]), int(table[2]), int(table[6]), int(table[7])

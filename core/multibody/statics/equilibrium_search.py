@@ -110,7 +110,8 @@ def _begin(arrays: StaticArrays, q: Floats, multipliers: Floats, system: Floats,
             for j in range(n):
                 moved = q[j] + min(1.0, max(-1.0, right[j]))
                 q[j] = moved if np.isfinite(moved) else 0.0
-    multipliers[:] = right[n:]
+    for r in range(len(multipliers)):
+        multipliers[r] = right[n + r]
 
 
 @kernel()
@@ -156,15 +157,18 @@ def _step(arrays: StaticArrays, system: Floats, right: Floats) -> bool:
     for j in range(n):
         largest = _largest(system[j])
         if largest > 0.0:
-            system[j] /= largest
             right[j] /= largest
+            for i in range(n + m):
+                system[j, i] /= largest
     for r in range(m):
         largest = _largest(system[:, n + r])
         if largest > 0.0:
-            system[:, n + r] /= largest
             scales[r] /= largest
+            for j in range(n + m):
+                system[j, n + r] /= largest
     singular = solve(system, right)
-    right[n:] *= scales
+    for r in range(m):
+        right[n + r] *= scales[r]
     return singular
 
 

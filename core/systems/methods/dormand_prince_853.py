@@ -27,7 +27,7 @@ import numpy as np
 from numba import types
 
 from core.arrays import Floats, Integers
-from core.compiled import kernel
+from core.compiled import entry, kernel
 from core.double_double import two_sum
 from core.errors import InvalidParameter
 from core.quantities import Quantity, check
@@ -48,7 +48,7 @@ _row = types.float64[::1]
 _rows = types.float64[:, ::1]
 
 
-@kernel(types.float64(_row))
+@kernel()
 def _largest(vector: Floats) -> float:
     """Return the largest magnitude of any entry, infinity if one is not finite."""
     largest = 0.0
@@ -59,7 +59,7 @@ def _largest(vector: Floats) -> float:
     return largest
 
 
-@kernel(types.float64(_field, _row, _row, types.float64, types.float64, _row, _row, _row))
+@kernel()
 def _first_step(
     field: Any,
     state: Floats,
@@ -86,7 +86,7 @@ def _first_step(
     return math.copysign(min(own * (0.01 * tolerance / max(1.0, bend)) ** 0.125, most), horizon)
 
 
-@kernel(types.void(_field, types.float64, types.float64, _row, _row, _rows, types.int64, types.int64, _row, _row))
+@kernel()
 def _fill_stages(
     field: Any,
     now: float,
@@ -111,7 +111,7 @@ def _fill_stages(
             stages[k, i] = slope[k]
 
 
-@kernel(types.float64(types.float64, _row, _row, _rows, _row, _row))
+@kernel()
 def _advance(step: float, state: Floats, tail: Floats, stages: Floats, new: Floats, new_tail: Floats) -> float:
     """Fill in the state at the end of the step and return the estimated error relative to the largest component."""
     size, fifth, third = 0.0, 0.0, 0.0
@@ -133,7 +133,7 @@ def _advance(step: float, state: Floats, tail: Floats, stages: Floats, new: Floa
     return fifth * (fifth / math.hypot(fifth, 0.1 * third))
 
 
-@kernel(types.void(types.float64, _row, _row, _rows, _rows))
+@kernel()
 def _fit(step: float, state: Floats, new: Floats, stages: Floats, fitted: Floats) -> None:
     """Fill in the coefficients of the interpolant of a step whose sixteen stages are known."""
     for k in range(state.size):
@@ -148,7 +148,7 @@ def _fit(step: float, state: Floats, new: Floats, stages: Floats, fitted: Floats
             fitted[k, 3 + i] = step * total
 
 
-@kernel(
+@entry(
     types.int64(
         _field, _projection, types.boolean, _row, types.float64, _row, _row, types.int64, _rows, types.int64[::1], _row
     ),

@@ -24,7 +24,7 @@ import numpy as np
 from numba import types
 
 from core.arrays import Floats, Integers
-from core.compiled import kernel
+from core.compiled import entry, kernel
 from core.double_double import two_prod
 from core.errors import InvalidParameter
 from core.quantities import Duration
@@ -80,7 +80,7 @@ def _march_by(law: Any) -> Any:
 OVERFLOW, NO_CONVERGENCE, OUT_OF_BUDGET = 1, 2, 3
 
 
-@kernel(types.float64(_doubles, types.float64, types.int64, _table, _table, _counts))
+@kernel()
 def lay_out(targets: Floats, step: float, parts: int, begin: Floats, length: Floats, count: Integers) -> float:
     """Lay out the steps to `targets`, of one sign and growing magnitude, and return their number.
 
@@ -111,7 +111,7 @@ def lay_out(targets: Floats, step: float, parts: int, begin: Floats, length: Flo
     return parts * done + further
 
 
-@kernel(*(_march_by(law) for law in (VECTOR_FIELD, PART_FLOW, DISCRETE_STEP)))
+@entry(*(_march_by(law) for law in (VECTOR_FIELD, PART_FLOW, DISCRETE_STEP)))
 def _march(
     advance: Any,
     law: Any,
@@ -130,12 +130,11 @@ def _march(
     `begin`, `step` and `count`, shape (n, 2), hold for each sample the start, the signed length and the number of two
     runs of steps: along the grid, and from the grid to the sample. The march goes on from the state between the two.
     """
-    grid = np.empty_like(carried)
     for i in range(len(count)):
         tally[3] = advance(law, project, begin[i, 0], step[i, 0], count[i, 0], carried, work, parameters, tally)
         if tally[3]:
             return i
-        grid[:] = carried
+        grid = carried.copy()
         if count[i, 1]:
             tally[3] = advance(law, project, begin[i, 1], step[i, 1], count[i, 1], carried, work, parameters, tally)
             if tally[3]:
@@ -147,7 +146,9 @@ def _march(
         if not finite:
             tally[3] = OVERFLOW
             return i
-        carried[:] = grid
+        for r in range(carried.shape[0]):
+            for k in range(carried.shape[1]):
+                carried[r, k] = grid[r, k]
     return len(count)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numba import types
 
 from core.arrays import Floats
-from core.compiled import kernel
+from core.compiled import entry
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
 from core.systems.budget import Budget
 from core.systems.system import PROJECTION, InitialValueProblem, unconstrained
@@ -112,7 +112,7 @@ class AbstractMethod(ABC):
         return None
 
 
-@kernel(types.void(types.FunctionType(PROJECTION), types.float64[:, ::1], types.float64[::1]))
+@entry(types.void(types.FunctionType(PROJECTION), types.float64[:, ::1], types.float64[::1]))
 def _project(projection: Any, states: Floats, parameters: Floats) -> None:
     """Put samples onto the constraints, which what lies between steps leaves."""
     for s in range(states.shape[0]):

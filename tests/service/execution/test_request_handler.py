@@ -132,14 +132,14 @@ class TestWarm:
 
         examples = {str(k): Example("", GOOD | {"times": [float(k)]}) for k in range(3)}
         one = dataclasses.replace(TOY, handle=noting, examples=examples)
-        two = dataclasses.replace(one, path="/v1/two", examples={"small": Example("", GOOD)})
+        two = dataclasses.replace(one, path="/v1/scenes", examples={"small": Example("", GOOD)})
         answering(one, two).warm()
         assert [question.times for question in seen[:3]] == [[0.0], [1.0], [2.0]]
         assert orjson.loads(seen[3].model_dump_json())["times"] == GOOD["times"]
         assert len(seen) == 4
-        answering(one, two).warm(backwards=True)
+        answering(one, two).warm(scenes_first=True)
         assert seen[4].times == seen[3].times
-        assert [question.times for question in seen[5:]] == [[2.0], [1.0], [0.0]]
+        assert [question.times for question in seen[5:]] == [[0.0], [1.0], [2.0]]
 
     @pytest.mark.parametrize("example", [{}, GOOD | {"behaviour": "fail"}])
     def test_an_example_that_is_not_answered_stops_the_start(self, example: dict[str, Any]) -> None:

@@ -14,6 +14,7 @@ ROOT = Path(__file__).parents[3]
 Kernel = tuple[str, str]
 
 OF_NO_REQUEST = {
+    ("core.elliptic.functions", "_jacobi"),
     ("core.elliptic.integrals", "_carlson_rf"),
     ("core.elliptic.integrals", "_complete_k"),
     ("core.rotation.precession.constants", "angle_per_period"),
@@ -23,7 +24,7 @@ OF_NO_REQUEST = {
 
 def is_kernel(node: ast.AST) -> bool:
     return isinstance(node, ast.FunctionDef) and any(
-        isinstance(mark, ast.Call) and isinstance(mark.func, ast.Name) and mark.func.id == "kernel"
+        isinstance(mark, ast.Call) and isinstance(mark.func, ast.Name) and mark.func.id in ("kernel", "entry")
         for mark in node.decorator_list
     )
 
@@ -32,6 +33,8 @@ def names_outside_kernels(node: ast.AST) -> Iterator[str]:
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.Name):
             yield child.id
+        if isinstance(child, ast.Attribute) and isinstance(child.value, ast.Name):
+            yield f"{child.value.id}.{child.attr}"
         if not is_kernel(child):
             yield from names_outside_kernels(child)
 
@@ -48,7 +51,12 @@ def entry_kernels() -> set[Kernel]:
         known = {name: (module, name) for own, name in kernels if own == module}
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom):
-                known |= {alias.asname or alias.name: (node.module or "", alias.name) for alias in node.names}
+                for alias in node.names:
+                    called = alias.asname or alias.name
+                    known[called] = (node.module or "", alias.name)
+                    known |= {
+                        f"{called}.{name}": (of, name) for of, name in kernels if of == f"{node.module}.{alias.name}"
+                    }
         found |= {known[name] for name in names_outside_kernels(tree) if known.get(name) in kernels}
     return found
 
