@@ -15,7 +15,6 @@ from service.requests.request_reader import Limits, Reader
 from service.routing import Answer, PostRoute
 from service.schemas import SIGNATURE
 
-
 DESCRIBED_SCENES = "/v1/scenes"
 
 

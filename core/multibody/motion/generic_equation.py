@@ -45,6 +45,7 @@ MOST_CORRECTIONS = 12
 QUADRATIC, ROUNDED = 1e-8, 4e-16
 """Newton's method ends at a correction of which the next one is the square; one of rounding's size changes nothing."""
 
+
 @kernel()
 def _factor(a: Floats, order: Integers) -> bool:
     """Factor a matrix in place into triangles, rows exchanged by scaled pivots; return whether that is possible."""
