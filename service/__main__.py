@@ -103,7 +103,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         gc.disable()
     from core.compiled import has_compiled_code
 
-    LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: a minute or two, once")
+    LOG.info("loading kernels" if has_compiled_code() else "compiling kernels: about 40 s, once")
     import uvicorn
 
     from service.app import app
