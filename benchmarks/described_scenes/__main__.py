@@ -23,6 +23,7 @@ import mpmath
 from benchmarks.described_scenes.double_pendulum import ENTRANTS, EXACT, Entrant
 from benchmarks.described_scenes.drake import PATIENCE, Late
 from benchmarks.machine import RESULTS, described
+from core.multibody.solve import OF_MOTION
 from core.systems.budget import Budget
 from service.requests.described_scene import DescribedSceneRequest
 from service.routes.described_scenes import described_examples, solved
@@ -58,7 +59,8 @@ def catalogue(repeats: int) -> dict[str, Any]:
     for entry in described_examples():
         document = json.loads(json.dumps(entry["example"]))
         question = DescribedSceneRequest.model_validate(document)
-        start = question.model_copy(update={"times": None})
+        of_start = [output for output in question.outputs if output not in OF_MOTION] if question.outputs else None
+        start = question.model_copy(update={"times": None, "method": None, "round": None, "outputs": of_start})
         runs = {"whole": lambda q=question: solved(q, Budget()), "set-up": lambda q=start: solved(q, Budget())}
         if any(not isinstance(output, str) for output in question.outputs or ()):
             # What is searched along the motion needs times.
