@@ -258,7 +258,7 @@ def fitted(rows: list[dict[str, float]], values: list[float]) -> dict[str, float
     matrix = np.array([[row.get(name, 0.0) for name in names] for row in rows]) / np.array(values)[:, None]
     size = np.maximum(np.abs(matrix).max(axis=0), 1e-300)
     costs = nnls(matrix / size, np.ones(len(values)))[0] / size
-    return {name: float(f"{cost:.4g}") for name, cost in zip(names, costs, strict=True) if cost > 0.0}
+    return {name: float(f"{cost:.4g}") for name, cost in zip(names, costs, strict=True)}
 
 
 def method_table() -> dict[str, dict[str, float]]:

@@ -21,7 +21,7 @@ from math import isfinite
 
 Path = tuple[str | int, ...]
 
-COUNTABLE = 10**18
+LARGEST_COUNT = 10**18
 """Counts above this are reported as this: what matters is that they are out of reach, and every JSON reader has it."""
 
 
@@ -122,11 +122,11 @@ class BudgetExceeded(MechanicsError):
     what : str
         What is counted: ``"samples"``, ``"evaluations"``.
     needed, limit : int
-        The count needed and the count allowed. A count above `COUNTABLE` is reported as that.
+        The count needed and the count allowed. A count above `LARGEST_COUNT` is reported as that.
     """
 
     def __init__(self, what: str, needed: float, limit: int, *, path: Path = (), remedy: str | None = None) -> None:
-        self.what, self.needed, self.limit = what, int(min(needed, COUNTABLE)), limit
+        self.what, self.needed, self.limit = what, int(min(needed, LARGEST_COUNT)), limit
         super().__init__(f"{self.needed} {what} are needed and {limit} are allowed", path=path, remedy=remedy)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from benchmarks.contact_peers.cases import BETWEEN, BOUNCE, LADDER, SLIP, ContactCase
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.language.reading import scene_from
 from core.multibody.solve import solve_scene
 
@@ -21,14 +21,14 @@ _WATCHED = {
 """By case: kind of the event and its name here; names here, columns, components."""
 
 
-def prepared(case: ContactCase, accuracy: float) -> Callable[[], SceneAnswer]:
+def prepared(case: ContactCase, accuracy: float) -> Callable[[], SceneSolution]:
     """Return the question of a case."""
     times = [BETWEEN, case.stop] if case is BOUNCE else [case.stop]
     return lambda: solve_scene(scene_from(dict(case.scene)), times, ("trajectory",), accuracy)
 
 
 def measured(
-    case: ContactCase, answer: SceneAnswer
+    case: ContactCase, answer: SceneSolution
 ) -> tuple[dict[str, float], dict[str, float], dict[str, Any] | None]:
     """Return what is measured, the error that is stated of each, and what is undecided."""
     if answer.problem is not None:

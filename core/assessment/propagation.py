@@ -19,7 +19,7 @@ import numpy as np
 from core.assessment.compare import Reference, distance
 from core.errors import InvalidParameter, Path
 
-MOST_INPUTS = 40
+MOST_CHANGED_NUMBERS = 40
 """Numbers that are changed one by one; more are changed together, each by a sign of its own, in `PATTERNS`."""
 PATTERNS = 16
 
@@ -129,7 +129,7 @@ class Propagation:
 
     def of(self, path: Path, reference: Reference) -> float | None:
         """Return by how much the figure at a path of the answer may change (in its unit), None if that is not found."""
-        if len(self._uncertain) > MOST_INPUTS:
+        if len(self._uncertain) > MOST_CHANGED_NUMBERS:
             effects = [self._effect(pattern, path, reference) for pattern in self._patterns]
             found = [effect for effect in effects if effect is not None]
             return max(found, default=0.0) if self.connected or len(found) == len(effects) else None

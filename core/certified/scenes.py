@@ -35,7 +35,7 @@ SceneType = TypeVar("SceneType", bound=NamedScene)
 
 
 class CertifiedScene(NamedTuple):
-    """Answer to a question about a scene, as `core.scenes.named_scene.SceneAnswer` with decimal numerals for numbers.
+    """Answer to a question about a scene: `core.scenes.named_scene.NamedSceneSolution` with decimal numerals.
 
     Columns of the trajectory are lists; ``time`` has the requested times at which the motion exists, as given.
     """

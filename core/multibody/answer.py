@@ -290,7 +290,7 @@ class RestRange:
 
 
 @dataclass(frozen=True)
-class SceneAnswer:
+class SceneSolution:
     """The answer to a question about a scene; what was not requested is None."""
 
     model: SceneModel

@@ -12,7 +12,7 @@ from core.arrays import Floats
 from core.balls import precision
 from core.errors import InvalidParameter, SlackAtStart
 from core.multibody.algebra.polynomials import BITS
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.motion.modelling import modelled
@@ -60,7 +60,7 @@ def solve_scene(
     input_uncertainty: float | None = None,
     digits: Digits | None = None,
     budget: Budget | None = None,
-) -> SceneAnswer:
+) -> SceneSolution:
     """Answer a question about a scene.
 
     Parameters
@@ -126,7 +126,7 @@ def solve_scene(
         return replace(_answered(scene, request), thresholds=tuple(ranges) or None)
 
 
-def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
+def _answered(scene: Scene, request: SceneRequest) -> SceneSolution:
     if one_sided(scene):
         return answer_in_phases(scene, request)
     try:
@@ -152,7 +152,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneAnswer:
     motions, outputs = found.whole.parts, request.outputs
     periods = [motion.period for _, motion in motions if motion.name != "rest"]
     single = periods[0] if len(periods) == 1 else None
-    return SceneAnswer(
+    return SceneSolution(
         model,
         accelerations_of(found.described, found.whole.acceleration) if "accelerations" in outputs else None,
         forces_of_start(found.described, forces) if "forces" in outputs else None,

@@ -25,7 +25,7 @@ from core.rotation.closed_form.circulation import (
     like_symmetric,
     too_near_the_separatrix,
 )
-from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion, constants_of_motion
 from core.rotation.closed_form.principal_frame import PrincipalFrame, Resolved
 from core.rotation.closed_form.sampling import largest_magnitude, sample_components, turn_into_body
 from core.rotation.closed_form.underflow import UNDERFLOW, UNMOVED, underflow_of, unmoved_until
@@ -96,7 +96,7 @@ class FreeRotation:
         return Resolved.of(self.inertia, self.angular_velocity)
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> ConstantsOfMotion:
         """Constants of the motion.
 
         Raises
@@ -105,7 +105,7 @@ class FreeRotation:
             If the start is so near the separatrix, or the figures so far apart, that doubles cannot hold the constants.
         """
         i, it, w, wt = self.resolved.numbers
-        motion: Motion = constants_of_motion(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
+        motion: ConstantsOfMotion = constants_of_motion(i, it, w, wt, False, Scaled(0.0, 0.0, 0))
         if motion.regime == UNDECIDED:
             motion = constants_of_motion(i, it, w, wt, True, exact_difference(self.resolved))
         if motion.regime == UNREACHABLE:

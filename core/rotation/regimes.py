@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from core.rotation.closed_form.circulation import REST, SEPARATRIX, STEADY
-from core.rotation.closed_form.constants_of_motion import Motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion
 from core.systems.system import Model
 
 NAME = "torque-free rigid body"
 
 
-def model_of(motion: Motion, apart: tuple[bool, bool], line: bool, unstable: str | None) -> Model:
+def model_of(motion: ConstantsOfMotion, apart: tuple[bool, bool], line: bool, unstable: str | None) -> Model:
     """Return the branch of the solution that holds.
 
     Parameters
     ----------
-    motion : Motion
+    motion : ConstantsOfMotion
     apart : pair of bool
         Whether the moments, ascending, differ from the next.
     line : bool

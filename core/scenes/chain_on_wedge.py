@@ -12,7 +12,7 @@ from core.quantities import Acceleration, Length, LengthOrZero, Quantity, Slope,
 from core.scenes.chain_motion import ChainMotion, Slide
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.scenes.figures import MechanicalEnergy, N, SceneExample, outputs_of
-from core.scenes.motion import Motion
+from core.scenes.motion import NamedSceneMotion
 from core.scenes.named_scene import NamedScene
 from core.systems.system import Model
 
@@ -158,7 +158,7 @@ class ChainOnWedge(NamedScene):
         """Return the motion until the chain runs out or lifts off the apex."""
         return ChainMotion(self._slide)
 
-    def motion_figures(self, motion: Motion) -> Mapping[str, Callable[[], Any]]:
+    def motion_figures(self, motion: NamedSceneMotion) -> Mapping[str, Callable[[], Any]]:
         """Return whether and when the chain lifts off."""
         assert isinstance(motion, ChainMotion)
 

@@ -97,7 +97,7 @@ class Samples:
         )
 
 
-class Motion(ABC):
+class NamedSceneMotion(ABC):
     """A motion known in closed form, as long as its model holds."""
 
     @property
@@ -170,7 +170,7 @@ def _widths(value: Any) -> Floats:
     return np.array([float(ball.rad()) for ball in value] if isinstance(value, tuple) else float(value.rad()))
 
 
-class UnbrokenMotion(Motion):
+class UnbrokenMotion(NamedSceneMotion):
     """A motion in one piece: nothing happens but its end.
 
     Parameters

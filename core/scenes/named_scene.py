@@ -21,7 +21,7 @@ from core.notices import Notice
 from core.quantities import Tolerance, Unit, check_value
 from core.scenes.enclosure import BITS, MORE_BITS, Ball, Rounding
 from core.scenes.figures import MOTION, SceneExample
-from core.scenes.motion import Event, Motion
+from core.scenes.motion import Event, NamedSceneMotion
 from core.scenes.sampled_motion import sampled
 from core.systems.budget import Budget
 from core.systems.methods.method import AbstractMethod
@@ -37,7 +37,7 @@ WORK_OF_A_SCENE = 100
 
 
 @dataclass(frozen=True, eq=False)
-class SceneAnswer:
+class NamedSceneSolution:
     """Answer to a question about a scene.
 
     Attributes
@@ -72,11 +72,11 @@ class SceneAnswer:
 
 
 class Outline(NamedTuple):
-    """What is computed of a scene beside its samples; see `SceneAnswer`. Events are those up to the horizon."""
+    """What is computed of a scene beside its samples; see `NamedSceneSolution`. Events are those up to the horizon."""
 
     model: Model
     figures: Mapping[str, Any]
-    motion: Motion | None
+    motion: NamedSceneMotion | None
     ended: str | None
     events: list[Event]
 
@@ -107,7 +107,7 @@ class NamedScene(ABC):
         """Return the figures that need no motion, by name, each to be computed only when it is called."""
 
     @abstractmethod
-    def motion(self, horizon: float) -> Motion:
+    def motion(self, horizon: float) -> NamedSceneMotion:
         """Return the motion at least up to `horizon` (s)."""
 
     @abstractmethod
@@ -151,7 +151,7 @@ class NamedScene(ABC):
         assert found is not None
         return found
 
-    def motion_to(self, horizon: float) -> Motion:
+    def motion_to(self, horizon: float) -> NamedSceneMotion:
         """Return the motion at least up to `horizon` (s), at the precision that answers in doubles begin with."""
         with precision(BITS):
             return self.motion(horizon)
@@ -165,7 +165,7 @@ class NamedScene(ABC):
         *,
         method: AbstractMethod | None = None,
         budget: Budget | None = None,
-    ) -> SceneAnswer:
+    ) -> NamedSceneSolution:
         """Compute what is requested and nothing else.
 
         Parameters
@@ -211,7 +211,7 @@ class NamedScene(ABC):
         samples = as_requested(replace(found.trajectory, accuracy=found.accuracy), question, digits)
         return replace(found, trajectory=samples, accuracy=samples.accuracy)
 
-    def _answered(self, question: MotionQuestion | None, wanted: frozenset[str], accuracy: float) -> SceneAnswer:
+    def _answered(self, question: MotionQuestion | None, wanted: frozenset[str], accuracy: float) -> NamedSceneSolution:
         with precision(BITS):
             found, sharp = self._computed(question, wanted, accuracy)
         if not sharp:
@@ -232,7 +232,7 @@ class NamedScene(ABC):
 
     def _computed(
         self, question: MotionQuestion | None, wanted: frozenset[str], accuracy: float
-    ) -> tuple[SceneAnswer, bool]:
+    ) -> tuple[NamedSceneSolution, bool]:
         """Return the answer at the present precision, and whether that precision was enough."""
         spend(WORK_OF_A_SCENE)
         horizon = math.inf if question is None else max(0.0, float(np.max(question.times)))
@@ -243,7 +243,7 @@ class NamedScene(ABC):
             events = [event.in_doubles() for event in found.events]
             trajectory = sampled(found.motion, question, self.units(), found.ended or HORIZON, events)
         bare = Accuracy(accuracy, 0.0, "closed form") if trajectory is None else trajectory.accuracy
-        answer = SceneAnswer(
+        answer = NamedSceneSolution(
             model=found.model,
             figures=found.figures,
             trajectory=trajectory,

@@ -14,7 +14,7 @@ from core.errors import InvalidParameter
 from core.quantities import RADIANS, Acceleration, AngularRate, InertiaFactor, Length, Mass, Quantity, Unit, check
 from core.scenes.enclosure import BITS, Ball, Balls, angle_of, exact
 from core.scenes.figures import MechanicalEnergy, N, Pair, SceneExample, outputs_of
-from core.scenes.motion import Motion
+from core.scenes.motion import NamedSceneMotion
 from core.scenes.named_scene import NamedScene
 from core.scenes.pendulum import Pendulum
 from core.scenes.rod_motion import Rod, RodMotion, contact_limits
@@ -195,7 +195,7 @@ class RodInHole(NamedScene):
         """Return the motion until an end passes the rim or leaves the wall."""
         return RodMotion(self._rod, self._pendulum, self._rim if self.hole == "half-cylinder" else None)
 
-    def motion_figures(self, motion: Motion) -> Mapping[str, Callable[[], Any]]:
+    def motion_figures(self, motion: NamedSceneMotion) -> Mapping[str, Callable[[], Any]]:
         """Return the rate at the horizontal, the period and the contact with the wall."""
         assert isinstance(motion, RodMotion)
         return {

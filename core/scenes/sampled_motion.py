@@ -13,7 +13,7 @@ from core.balls import precision
 from core.errors import InvalidParameter, NotApplicable, inside_field
 from core.scenes.enclosure import BITS
 from core.scenes.equation import SceneEquation
-from core.scenes.motion import Motion, finite
+from core.scenes.motion import NamedSceneMotion, finite
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.methods.method import AbstractMethod
@@ -24,7 +24,7 @@ _NOT_KNOWN = "what the uncertainty of the inputs does is not followed in this sc
 
 
 def sampled(
-    motion: Motion,
+    motion: NamedSceneMotion,
     question: MotionQuestion,
     units: Mapping[str, str],
     ended: str,
@@ -34,7 +34,7 @@ def sampled(
 
     Parameters
     ----------
-    motion : Motion
+    motion : NamedSceneMotion
     question : MotionQuestion
     units : mapping of str to str
         Of the columns.
@@ -76,10 +76,10 @@ def sampled(
 class ComparableEquation(SceneEquation):
     """The equation of a motion, and the motion itself, to which methods are compared."""
 
-    motion: Motion
+    motion: NamedSceneMotion
 
     @classmethod
-    def of(cls, motion: Motion) -> ComparableEquation:
+    def of(cls, motion: NamedSceneMotion) -> ComparableEquation:
         """Return the equation of a motion; raises `NotApplicable` if something happens that it does not describe."""
         with precision(BITS):
             return cls(motion.equation().coordinates, motion.model, motion)
@@ -114,7 +114,7 @@ def _how(question: MotionQuestion) -> How:
 
 
 def _integrated(
-    motion: Motion, right: Mapping[str, Column], times: Floats, method: AbstractMethod, budget: Budget
+    motion: NamedSceneMotion, right: Mapping[str, Column], times: Floats, method: AbstractMethod, budget: Budget
 ) -> tuple[dict[str, Column], Work]:
     """Return the columns that a method computes, their errors measured against the right ones, and its work."""
     equation = motion.equation()
@@ -135,7 +135,7 @@ def _relative(error: float, scale: float) -> float:
     return error / scale if scale > 0.0 else 0.0 if error == 0.0 else math.inf
 
 
-def _existing(motion: Motion, instants: Floats) -> Integers:
+def _existing(motion: NamedSceneMotion, instants: Floats) -> Integers:
     """Return the rows of the instants at which there is a motion; samples past its end are not invented."""
     if float(np.min(instants, initial=0.0)) < motion.valid_from:
         raise InvalidParameter(

@@ -16,7 +16,7 @@ from core.notices import Notice
 from core.scenes.bounces import Sequence
 from core.scenes.enclosure import ONE, UNIT_ROUNDOFF, ZERO, Ball, as_pair, exact_pair
 from core.scenes.equation import AcceleratedCoordinate, SceneEquation
-from core.scenes.motion import Event, Motion, Samples, finite
+from core.scenes.motion import Event, NamedSceneMotion, Samples, finite
 from core.scenes.string_phases import Phase, Phases
 from core.scenes.string_state import State
 from core.systems.system import Model
@@ -36,7 +36,7 @@ class Coordinate:
     gain: Ball = ZERO
 
 
-class ShaftMotion(Motion):
+class ShaftMotion(NamedSceneMotion):
     """Positions are quadratic in the time between events.
 
     Parameters

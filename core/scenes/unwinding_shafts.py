@@ -26,7 +26,7 @@ from core.scenes.bounces import as_answered
 from core.scenes.enclosure import ZERO, Ball, exact, exact_pair, sign
 from core.scenes.figures import SceneExample, outputs_of
 from core.scenes.friction import Friction, with_friction
-from core.scenes.motion import Motion
+from core.scenes.motion import NamedSceneMotion
 from core.scenes.named_scene import NamedScene
 from core.scenes.shaft_figures import ShaftFigures, ShaftSamples
 from core.scenes.string_phases import Law, Limit, follow, settled
@@ -157,7 +157,7 @@ class UnwindingShafts(NamedScene):
         }
         return ShaftMotion(phases, self.radii, largest, float(self._unresolved))
 
-    def motion_figures(self, motion: Motion) -> Mapping[str, Callable[[], Any]]:
+    def motion_figures(self, motion: NamedSceneMotion) -> Mapping[str, Callable[[], Any]]:
         """Return the phases: kind, start, end, and the impulse, number and cost of their jerks."""
         assert isinstance(motion, ShaftMotion)
         return {

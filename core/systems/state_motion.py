@@ -35,8 +35,8 @@ HALF_ULP = 2.0**-53
 UNCONVERGED = 0.25
 """A finer run that states a larger error than this is not near enough to the motion to state any."""
 
-JUDGE = 1e-4
-"""Accuracy of the run that then does."""
+REFERENCE_ACCURACY = 1e-4
+"""Accuracy of the run that is then the reference."""
 
 
 def state_motion(system: InitialValueProblem, question: MotionQuestion) -> Trajectory:
@@ -60,7 +60,7 @@ def state_motion(system: InitialValueProblem, question: MotionQuestion) -> Traje
     with inside_field("method"):
         run = method.integrate(system, times, question.budget)
     if exact is not None:
-        # A closed form that cannot be evaluated this far cannot judge either, and leaves it to the finer run.
+        # A closed form that cannot be evaluated this far cannot reference either, and leaves it to the finer run.
         with suppress(AccuracyUnreachable):
             return _compared_with_closed_form(system, exact, method, run, question)
     return _compared_with_finer_run(system, exact, method, run, question)
@@ -140,20 +140,20 @@ def _compared_with_finer_run(
     errors, spent = estimate.errors, estimate.integration.work.evaluations
     uncertain: tuple[Notice, ...] = ()
     if errors.largest > UNCONVERGED:
-        # Two runs as far apart as the motion is wide show nothing of a third; a run that does converge has to judge.
+        # Two runs as far apart as the motion is wide show nothing of a third; one that does converge has to.
         try:
-            judge = run_to_accuracy(system, times, JUDGE, budget, run.work.evaluations + spent)
-            scale = known_norm(judge.states, system.initial_state) if norm is None else norm
-            found = measured(run.states, judge.states, times, scale)
+            reference = run_to_accuracy(system, times, REFERENCE_ACCURACY, budget, run.work.evaluations + spent)
+            scale = known_norm(reference.states, system.initial_state) if norm is None else norm
+            found = measured(run.states, reference.states, times, scale)
         except MechanicsError as fault:
             detail = f"the error is so large that it is only known to be of this order: {fault.detail}"
             uncertain = (Notice("error-uncertain", detail, ("method",)),)
         else:
             errors = found._replace(
-                largest=found.largest * (1 + JUDGE) + judge.errors.largest,
-                final=found.final * (1 + JUDGE) + judge.errors.largest,
+                largest=found.largest * (1 + REFERENCE_ACCURACY) + reference.errors.largest,
+                final=found.final * (1 + REFERENCE_ACCURACY) + reference.errors.largest,
             )
-            spent += judge.work.evaluations + judge.work.evaluations_for_error
+            spent += reference.work.evaluations + reference.work.evaluations_for_error
     stated = Accuracy(
         question.accuracy,
         errors.largest,

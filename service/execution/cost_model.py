@@ -18,14 +18,15 @@ from typing import Any
 import numpy as np
 
 from core.elliptic.functions import LARGEST_QUARTER
+from core.errors import LARGEST_COUNT
 from core.systems.budget import Budget
 
 Counts = Mapping[str, float]
 
-UNCOUNTABLE = 1e18
+UNCOUNTABLE = float(LARGEST_COUNT)
 """What is more than this is counted as this: infinite counts, times nothing, would leave a question without a price."""
 
-COUNTABLE = 1e15
+EXACT_IN_DOUBLES = 1e15
 """Steps from which on doubles do not tell whole numbers of them from others."""
 
 ROUNDED_TIME = 4 * 2.0**-52
@@ -39,7 +40,7 @@ class Calibration:
     Attributes
     ----------
     seconds : mapping of str to mapping of str to float
-        By operation, cost per count of computing the answer.
+        By operation, cost per count of computing the answer; zero for a count whose cost does not stand out.
     writing : float
         Time per byte of writing an answer (s).
     methods : mapping of str to mapping of str to float
@@ -76,7 +77,8 @@ class CalibratedCost:
     unmeasured: Counts = field(default_factory=dict)
 
     @cached_property
-    def _seconds(self) -> Counts:
+    def costs(self) -> Counts:
+        """Cost of each count (s)."""
         seconds = calibration().seconds
         # A body is looked at in the same way for every question, and where it is small that does not stand out.
         points = seconds["mass_properties"]["points"]
@@ -85,7 +87,7 @@ class CalibratedCost:
 
     def __call__(self, question: Any, budget: Budget) -> float:
         """Return the predicted time of computing an answer (s)."""
-        costs = self._seconds
+        costs = self.costs
         return sum((costs.get(name, 0.0) * count for name, count in self.counts(question, budget).items()), 0.0)
 
 
@@ -187,14 +189,14 @@ def steps(times: Any, step: float) -> float:
     # Beyond the range of doubles they are uncountable.
     with np.errstate(over="ignore", invalid="ignore"):
         reached = np.abs(instants) / step
-        between = (reached < COUNTABLE) & (np.abs(reached - np.rint(reached)) > ROUNDED_TIME * reached)
+        between = (reached < EXACT_IN_DOUBLES) & (np.abs(reached - np.rint(reached)) > ROUNDED_TIME * reached)
     sides = (_whole(max(0.0, float(end)) / step) for end in (instants[-1], -instants[0]))
     return min(UNCOUNTABLE, sum(sides) + float(np.count_nonzero(between)))
 
 
 def _whole(number: float) -> float:
     """Return how many whole steps a number of them has, up to the rounding of a quotient of times."""
-    return float(floor(number * (1.0 + ROUNDED_TIME))) if number < COUNTABLE else min(number, UNCOUNTABLE)
+    return float(floor(number * (1.0 + ROUNDED_TIME))) if number < EXACT_IN_DOUBLES else min(number, UNCOUNTABLE)
 
 
 def extent(times: Any) -> float:

@@ -79,7 +79,7 @@ class Failed:
     traceback: str
 
 
-Work = Callable[[Terms, Task], Any]
+Operation = Callable[[Terms, Task], Any]
 """What a process does for a request: `price` or `answer`."""
 
 
@@ -132,7 +132,7 @@ def _guarded(terms: Terms, task: Task, work: Callable[[RequestHandler, PostRoute
         return Failed(traceback.format_exc())
 
 
-def serve(channel: socket.socket, terms: Terms, work: Work, nice: int) -> None:
+def serve(channel: socket.socket, terms: Terms, work: Operation, nice: int) -> None:
     """Do the same work for one request after the other until the server process closes the connection.
 
     Nothing is sent but `BEGUN` when it is ready, and for each request `BEGUN` and the reply.

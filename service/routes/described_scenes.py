@@ -14,7 +14,7 @@ from core.multibody.answer import RestRange, SceneModel
 from core.multibody.language.scene import check_size
 from core.multibody.motion.generic_equation import weight_of
 from core.multibody.solve import OUTPUTS, solve_scene
-from core.multibody.trajectory.inherited import MOST_INPUTS
+from core.multibody.trajectory.inherited import MOST_PROPAGATED_NUMBERS
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.from_scipy import FromSciPy
@@ -201,7 +201,7 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         }
         if question.input_uncertainty is not None:
             # Everything is done again for every number.
-            again = 1.0 + min(MOST_INPUTS, numbers_in(question))
+            again = 1.0 + min(MOST_PROPAGATED_NUMBERS, numbers_in(question))
             found = {name: count * again for name, count in found.items()}
         found |= _of_method(question, bodies, connections)
     if "equilibria" in (question.outputs or ()):

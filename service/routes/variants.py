@@ -11,7 +11,7 @@ from pydantic import Field
 
 from core.assessment.figures import is_null, steps_of, value_at
 from core.assessment.graded_question import GradedQuestion
-from core.assessment.propagation import MOST_INPUTS, at, numbers_of
+from core.assessment.propagation import MOST_CHANGED_NUMBERS, at, numbers_of
 from core.assessment.results import reference_view
 from core.assessment.variants import Constraint, Member, Variants
 from core.assessment.varied_input import LONGEST_WORD, VariedInput
@@ -158,7 +158,7 @@ def varying(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Post
         fields = (
             EXPECTED_FIELDS if named is None else len({pointer.split("/")[1] for pointer in named if "/" in pointer})
         )
-        changes = min(inputs, MOST_INPUTS) * fields * (1 if question.input_uncertainty is None else 3)
+        changes = min(inputs, MOST_CHANGED_NUMBERS) * fields * (1 if question.input_uncertainty is None else 3)
         each = (EXPECTED_DRAWS if required else 1) + changes
         return once + question.count * (SECONDS_OF_PROOF + (once + SECONDS_OF_ASKING) * each)
 

@@ -26,7 +26,7 @@ from service.studies.cluster import Cluster
 from service.studies.store import FAILED, Store, reason_of
 from service.studies.summary import summary
 from service.studies.task import Computed, compute, end_process, without_answer
-from service.studies.work import CHUNK_SECONDS, Stretch, Work, gaps, stretch_seconds
+from service.studies.unfinished_study import CHUNK_SECONDS, Stretch, UnfinishedStudy, gaps, stretch_seconds
 
 AHEAD = 2
 """Stretches that each process of the cluster is given at a time, so that none waits for work."""
@@ -55,16 +55,16 @@ class Engine:
 
     def __init__(self, store: Store, files: ChunkFiles, cluster: Cluster, terms: Terms, longest: float) -> None:
         self._store, self._files, self._cluster, self._terms, self._longest = store, files, cluster, terms, longest
-        self._works: dict[str, Work] = {}
+        self._unfinished: dict[str, UnfinishedStudy] = {}
         self._done: SimpleQueue[Any] = SimpleQueue()
         self._processes, self._counted = 0, 0.0
         self._alone = False
-        self._aside = ThreadPoolExecutor(1, "statistics")
+        self._statistics_thread = ThreadPoolExecutor(1, "statistics")
 
     def turn(self) -> bool:
         """Do what there is to do now, waiting a moment for results; return whether studies are unfinished."""
         self._follow()
-        if not self._works:
+        if not self._unfinished:
             time.sleep(TURN)
             return False
         try:
@@ -76,47 +76,47 @@ class Engine:
             return True
         self._collect()
         self._end_overdue()
-        for work in [*self._works.values()]:
-            if work.done:
-                self._finish(work)
+        for unfinished in [*self._unfinished.values()]:
+            if unfinished.done:
+                self._finish(unfinished)
         return True
 
     def stop(self) -> None:
         """Leave everything as it is stored."""
-        self._works.clear()
-        self._aside.shutdown(wait=False, cancel_futures=True)
+        self._unfinished.clear()
+        self._statistics_thread.shutdown(wait=False, cancel_futures=True)
         self._cluster.close()
 
     def _follow(self) -> None:
         """Take up new studies, and let go of those that were dismissed."""
         unfinished = {study.id: study for study in self._store.unfinished()}
-        for identity in [*self._works]:
+        for identity in [*self._unfinished]:
             if identity not in unfinished:
-                self._let_go(self._works.pop(identity))
+                self._let_go(self._unfinished.pop(identity))
                 try:
                     self._files.remove(identity)
                 except OSError as fault:
                     # They go when the study is removed.
                     LOG.error("results cannot be removed", extra={"study": identity, "reason": str(fault)})
         for identity, study in unfinished.items():
-            if identity not in self._works:
+            if identity not in self._unfinished:
                 stored = self._store.chunks(identity)
                 each = max(study.plan["seconds"] / study.count, FASTEST)
                 missing = deque(gaps(stored, study.count))
-                self._works[identity] = Work(study, missing, each, self._store.request(identity))
+                self._unfinished[identity] = UnfinishedStudy(study, missing, each, self._store.request(identity))
                 self._store.begin(identity)
                 LOG.info("a study is worked on", extra={"study": identity, "members": study.count, "done": study.done})
 
-    def _let_go(self, work: Work) -> None:
-        futures = [*work.in_flight]
+    def _let_go(self, unfinished: UnfinishedStudy) -> None:
+        futures = [*unfinished.in_flight]
         if futures and self._cluster.connected:
             client = self._cluster.client
             # A thread cannot be ended: processes that would be busy for long with these members are.
-            long = work.each > CHUNK_SECONDS
+            long = unfinished.each > CHUNK_SECONDS
             busy = _processes_with({future.key for future in futures}, client) if long else []
             client.cancel(futures, force=True)
             self._end_processes(busy)
-        work.in_flight.clear()
+        unfinished.in_flight.clear()
 
     def _end_processes(self, addresses: list[str]) -> None:
         """End processes and wait until they are gone: what they would be given meanwhile would go with them."""
@@ -133,8 +133,8 @@ class Engine:
         if time.monotonic() - self._counted > 1.0:
             self._processes = max(1, sum(client.nthreads().values()))
             self._counted = time.monotonic()
-        busy = sum(len(work.in_flight) for work in self._works.values())
-        suspected = next((work for work in self._works.values() if work.suspects), None)
+        busy = sum(len(unfinished.in_flight) for unfinished in self._unfinished.values())
+        suspected = next((unfinished for unfinished in self._unfinished.values() if unfinished.suspects), None)
         if suspected is not None:
             # What is in flight comes back first.
             if not busy:
@@ -145,17 +145,17 @@ class Engine:
             return
         self._alone = False
         for _ in range(AHEAD * self._processes - busy):
-            waiting = [work for work in self._works.values() if work.missing]
+            waiting = [unfinished for unfinished in self._unfinished.values() if unfinished.missing]
             if not waiting:
                 return
-            work = min(waiting, key=lambda one: len(one.in_flight))
-            self._submit(work, work.next_stretch(self._processes))
+            unfinished = min(waiting, key=lambda one: len(one.in_flight))
+            self._submit(unfinished, unfinished.next_stretch(self._processes))
 
-    def _submit(self, work: Work, stretch: Stretch) -> None:
+    def _submit(self, unfinished: UnfinishedStudy, stretch: Stretch) -> None:
         # A process that others hold up comes back in time nevertheless.
         longest = 2.0 * stretch_seconds(self._processes)
-        future = self._cluster.client.submit(compute, self._terms, work.request, *stretch, longest, pure=False)
-        work.in_flight[future] = stretch, time.monotonic()
+        future = self._cluster.client.submit(compute, self._terms, unfinished.request, *stretch, longest, pure=False)
+        unfinished.in_flight[future] = stretch, time.monotonic()
         future.add_done_callback(self._done.put)
 
     def _collect(self) -> None:
@@ -167,12 +167,12 @@ class Engine:
             except Empty:
                 return
             patience = 0.0
-            work = next((one for one in self._works.values() if future in one.in_flight), None)
-            if work is not None:
-                stretch, _ = work.in_flight.pop(future)
-                self._settle(work, stretch, future)
+            unfinished = next((one for one in self._unfinished.values() if future in one.in_flight), None)
+            if unfinished is not None:
+                stretch, _ = unfinished.in_flight.pop(future)
+                self._settle(unfinished, stretch, future)
 
-    def _settle(self, work: Work, stretch: Stretch, future: Any) -> None:
+    def _settle(self, unfinished: UnfinishedStudy, stretch: Stretch, future: Any) -> None:
         from distributed.scheduler import KilledWorker
 
         if future.status != "error":
@@ -180,83 +180,83 @@ class Engine:
                 found = future.result(timeout=GATHERING)
             except Exception:
                 # The scheduler has gone, or the process that had the result.
-                work.missing.appendleft(stretch)
+                unfinished.missing.appendleft(stretch)
                 return
-            self._keep(work, stretch, found)
+            self._keep(unfinished, stretch, found)
             return
         fault = future.exception()
         if isinstance(fault, KilledWorker):
-            self._after_death(work, stretch, "worker-lost")
+            self._after_death(unfinished, stretch, "worker-lost")
             return
-        LOG.error("a stretch has failed", extra={"study": work.study.id, "fault": repr(fault)})
-        self._fail(work, f"the cluster could not compute its members: {type(fault).__name__}")
+        LOG.error("a stretch has failed", extra={"study": unfinished.study.id, "fault": repr(fault)})
+        self._fail(unfinished, f"the cluster could not compute its members: {type(fault).__name__}")
 
-    def _after_death(self, work: Work, stretch: Stretch, code: str) -> None:
+    def _after_death(self, unfinished: UnfinishedStudy, stretch: Stretch, code: str) -> None:
         start, stop = stretch
-        work.ended += 1
-        if work.ended > MOST_ENDED:
-            self._fail(work, f"its members ended {work.ended} processes")
+        unfinished.ended += 1
+        if unfinished.ended > MOST_ENDED:
+            self._fail(unfinished, f"its members ended {unfinished.ended} processes")
         elif not self._alone:
-            work.suspects.append(stretch)
+            unfinished.suspects.append(stretch)
         elif stop - start > 1:
             middle = (start + stop) // 2
-            work.suspects.extendleft(((middle, stop), (start, middle)))
-        elif (deaths := work.deaths.get(stretch, 0) + 1) < 2:
-            work.deaths[stretch] = deaths
-            work.suspects.append(stretch)
+            unfinished.suspects.extendleft(((middle, stop), (start, middle)))
+        elif (deaths := unfinished.deaths.get(stretch, 0) + 1) < 2:
+            unfinished.deaths[stretch] = deaths
+            unfinished.suspects.append(stretch)
         else:
-            self._keep(work, stretch, without_answer(self._terms, work.request, start, code))
+            self._keep(unfinished, stretch, without_answer(self._terms, unfinished.request, start, code))
 
-    def _fail(self, work: Work, message: str) -> None:
-        LOG.error("a study has failed", extra={"study": work.study.id, "reason": message})
-        self._let_go(self._works.pop(work.study.id))
-        self._store.end(work.study.id, FAILED, message)
+    def _fail(self, unfinished: UnfinishedStudy, message: str) -> None:
+        LOG.error("a study has failed", extra={"study": unfinished.study.id, "reason": message})
+        self._let_go(self._unfinished.pop(unfinished.study.id))
+        self._store.end(unfinished.study.id, FAILED, message)
 
-    def _keep(self, work: Work, stretch: Stretch, found: Computed) -> None:
+    def _keep(self, unfinished: UnfinishedStudy, stretch: Stretch, found: Computed) -> None:
         start, stop = stretch[0], stretch[0] + found.members
         try:
-            self._files.write(work.study.id, start, stop, found.data)
-            self._store.add_chunk(work.study.id, start, stop, found.failed, found.seconds)
+            self._files.write(unfinished.study.id, start, stop, found.data)
+            self._store.add_chunk(unfinished.study.id, start, stop, found.failed, found.seconds)
         except Exception as fault:
             # A full disk, most often: the members are computed again when there is room.
-            work.missing.appendleft(stretch)
+            unfinished.missing.appendleft(stretch)
             self._say("results cannot be stored, which is tried again", fault)
             time.sleep(PAUSE)
             return
         if stop < stretch[1]:
             # Its time was up.
-            work.missing.appendleft((stop, stretch[1]))
-        work.each = max(FASTEST, 0.5 * (work.each + found.seconds / found.members))
+            unfinished.missing.appendleft((stop, stretch[1]))
+        unfinished.each = max(FASTEST, 0.5 * (unfinished.each + found.seconds / found.members))
 
     def _end_overdue(self) -> None:
         """End processes that have had a stretch for much longer than predicted."""
         now = time.monotonic()
-        for work in [*self._works.values()]:
-            for future, (stretch, since) in [*work.in_flight.items()]:
-                expected = work.each * (stretch[1] - stretch[0])
+        for unfinished in [*self._unfinished.values()]:
+            for future, (stretch, since) in [*unfinished.in_flight.items()]:
+                expected = unfinished.each * (stretch[1] - stretch[0])
                 if now - since <= AHEAD * (self._longest + 20.0 * expected):
                     continue
                 client = self._cluster.client
                 busy = _processes_with({future.key}, client)
                 if not busy:
                     # It still waits for a process.
-                    work.in_flight[future] = stretch, now
+                    unfinished.in_flight[future] = stretch, now
                     continue
-                del work.in_flight[future]
+                del unfinished.in_flight[future]
                 client.cancel([future], force=True)
                 self._end_processes(busy)
-                self._after_death(work, stretch, "deadline-exceeded")
+                self._after_death(unfinished, stretch, "deadline-exceeded")
 
-    def _finish(self, work: Work) -> None:
+    def _finish(self, unfinished: UnfinishedStudy) -> None:
         """Have the statistics formed, beside what other studies compute; damaged stretches are computed again."""
-        study = work.study
-        if work.finishing is None:
-            work.finishing = self._aside.submit(self._statistics, work)
-            work.finishing.add_done_callback(lambda _: self._done.put(None))
+        study = unfinished.study
+        if unfinished.finishing is None:
+            unfinished.finishing = self._statistics_thread.submit(self._statistics, unfinished)
+            unfinished.finishing.add_done_callback(lambda _: self._done.put(None))
             return
-        if not work.finishing.done():
+        if not unfinished.finishing.done():
             return
-        finished, work.finishing = work.finishing, None
+        finished, unfinished.finishing = unfinished.finishing, None
         try:
             damaged, statistics = finished.result()
         except Exception as fault:
@@ -265,33 +265,33 @@ class Engine:
             return
         for stretch in damaged:
             self._store.drop_chunk(study.id, stretch[0])
-            work.missing.append(stretch)
+            unfinished.missing.append(stretch)
         if not damaged:
             self._store.finish(study.id, statistics)
-            del self._works[study.id]
+            del self._unfinished[study.id]
 
-    def _statistics(self, work: Work) -> tuple[list[Stretch], Any]:
+    def _statistics(self, unfinished: UnfinishedStudy) -> tuple[list[Stretch], Any]:
         """Return the stretches whose files are damaged, and the statistics if there are none."""
-        stored, damaged = self._store.chunks(work.study.id), []
+        stored, damaged = self._store.chunks(unfinished.study.id), []
 
         def chunks() -> Iterator[Chunk]:
             for stretch in stored:
                 try:
-                    yield self._files.read(work.study.id, *stretch)
+                    yield self._files.read(unfinished.study.id, *stretch)
                 except CorruptedChunk as fault:
-                    extra = {"study": work.study.id, "fault": str(fault)}
+                    extra = {"study": unfinished.study.id, "fault": str(fault)}
                     LOG.error("results are damaged and computed again", extra=extra)
                     damaged.append(stretch)
 
-        found = summary(work.study, work.request, chunks)
+        found = summary(unfinished.study, unfinished.request, chunks)
         return [*dict.fromkeys(damaged)], found
 
     def _say(self, message: str, fault: Exception) -> None:
         LOG.error(message, extra={"reason": str(fault)})
-        for work in self._works.values():
+        for unfinished in self._unfinished.values():
             # On a full disk there may be no room for it.
             with suppress(Refusal):
-                self._store.note(work.study.id, f"{message}: {reason_of(fault)}")
+                self._store.note(unfinished.study.id, f"{message}: {reason_of(fault)}")
 
 
 def _processes_with(keys: set[str], client: Any) -> list[str]:

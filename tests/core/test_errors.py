@@ -10,7 +10,7 @@ import pytest
 
 from core import errors
 from core.errors import (
-    COUNTABLE,
+    LARGEST_COUNT,
     AccuracyUnreachable,
     BudgetExceeded,
     InvalidParameter,
@@ -68,6 +68,6 @@ def test_errors_carry_their_figures() -> None:
     assert AccuracyUnreachable(None, math.inf, "all is lost").detail == "none can be reached: all is lost"
     for count in (10**400, math.inf):
         beyond_count = BudgetExceeded("steps", count, 10)
-        assert (beyond_count.needed, type(beyond_count.needed)) == (COUNTABLE, int)
+        assert (beyond_count.needed, type(beyond_count.needed)) == (LARGEST_COUNT, int)
         assert beyond_count.detail == "1000000000000000000 steps are needed and 10 are allowed"
     assert NotApplicable("no such method", path=("kind",)).remedy is None

@@ -22,7 +22,7 @@ Direction = tuple[Ball, Ball]
 
 AHEAD: Direction = (ONE, ZERO)
 
-_LOOKS = 48
+_SAMPLES = 48
 """Directions that are tried, evenly around."""
 _MOST_CUTS = 100
 _GUARD = 40
@@ -87,8 +87,8 @@ def directions(after: Callable[[Direction], Direction | None]) -> list[Direction
     ahead = after(AHEAD)
     if ahead is not None and is_zero(ahead[1]) and (is_zero(ahead[0]) or ahead[0] > 0):
         return [AHEAD]
-    # What is ahead but for rounding is between two looks.
-    angles = [2 * pi * (k - 0.5) / _LOOKS for k in range(_LOOKS + 1)]
+    # What is ahead but for rounding is between two samples.
+    angles = [2 * pi * (k - 0.5) / _SAMPLES for k in range(_SAMPLES + 1)]
     values = [off((arb(cos(angle)), arb(sin(angle)))) for angle in angles]
     found = []
     for (a, left), (b, right) in zip(

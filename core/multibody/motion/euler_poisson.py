@@ -33,7 +33,7 @@ from core.multibody.table.table import Table
 _CHUNK = 64
 _ORDERS = {
     "doubles": (22, 2.0**-66),
-    "judge": (26, 2.0**-78),
+    "reference": (26, 2.0**-78),
     "fine": (32, FINE_TOLERANCE),
     "check": (30, CHECK_TOLERANCE),
 }

@@ -22,7 +22,7 @@ from core.errors import AccuracyUnreachable, MechanicsError
 from core.multibody.algebra.directions import cross
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, is_zero
 from core.multibody.equations.packed import pair, two_to
-from core.multibody.motion.motion import States, check_looks
+from core.multibody.motion.motion import States, check_sample_count
 from core.multibody.motion.turning_body import TurningBody
 from core.multibody.table.table import Table
 
@@ -95,7 +95,7 @@ class FreeBody:
         least = float(np.linalg.eigvalsh(np.array(tensor), UPLO="U")[0])
         fastest = float(np.linalg.norm(np.array(tensor) @ omega)) / least if least > 0.0 else np.inf
         count = fastest * abs(end) * _PER_RADIAN
-        check_looks(count, _MOST_NODES)
+        check_sample_count(count, _MOST_NODES)
         return np.linspace(0.0, end, 17 + int(count))
 
 

@@ -238,7 +238,7 @@ class SceneSystem:
     @cached_property
     def _packed(self) -> tuple[Packed, Units]:
         table = self.whole.reduced.table
-        units = units_of(table, self.whole.gains)
+        units = units_of(table, self.whole.reduced_accelerations)
         return packed(table, independent(row.line(table.q) for row in table.rows), units), units
 
     @cached_property

@@ -103,14 +103,14 @@ def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled
     """Return the models of a table whose start meets its rows."""
     small = reduced(found.measures.table, pinning=True)
     pieces = [_piece(found, small.table, indices) for indices in parts(small.table)]
-    gains: list[Ball] = [ZERO] * len(small.table.names)
+    accelerations: list[Ball] = [ZERO] * len(small.table.names)
     for piece in pieces:
         for i, x in zip(piece.indices, piece.acceleration, strict=True):
-            gains[i] = x
-    full = [sum((c * gains[key[0]] for key, c in e.items() if key), ZERO) for e in small.expressions]
+            accelerations[i] = x
+    full = [sum((c * accelerations[key[0]] for key, c in e.items() if key), ZERO) for e in small.expressions]
     motions = [(piece.indices, _motion(piece)) for piece in pieces]
     dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
-    whole = Whole(found.measures, small, full, gains, motions, dropped)
+    whole = Whole(found.measures, small, full, accelerations, motions, dropped)
     return Modelled(found, whole, pieces, moved, fitted)
 
 

@@ -22,7 +22,7 @@ from core.balls import precision
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States, check_looks
+from core.multibody.motion.motion import States, check_sample_count
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table
 from core.work import spend
@@ -287,17 +287,17 @@ class Modes:
         total = acb_mat([[(root * t).exp() for root, _ in terms]]) * acb_mat([column for _, column in terms])
         return [x.real for x in total.entries()]
 
-    def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
+    def in_doubles(self, times: Floats) -> tuple[Floats, Floats] | None:
         """Return coordinates and rates in doubles, None where roots coincide or have turned far."""
         n, start = len(self.table.names), [*self.table.q, *self.table.v, ONE]
-        roots, columns = self._glances(start)
+        roots, columns = self._terms_in_doubles(start)
         turned = np.max(np.abs(roots), initial=0.0) * np.max(np.abs(times), initial=0.0)
         if not len(roots) or turned > FEW_RADIANS:
             return None
         values = (np.exp(np.outer(times, roots)) @ columns).real
         return values[:, :n], values[:, n : 2 * n]
 
-    def _glances(self, start: list[Ball]) -> tuple[Any, Any]:
+    def _terms_in_doubles(self, start: list[Ball]) -> tuple[Any, Any]:
         """Return roots and their vector coefficients in doubles, none where roots coincide or terms cancel."""
         if "doubles" not in self._known:
             terms = self._terms(start) or []
@@ -315,8 +315,8 @@ class Modes:
         return max((float(abs(acb(mode.growth, mode.frequency))) for mode in self.modes), default=1.0)
 
     @property
-    def glanced_until(self) -> float:
-        """Time up to which `glance` answers (s), but for rounding."""
+    def in_doubles_until(self) -> float:
+        """Time up to which `in_doubles` answers (s), but for rounding."""
         fastest = self._fastest
         return 0.999 * FEW_RADIANS / fastest if fastest > 0.0 else math.inf
 
@@ -324,7 +324,7 @@ class Modes:
         """Return times eight to the shortest period."""
         fastest = self._fastest
         count = abs(end) * fastest * 2.0
-        check_looks(count, MOST_NODES)
+        check_sample_count(count, MOST_NODES)
         return np.linspace(0.0, end, 33 + int(count))
 
     def lowest(self, poly: Poly) -> float:

@@ -34,15 +34,15 @@ class States:
     reference: tuple[Floats, Floats] | None = None
 
 
-def check_looks(count: float, most: int) -> None:
-    """Raise `BudgetExceeded` where a motion would have to be looked at more often than it may be."""
+def check_sample_count(count: float, most: int) -> None:
+    """Raise `BudgetExceeded` where a motion would have to be sampled more often than it may be."""
     if count > most:
         raise BudgetExceeded(
-            "looks for events",
+            "samples for events",
             count,
             most,
             path=("times",),
-            remedy="ask for a shorter time; with fewer looks something could be passed over",
+            remedy="ask for a shorter time; with fewer samples something could be passed over",
         )
 
 
@@ -79,10 +79,10 @@ class Motion(Protocol):
 
 
 @runtime_checkable
-class Glanced(Protocol):
+class EvaluatedInDoubles(Protocol):
     """A motion that is known faster to a few roundings of doubles: enough to see about when something changes sign."""
 
-    def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
+    def in_doubles(self, times: Floats) -> tuple[Floats, Floats] | None:
         """Return coordinates and rates at times of shape (t,), each of shape (t, n); None where doubles do not do."""
 
 

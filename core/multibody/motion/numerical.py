@@ -23,7 +23,7 @@ _SAME_PLACE = 1e-3
 """Relative difference of the times at which doubles and pairs may meet one singular place."""
 
 _SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
-"""Largest error of a judge's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
+"""Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 
 _CHUNK = 2**21
 """Bytes for the first steps of a run in pairs, twice those of as many in doubles; what is not used is not touched.
@@ -33,7 +33,7 @@ Both together are so much less than twice the larger that the C library does not
 # A higher order would take longer steps at the same tolerance, until they are longer than the series of neighbouring
 # motions converge, which may have a singularity that the motion itself has not; rounding then grows from step to step.
 ORDER, TOLERANCE = 24, 2.0**-56
-JUDGE_ORDER, JUDGE_TOLERANCE = 28, 2.0**-72
+REFERENCE_ORDER, REFERENCE_TOLERANCE = 28, 2.0**-72
 FINE_ORDER, FINE_TOLERANCE = 32, 2.0**-100
 CHECK_ORDER, CHECK_TOLERANCE = 30, 2.0**-94
 
@@ -80,7 +80,7 @@ class Numerical:
         return cls(table, packed(table, chosen, units), units, why=why)
 
     def run(self, kind: str, end: float) -> Run:
-        """Return steps to a time in the units of the arrays: "doubles", "judge", "fine" or "check"."""
+        """Return steps to a time in the units of the arrays: "doubles", "reference", "fine" or "check"."""
         key = (kind, 1 if end >= 0.0 else -1)
         found = self._runs.get(key)
         if found is not None and (abs(found.end) >= abs(end) or found.singular):
@@ -94,7 +94,7 @@ class Numerical:
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states, and how far they are from a run in pairs."""
-        names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "judge")
+        names = ("fine", "check") if finer or self.lost_to_doubles else ("doubles", "reference")
         (q, v), (other, rate) = (self.by(kind, times) for kind in names)
         share = _SHARE if names[0] == "doubles" else _FINE_SHARE
         q_error, v_error = (self._apart(a, b, share) for a, b in ((q, other), (v, rate)))
@@ -111,7 +111,7 @@ class Numerical:
         """Return differences of places or rates, shape (t, n), with a share of the largest of all coordinates."""
         up = np.array([two_to(e) for e in self.units.lengths])
         each = np.abs((first[..., 0] - second[..., 0]) + (first[..., 1] - second[..., 1]))
-        # Where the difference of one coordinate passes through zero, the judge's own error is larger.
+        # Where the difference of one coordinate passes through zero, the reference's own error is larger.
         found: Floats = each + share * np.max(each / up, axis=1, initial=0.0, keepdims=True) * up
         return found
 
@@ -129,7 +129,7 @@ class Numerical:
         return q * up, v * up * two_to(-self.units.time)
 
     def places(self, times: Floats) -> Floats:
-        """Return coordinates alone, shape (t, n), without a judge: enough to count turns."""
+        """Return coordinates alone, shape (t, n), without a reference: enough to count turns."""
         scaled = np.asarray(times, dtype=np.float64) * two_to(-self.units.time)
         run = self.run("fine" if self.lost_to_doubles else "doubles", float(scaled[np.argmax(np.abs(scaled))]))
         if run.series.ndim == 3:
@@ -164,15 +164,15 @@ class Numerical:
         run = self.run("doubles", scaled)
         if not run.singular:
             return None
-        judge = self.run("judge", scaled)
-        if not judge.singular:
+        reference = self.run("reference", scaled)
+        if not reference.singular:
             self.lost_to_doubles = True
             return None
         near = [i for i, unit in enumerate(self.table.units) if unit == "1/m"]
         if near:
             # A collision cannot be told from a pass so close that the connections are lost to rounding.
-            at = judge.end * two_to(self.units.time)
-            apart = 1.0 / float(np.max(np.abs(evaluate(judge, np.array([judge.end]))[0][0, near, 0])))
+            at = reference.end * two_to(self.units.time)
+            apart = 1.0 / float(np.max(np.abs(evaluate(reference, np.array([reference.end]))[0][0, near, 0])))
             raise AccuracyUnreachable(
                 None,
                 np.inf,
@@ -181,14 +181,14 @@ class Numerical:
                 path=("times",),
                 remedy="ask for earlier times",
             )
-        if judge.end == 0.0 or abs(judge.end - run.end) > _SAME_PLACE * abs(judge.end):
+        if reference.end == 0.0 or abs(reference.end - run.end) > _SAME_PLACE * abs(reference.end):
             raise AccuracyUnreachable(
                 None,
                 np.inf,
                 "masses or lengths are so unequal that the connections are lost to rounding, even in pairs of doubles",
                 path=("bodies",),
             )
-        return judge.end * two_to(self.units.time)
+        return reference.end * two_to(self.units.time)
 
 
 def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float) -> Run:
@@ -203,7 +203,7 @@ def integrate(table: Table, arrays: Packed, units: Units, kind: str, end: float)
     """
     order, tolerance = {
         "doubles": (ORDER, TOLERANCE),
-        "judge": (JUDGE_ORDER, JUDGE_TOLERANCE),
+        "reference": (REFERENCE_ORDER, REFERENCE_TOLERANCE),
         "fine": (FINE_ORDER, FINE_TOLERANCE),
         "check": (CHECK_ORDER, CHECK_TOLERANCE),
     }[kind]

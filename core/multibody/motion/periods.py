@@ -194,7 +194,7 @@ def _fold(
 ) -> None:
     """Evaluate at times of shape (t,) by the time within the period.
 
-    `other` and `rate` are the state as late as the period's uncertainty would have it, for the judge of what follows
+    `other` and `rate` are the state as late as the period's uncertainty would have it, for a reference of what follows
     from the state: so little later that three terms of Taylor's series are more than enough.
     """
     n, order = series.shape[1], series.shape[2] - 1

@@ -1,4 +1,4 @@
-"""The Taylor series of `motion.series` in pairs of doubles: the judge of the doubles, and the finer answer.
+"""The Taylor series of `motion.series` in pairs of doubles: the reference of the doubles, and the finer answer.
 
 Every array of numbers has a last axis (value, tail), or a first one where eight numbers are handled at once; the steps
 are the same. Coefficient k changes a step by about tolerance^(k/N) of its size, so that the last digits of those of

@@ -12,7 +12,7 @@ from flint import arb
 from core.arrays import Floats
 from core.multibody.algebra.polynomials import ZERO, Ball, LinearForm, is_zero
 from core.multibody.equations.packed import pair
-from core.multibody.motion.motion import States, check_looks
+from core.multibody.motion.motion import States, check_sample_count
 from core.multibody.table.table import Table
 
 _PER_RADIAN = 8
@@ -63,7 +63,7 @@ class Turning:
                 q[k, self.turn], v[k, self.turn] = pair(self.table.q[self.turn] + angle, 0), pair(self.rate, 0)
         return States(q, v, 2.0**-100 * np.abs(q[..., 0]), 2.0**-100 * np.abs(v[..., 0]))
 
-    def glance(self, times: Floats) -> tuple[Floats, Floats] | None:
+    def in_doubles(self, times: Floats) -> tuple[Floats, Floats] | None:
         """Return coordinates and rates in doubles, None after so many radians that sines lose digits."""
         rate = float(self.rate)
         if abs(rate) * float(np.max(np.abs(times), initial=0.0)) > FEW_RADIANS:
@@ -80,8 +80,8 @@ class Turning:
         return q, v
 
     @property
-    def glanced_until(self) -> float:
-        """Time up to which `glance` answers (s), but for rounding."""
+    def in_doubles_until(self) -> float:
+        """Time up to which `in_doubles` answers (s), but for rounding."""
         return 0.999 * FEW_RADIANS / abs(float(self.rate)) if float(self.rate) else math.inf
 
     def nodes(self, end: float) -> Floats:
@@ -89,7 +89,7 @@ class Turning:
         period = self.period
         reach = end if period is None else math.copysign(min(abs(end), float(period)), end)
         count = abs(float(self.rate) * reach) * _PER_RADIAN
-        check_looks(count, _MOST_NODES)
+        check_sample_count(count, _MOST_NODES)
         return np.linspace(0.0, reach, 33 + int(count))
 
 

@@ -52,10 +52,10 @@ class Uniform:
         return np.linspace(0.0, end, 33)
 
 
-def first_zero(length: Poly, table: Table, gains: Sequence[Ball], backwards: bool) -> Ball | None:
+def first_zero(length: Poly, table: Table, accelerations: Sequence[Ball], backwards: bool) -> Ball | None:
     """Return the first time after the start, or before it, at which an affine polynomial is zero; None for never.
 
-    The coordinates move with constant accelerations `gains`, and the time is a root of a quadratic in balls.
+    The coordinates move with constant accelerations `accelerations`, and the time is a root of a quadratic in balls.
     """
     c: Ball = length.get((), ZERO)
     b = a = ZERO
@@ -63,7 +63,7 @@ def first_zero(length: Poly, table: Table, gains: Sequence[Ball], backwards: boo
         if key:
             c = c + x * table.q[key[0]]
             b = b + x * table.v[key[0]]
-            a = a + x * gains[key[0]] / 2
+            a = a + x * accelerations[key[0]] / 2
     if is_zero(a):
         roots = [] if is_zero(b) else [-c / b]
     else:

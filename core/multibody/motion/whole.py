@@ -15,7 +15,7 @@ from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import Ball, Poly
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
-from core.multibody.motion.motion import Glanced, Motion
+from core.multibody.motion.motion import EvaluatedInDoubles, Motion
 from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.series_pairs import multipliers_pairs
 from core.multibody.reduction.reduction import Reduced
@@ -51,7 +51,7 @@ class Whole:
     Attributes
     ----------
     acceleration : sequence of balls
-        Of every coordinate as described, at the start; `gains`, of those of the reduced table.
+        Of every coordinate as described, at the start; `reduced_accelerations`, of those of the reduced table.
     parts : sequence of (coordinates of the reduced table, motion)
     dropped : bool
         Whether rows were left out because they followed from others at the start.
@@ -60,7 +60,7 @@ class Whole:
     measures: Measures
     reduced: Reduced
     acceleration: Sequence[Ball]
-    gains: Sequence[Ball]
+    reduced_accelerations: Sequence[Ball]
     parts: Sequence[tuple[Sequence[int], Motion]]
     dropped: bool = False
 
@@ -90,9 +90,9 @@ class Whole:
         return independent(row.line(table.q) for row in table.rows)
 
     @cached_property
-    def _glanced(self) -> list[tuple[int, Glanced]]:
+    def _evaluated_in_doubles(self) -> list[tuple[int, EvaluatedInDoubles]]:
         # Whether a motion has a protocol takes longer to find out than what it then answers.
-        return [(k, motion) for k, (_, motion) in enumerate(self.parts) if isinstance(motion, Glanced)]
+        return [(k, motion) for k, (_, motion) in enumerate(self.parts) if isinstance(motion, EvaluatedInDoubles)]
 
     def motion_of(self, coordinates: Sequence[int]) -> Motion | None:
         """Return the motion of the part that these coordinates of the scene follow, None where they stay."""
@@ -154,9 +154,9 @@ class Whole:
         slopes, offsets = self._affine
         return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w)
 
-    def glance(self, times: Floats) -> tuple[Floats, Floats, bool]:
+    def in_doubles(self, times: Floats) -> tuple[Floats, Floats, bool]:
         """Return the states as `in_pairs`, or faster to a few roundings of doubles, and whether it is the latter."""
-        found = {k: motion.glance(times) for k, motion in self._glanced}
+        found = {k: motion.in_doubles(times) for k, motion in self._evaluated_in_doubles}
         if all(one is None for one in found.values()):
             return *self.in_pairs(times), False
         shape = (len(times), len(self.reduced.table.names), 2)

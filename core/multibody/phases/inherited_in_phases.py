@@ -25,7 +25,7 @@ from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.phases.phase import PhaseMotion
 from core.multibody.phases.phases import motion_in_phases
-from core.multibody.trajectory.inherited import MOST_INPUTS, inputs_of
+from core.multibody.trajectory.inherited import MOST_PROPAGATED_NUMBERS, inputs_of
 from core.systems.trajectory import Column
 
 MOVED = 2.0**-34
@@ -55,8 +55,10 @@ def inherited_in_phases(
         raise NotApplicable(f"{poor} is not known well enough for the effect of small changes to be seen in it")
     with precision(BITS):
         inputs = list(inputs_of(motion.base.measures.numerals.read))
-    if len(inputs) > MOST_INPUTS:
-        raise NotApplicable(f"the description has {len(inputs)} numbers, and at most {MOST_INPUTS} are propagated")
+    if len(inputs) > MOST_PROPAGATED_NUMBERS:
+        raise NotApplicable(
+            f"the description has {len(inputs)} numbers, and at most {MOST_PROPAGATED_NUMBERS} are propagated"
+        )
     kinds = _kinds(motion)
     total = {name: np.zeros(len(one.values)) for name, one in columns.items()}
     for paths in inputs:

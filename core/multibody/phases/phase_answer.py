@@ -15,10 +15,10 @@ from core.multibody.answer import (
     ForceAnswer,
     MotionPhase,
     Occurrence,
-    SceneAnswer,
     SceneExtremes,
     SceneModel,
     SceneProblem,
+    SceneSolution,
 )
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equations.packed import nearest
@@ -43,7 +43,7 @@ THRESHOLDS = "thresholds"
 _NO_HORIZON = "how long a motion through events stays within the accuracy is not looked for"
 
 
-def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
+def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneSolution:
     """Answer a question about a scene with contacts, or with strings that are slack at times.
 
     Raises
@@ -100,7 +100,7 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneAnswer:
         accelerations = accelerations_of(found.described, found.whole.acceleration)
         forces = forces_of_start(found.described, values)
     outputs = request.outputs
-    return SceneAnswer(
+    return SceneSolution(
         model,
         accelerations if "accelerations" in outputs else None,
         forces if "forces" in outputs else None,

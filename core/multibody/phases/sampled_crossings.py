@@ -13,7 +13,7 @@ from core.multibody.equations.expansion import expansion
 from core.multibody.equations.packed import two_to
 from core.multibody.equations.polynomial_roots import first_of_quadratic
 from core.multibody.motion.modes import Modes
-from core.multibody.motion.motion import check_looks
+from core.multibody.motion.motion import check_sample_count
 from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.periods import Periodic
 from core.multibody.motion.turning import Turning
@@ -90,7 +90,7 @@ class Sampled:
                     end = min(end, float(own[-1]))
                 else:
                     periods = end / own[-1] if own[-1] > 0.0 else math.inf
-                    check_looks((periods + 1.0) * len(own), _MOST_NODES)
+                    check_sample_count((periods + 1.0) * len(own), _MOST_NODES)
                     own = (np.arange(math.ceil(periods))[:, None] * own[-1] + own[None, :]).ravel()
             nodes.append(own)
         times = np.unique(np.concatenate(nodes))
@@ -98,7 +98,7 @@ class Sampled:
 
     def curves(self, times: Floats) -> tuple[Floats, Floats]:
         """Return everything watched at times, and below which size it is noise, each of shape (watches, t)."""
-        q, v, glanced = self.whole.glance(times)
+        q, v, in_doubles = self.whole.in_doubles(times)
         multipliers = None
         found, noise = np.empty((len(self.watched), len(times))), np.empty((len(self.watched), len(times)))
         for k, watch in enumerate(self.watched):
@@ -117,7 +117,7 @@ class Sampled:
                     found[k] -= np.hypot(*rubs)
                 size = np.maximum(size, float(np.max(np.abs(multipliers), initial=0.0)))
             noise[k] = _NOISE * size
-            if glanced:
+            if in_doubles:
                 noise[k] += _ROUNDED * np.max(size, initial=0.0)
         return found, noise
 
@@ -127,8 +127,8 @@ class Sampled:
         motions = [motion for _, motion in self.whole.parts]
         scales = [2.0 * two_to(motion.units.time) for motion in motions if isinstance(motion, (Numerical, Periodic))]
         # Later states of what turns are evaluated in balls, which takes a hundred times as long.
-        glanced = [motion.glanced_until for motion in motions if isinstance(motion, (Modes, Turning))]
-        before, reach = 0.0, min(end, max(scales) if scales else min(glanced, default=end))
+        ends = [motion.in_doubles_until for motion in motions if isinstance(motion, (Modes, Turning))]
+        before, reach = 0.0, min(end, max(scales) if scales else min(ends, default=end))
         while True:
             times, singular = self.grid(reach)
             # A motion followed further has other steps: without the time before, there would be a gap at the seam.

@@ -23,7 +23,7 @@ from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.sampled_crossings import rates_along
 from core.multibody.phases.stretches import Stretch
 from core.multibody.start import energy_of
-from core.multibody.table.connection_effects import Unilateral, Work
+from core.multibody.table.connection_effects import Unilateral, WorkTerm
 from core.multibody.table.momenta import work_of_potential
 from core.multibody.trajectory.along import State, power_of, speed_of, velocities_of, watched_times
 from core.multibody.trajectory.integrals import integrated
@@ -31,7 +31,7 @@ from core.multibody.trajectory.turns import reversals
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
-_TELL = 4.0
+_MARGIN = 4.0
 _PARTS = 8
 _NONE = np.zeros(0)
 FRICTION, IMPACTS = "friction.work", "impacts.work"
@@ -172,7 +172,7 @@ class SumsInPhases:
         self._put(one, mine, values, errors)
         one.error += (piece.late + 2.0**-53 * piece.length) * float(ends[1])
 
-    def _by_potential(self, one: _Sum, number: int, piece: Stretch, work: Work) -> None:
+    def _by_potential(self, one: _Sum, number: int, piece: Stretch, work: WorkTerm) -> None:
         mine, times = self._local(number, piece)
         states = piece.states(times)
         start = np.array([pair(x, 0) for x in self.motion.phases[0].tracks[0].q])

@@ -4,7 +4,7 @@ At rest a scene is in equilibrium if forces exist that balance it, with every co
 every friction within its cone. Whether they do is decided in balls, and the ends of the range are bisected. Where the
 number is a load or a coefficient of friction the balancing forces and the number form a convex set, or a larger number
 only admits more: rest is one interval, and nothing between its ends is missed. Geometry may have more than one
-interval; there it is looked at in `LOOKS` values on either side, and a gap between neighbours is not seen.
+interval; there it is looked at in `PROBES` values on either side, and a gap between neighbours is not seen.
 
 References
 ----------
@@ -34,13 +34,13 @@ from core.multibody.table.description import Described, described
 from core.near_names import did_you_mean
 from core.work import spend
 
-LOOKS = 64
+PROBES = 64
 """Values between the written one and each bound that are looked at where rest need not be one interval."""
 _NARROW = 2.0**-64
 """Width of what is left at an end, relative to its value."""
 _HALVINGS = 200
 _UNITS = 50.0
-"""Work of one look, for every coordinate of the scene."""
+"""Work of one probe, for every coordinate of the scene."""
 
 
 @dataclass(frozen=True)
@@ -171,9 +171,9 @@ def one_interval(scene: Scene, path: Path) -> bool:
 def _end(varied: _Varied, inside: Ball, bound: Ball) -> RestEnd:
     """Return where rest ends between a value with it and a bound."""
     written = inside
-    looks = 1 if one_interval(varied.scene, varied.path) else LOOKS
-    for k in range(1, looks + 1):
-        outside = bound if k == looks else arb((written + (bound - written) * k / looks).mid())
+    probes = 1 if one_interval(varied.scene, varied.path) else PROBES
+    for k in range(1, probes + 1):
+        outside = bound if k == probes else arb((written + (bound - written) * k / probes).mid())
         if not varied.rests(outside):
             return _bisected(varied, inside, outside)
         inside = outside

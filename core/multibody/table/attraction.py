@@ -10,7 +10,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.algebra.polynomials import Ball, entry, is_zero
-from core.multibody.table.connection_effects import Force, Work
+from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.near_names import near_and_all
@@ -60,4 +60,4 @@ def _attract(measures: Measures, name: str, ends: tuple[Point, Point], strength:
     index = measures.inverse(name, measures.length(name, *ends, path))
     measures.table.add_load(index, strength)
     measures.forces.append(Force(f"{name}.force", "N", [], {(index, index): strength}))
-    measures.works.append(Work(name, {(index,): -strength}))
+    measures.works.append(WorkTerm(name, {(index,): -strength}))

@@ -36,7 +36,7 @@ class Force:
 
 
 @dataclass(frozen=True)
-class Work:
+class WorkTerm:
     """What takes or brings energy: a potential, or a power.
 
     Attributes

@@ -14,7 +14,7 @@ from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.table import attraction, laws
 from core.multibody.table.chains import chain
-from core.multibody.table.connection_effects import Work
+from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.contact_geometry import contact
 from core.multibody.table.coordinates import Coordinates, dimension_of
 from core.multibody.table.measures import Measures
@@ -63,7 +63,7 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
     return Described(scene, measures, paths)
 
 
-def _weight(measures: Measures) -> list[Work]:
+def _weight(measures: Measures) -> list[WorkTerm]:
     """Return what gravity does, where there is any."""
     fall: Poly = dict(measures.fall)
     for frame in measures.coordinates.frames.values():
@@ -71,7 +71,7 @@ def _weight(measures: Measures) -> list[Work]:
             mass = measures.table.mass.get((i, i))
             if mass is not None and not is_zero(pull):
                 fall[i,] = -mass * pull
-    return [Work("gravity", fall)] if fall else []
+    return [WorkTerm("gravity", fall)] if fall else []
 
 
 def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:

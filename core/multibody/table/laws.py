@@ -20,7 +20,7 @@ from core.multibody.algebra.polynomials import (
     product,
 )
 from core.multibody.language.connections import GROUND
-from core.multibody.table.connection_effects import Force, Work
+from core.multibody.table.connection_effects import Force, WorkTerm
 from core.multibody.table.frames import Point
 from core.multibody.table.measures import Measures
 from core.multibody.table.rolling import rate_of, sum_of_rates
@@ -44,7 +44,7 @@ def spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
                 raise InvalidParameter(path, "connect two different bodies, or a body and the ground")
             for component in d:
                 _potential(measures, component, k)
-            measures.works.append(Work(name, combined(*((k / 2, product(x, x)) for x in d))))
+            measures.works.append(WorkTerm(name, combined(*((k / 2, product(x, x)) for x in d))))
             for axis, component in zip("xyz", d, strict=False):
                 measures.forces.append(Force(f"{name}.{axis}", "N", [], combined((k, component))))
             return
@@ -53,7 +53,7 @@ def spring(measures: Measures, name: str, connection: Any, path: Path) -> None:
         rest = measures.table.q[index]
     stretch = combined((ONE, coordinate(index)), (-rest, constant(ONE)))
     _potential(measures, stretch, k)
-    measures.works.append(Work(name, combined((k / 2, product(stretch, stretch)))))
+    measures.works.append(WorkTerm(name, combined((k / 2, product(stretch, stretch)))))
     pull = combined((k, coordinate(index)), (-k * rest, constant(ONE)))
     measures.forces.append(Force(f"{name}.force", "N", [], pull))
 
@@ -68,7 +68,7 @@ def torsion_spring(measures: Measures, name: str, connection: Any, path: Path) -
         rest = measures.numerals.number(connection.rest_angle, (*path, "rest_angle"))
     away = combined((ONE, turn), (-rest, constant(ONE)))
     _potential(measures, away, k)
-    measures.works.append(Work(name, combined((k / 2, product(away, away)))))
+    measures.works.append(WorkTerm(name, combined((k / 2, product(away, away)))))
     measures.forces.append(Force(f"{name}.torque", "N m", [], combined((-k, away))))
 
 
@@ -86,7 +86,7 @@ def damper(measures: Measures, name: str, connection: Any, path: Path) -> None:
     for i, x in slopes.items():
         for j, y in slopes.items():
             measures.table.add_damping(i, j, c * x * y)
-    measures.works.append(Work(name, square=(c, slopes)))
+    measures.works.append(WorkTerm(name, square=(c, slopes)))
     suffix, sign = ("force", c) if unit == "N" else ("torque", -c)
     measures.forces.append(Force(f"{name}.{suffix}", unit, [], {}, {i: sign * x for i, x in slopes.items()}))
     measures.conservative = False
@@ -101,7 +101,7 @@ def motor(measures: Measures, name: str, connection: Any, path: Path) -> None:
         measures.conservative = False
     row = measures.roll(name, rates)
     if not is_zero(rate):
-        measures.works.append(Work(name, rows=[(row, constant(-rate))]))
+        measures.works.append(WorkTerm(name, rows=[(row, constant(-rate))]))
     measures.force(f"{name}.torque", [(row, constant(ONE))], "N m")
 
 
@@ -171,7 +171,7 @@ def force(measures: Measures, name: str, connection: Any, path: Path) -> None:
             if key and not is_zero(value):
                 measures.table.add_load(key[0], value * x)
     measures.works.append(
-        Work(name, combined(*((-x, component) for x, component in zip(vector, point.at, strict=True))))
+        WorkTerm(name, combined(*((-x, component) for x, component in zip(vector, point.at, strict=True))))
     )
 
 
@@ -183,7 +183,7 @@ def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
         if isinstance(body, str) and body in measures.coordinates.frames:
             turn = measures.coordinates.turn_of(body, (*path, "body"))
             table.add_load(next(iter(turn))[0], value)
-            measures.works.append(Work(name, combined((-value, turn))))
+            measures.works.append(WorkTerm(name, combined((-value, turn))))
             return
         remedy = near_and_all(body, measures.coordinates.frames, "bodies")
         raise InvalidParameter((*path, "body"), "name a body of the scene", remedy=remedy)
@@ -202,7 +202,7 @@ def torque(measures: Measures, name: str, connection: Any, path: Path) -> None:
             table.add_stiffness(axis[i], axis[j], vector[k] / 2)
             terms.append((-vector[j] / 2, axis[k], axis[i]))
             terms.append((vector[k] / 2, axis[j], axis[i]))
-    measures.works.append(Work(name, terms=[(-factor, i, j) for factor, i, j in terms]))
+    measures.works.append(WorkTerm(name, terms=[(-factor, i, j) for factor, i, j in terms]))
     measures.conservative = False
 
 

@@ -25,7 +25,7 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     product,
 )
-from core.multibody.table.connection_effects import Force, Limit, Unilateral, Work
+from core.multibody.table.connection_effects import Force, Limit, Unilateral, WorkTerm
 from core.multibody.table.coordinates import Coordinates
 from core.multibody.table.frames import Point
 from core.multibody.table.momenta import StateFunction
@@ -54,7 +54,7 @@ class Measures:
         self.numerals, self.dimension = coordinates.numerals, coordinates.dimension
         self.forces: list[Force] = []
         self.limits: list[Limit] = []
-        self.works: list[Work] = []
+        self.works: list[WorkTerm] = []
         self.potential = ONE - ONE
         # What has mass beside the bodies: its potential in gravity, and its momentum and angular momentum by name.
         self.fall: Poly = {}

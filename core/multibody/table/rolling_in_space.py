@@ -25,7 +25,7 @@ from core.multibody.algebra.polynomials import (
     evaluated,
     is_zero,
 )
-from core.multibody.table.connection_effects import Work
+from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.frames import Point
 from core.multibody.table.laws import clock
 from core.multibody.table.measures import COMPONENTS, Measures
@@ -97,7 +97,7 @@ class _Surface:
                 driven.append((len(measures.table.rows), carried))
             rows.append(measures.roll(name, sum_of_rates(*parts)))
         if driven:
-            measures.works.append(Work(name, rows=driven))
+            measures.works.append(WorkTerm(name, rows=driven))
         for i, axis in enumerate(COMPONENTS):
             terms = [(row, constant(e[i])) for row, e in zip(rows, across, strict=True) if not is_zero(e[i])]
             measures.force(f"{name}.friction.{axis}", terms)

@@ -14,7 +14,7 @@ from core.balls import precision
 from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import BITS, Ball
 from core.multibody.motion.whole import Whole, values
-from core.multibody.table.connection_effects import Work
+from core.multibody.table.connection_effects import WorkTerm
 from core.multibody.table.frames import Frame
 from core.multibody.table.momenta import work_of_potential
 from core.multibody.trajectory.integrals import Integrand, integrated
@@ -25,7 +25,7 @@ MOST_NODES = 20_000
 """Times at which a motion is looked at between the start and the last sample."""
 
 _SMALL = 2.0**-50
-_TELL = 4.0
+_MARGIN = 4.0
 _PARTS = 8
 """A motion proposes eight times for every step of its series; within a step an integrand is smooth."""
 
@@ -132,14 +132,14 @@ class Along:
         times = watched_times(self.whole, end, of=of)
         return np.concatenate([times[::_PARTS], times[-1:], reversals(followed, closer_at_ends(times))])
 
-    def _by_potential(self, work: Work) -> Column:
+    def _by_potential(self, work: WorkTerm) -> Column:
         states = self.whole.states(self.times, finer=self.finer)
         start = self.whole.states(np.zeros(1), finer=self.finer).q[0]
         done, size = work_of_potential(work.potential or {}, start, states.q)
         error = _SMALL * float(np.max(size, initial=0.0))
         if states.reference is not None:
             other = work_of_potential(work.potential or {}, start, states.reference[0])[0]
-            error += _TELL * float(np.max(np.abs(done - other), initial=0.0))
+            error += _MARGIN * float(np.max(np.abs(done - other), initial=0.0))
         return Column(done, "J", error, self.how)
 
     def _integral(self, function: Callable[[State], Floats], nodes: Callable[[float], Floats], unit: str) -> Column:
@@ -167,7 +167,7 @@ def speed_of(velocity: Callable[[State], Floats], state: State) -> Floats:
     return speed
 
 
-def power_of(whole: Whole, work: Work) -> Callable[[State], Floats]:
+def power_of(whole: Whole, work: WorkTerm) -> Callable[[State], Floats]:
     """Return the power of what is no potential, as a function of the state."""
 
     def power(state: State) -> Floats:

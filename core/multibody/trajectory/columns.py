@@ -26,8 +26,8 @@ NEAREST = 2.0**-53 * (1 + 2.0**-20)
 """The same for coordinates and rates that are the doubles nearest to pairs."""
 _SOLVED = 2.0**-100
 """Share of the largest multiplier, coordinate or rate to which all of them are known."""
-_TELL = 1.02
-"""Margin for the judge's own error, which is some 2^-14 of what it judges."""
+_MARGIN = 1.02
+"""Margin for the reference's own error, which is some 2^-14 of what it judges."""
 
 
 COLUMNS_OF_STATES = ("trajectory", "forces-in-time", "energy-in-time", "momenta-in-time")
@@ -35,7 +35,7 @@ COLUMNS_OF_STATES = ("trajectory", "forces-in-time", "energy-in-time", "momenta-
 
 
 Unknown = tuple[Floats, Floats]
-"""By how much places and rates, each of shape (t, n), are wrong without their judge showing it."""
+"""By how much places and rates, each of shape (t, n), are wrong without their reference showing it."""
 
 
 @dataclass(frozen=True)
@@ -100,17 +100,17 @@ class Columns:
         multipliers = self.whole.multipliers(q, v)
         # What should be zero is known no better than the largest of what is solved for with it.
         floors = _SOLVED * self.whole.largest_multipliers(multipliers)
-        judged = None
+        by_reference = None
         if self.states.reference is not None:
-            judged = (*self.states.reference, self.whole.multipliers(*self.states.reference))
+            by_reference = (*self.states.reference, self.whole.multipliers(*self.states.reference))
         moved = self._moved(len(chosen), lambda q, v: self._forces(chosen, q, v))
         found: dict[str, Column] = {}
         for k, force in enumerate(chosen):
             values, size = self.whole.force(force, q, v, multipliers)
             floor = sum(float(floors[row] * np.max(values_of(poly, q)[1], initial=0.0)) for row, poly in force.terms)
             error = _SMALL * float(np.max(size, initial=0.0)) + floor + float(moved[k])
-            if judged is not None:
-                other = self.whole.force(force, *judged)[0]
+            if by_reference is not None:
+                other = self.whole.force(force, *by_reference)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
             found[force.name] = Column(values, force.unit, error, self.how)
         return found
@@ -297,4 +297,4 @@ def _at(function: StateFunction, q: Floats, v: Floats) -> Floats:
 
 def _stated(values: Floats, errors: Floats, rounding: float = _SMALL) -> float:
     size = np.abs(values) if values.ndim == 1 else np.linalg.norm(values, axis=1)
-    return _TELL * float(np.max(errors, initial=0.0)) + rounding * float(np.max(size, initial=0.0))
+    return _MARGIN * float(np.max(errors, initial=0.0)) + rounding * float(np.max(size, initial=0.0))

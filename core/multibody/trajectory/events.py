@@ -61,7 +61,7 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEve
         for limit in lengths:
             table = whole.reduced.table
             length = substituted(limit.length or {}, whole.reduced.expressions)
-            root = first_zero(length, table, whole.gains, end < 0.0)
+            root = first_zero(length, table, whole.reduced_accelerations, end < 0.0)
             time = None if root is None else float(root)
             if time is not None and abs(time) <= abs(end):
                 found.append(MotionEvent(limit.event, limit.name, time, 2.0**-52 * abs(time)))
@@ -144,13 +144,15 @@ def _grid(whole: Whole, end: float) -> Floats:
     return copysign(1.0, end) * closer_at_ends(times[times <= abs(end)])
 
 
-def _curves(whole: Whole, watched: Sequence[Limit], times: Floats, *, judged: bool = False) -> tuple[Floats, Floats]:
-    """Return every watched quantity at the times, by the answer or by its judge, and the sizes of its terms.
+def _curves(
+    whole: Whole, watched: Sequence[Limit], times: Floats, *, by_reference: bool = False
+) -> tuple[Floats, Floats]:
+    """Return every watched quantity at the times, by the answer or by its reference, and the sizes of its terms.
 
     Both have the shape (limits, t).
     """
     states = whole.states(times)
-    q, v = (states.q, states.v) if not judged or states.reference is None else states.reference
+    q, v = (states.q, states.v) if not by_reference or states.reference is None else states.reference
     multipliers = whole.multipliers(q, v) if any(limit.force is not None for limit in watched) else np.zeros((0, 0))
     found, size = np.empty((len(watched), len(times))), np.empty((len(watched), len(times)))
     for number, limit in enumerate(watched):
@@ -195,9 +197,9 @@ def _first_loss(whole: Whole, limit: Limit, grid: Floats, curve: Floats) -> Moti
         low, high = fine[k - 1], fine[k]
     around = np.array([low - (high - low) - 1e-7 * abs(high), high, high + (high - low) + 1e-7 * abs(high)])
     curve, size = (x[0] for x in _curves(whole, [limit], around))
-    judged = _curves(whole, [limit], around, judged=True)[0][0]
+    by_reference = _curves(whole, [limit], around, by_reference=True)[0][0]
     slope = (curve[2] - curve[0]) / (around[2] - around[0])
-    off = abs(curve[1] - judged[1]) * 1.01 + 2.0**-50 * float(np.max(size))
+    off = abs(curve[1] - by_reference[1]) * 1.01 + 2.0**-50 * float(np.max(size))
     error = off / abs(slope) if slope != 0.0 else abs(high)
     return MotionEvent(limit.event, limit.name, float(high), float(error + (abs(high - low)) + 2.0**-52 * abs(high)))
 

@@ -28,7 +28,7 @@ from core.multibody.trajectory.column_errors import relative
 from core.multibody.trajectory.columns import Columns
 from core.systems.trajectory import Column
 
-MOST_INPUTS = 400
+MOST_PROPAGATED_NUMBERS = 400
 """Numbers that are moved; each costs a motion of its own."""
 
 VISIBLE = 2.0**-34
@@ -39,7 +39,7 @@ It is less than the share by which velocities may miss the connections."""
 Derived = Callable[[Whole, Floats, WholeStates], dict[str, Column]]
 """From a scene and its states at some times to columns that follow from them."""
 
-LOOKS = 64
+INSTANTS = 64
 """Times between the start and the last sample at which the horizon is looked for, on either side."""
 
 
@@ -83,8 +83,10 @@ def changes(scene: Scene, found: Modelled, times: Floats, follow: Derived) -> Ch
         if body.body is not None:
             raise NotApplicable(f'"{name}" is a body of the catalogue, whose numbers are not propagated')
     inputs = list(inputs_of(found.described.measures.numerals.read))
-    if len(inputs) > MOST_INPUTS:
-        raise NotApplicable(f"the description has {len(inputs)} numbers, and at most {MOST_INPUTS} are propagated")
+    if len(inputs) > MOST_PROPAGATED_NUMBERS:
+        raise NotApplicable(
+            f"the description has {len(inputs)} numbers, and at most {MOST_PROPAGATED_NUMBERS} are propagated"
+        )
     places, rates = found.whole.in_pairs(times)
     q, v = np.zeros(places.shape[:2]), np.zeros(rates.shape[:2])
     nothing = np.zeros(places.shape[:2])
@@ -152,9 +154,9 @@ def _shape(found: Modelled) -> tuple[list[str], int]:
     return table.names, len(independent(row.line(table.q) for row in table.rows))
 
 
-def looks(times: Floats) -> Floats:
+def instants(times: Floats) -> Floats:
     """Return times between the start and the farthest ones, nearest first."""
-    share = np.arange(1, LOOKS + 1) / LOOKS
+    share = np.arange(1, INSTANTS + 1) / INSTANTS
     ends = {max(float(np.max(times)), 0.0), min(float(np.min(times)), 0.0)} - {0.0}
     found = np.concatenate([share * end for end in ends]) if ends else np.zeros(1)
     return found[np.argsort(np.abs(found), kind="stable")]

@@ -25,7 +25,7 @@ _FINE = 2.0**-50
 """Share of a piece up to which two sums of ten rounded terms differ by rounding alone."""
 
 Integrand = Callable[[Floats], tuple[Floats, Floats, Floats]]
-"""From times of shape (t,) to the integrand by the answer, by its judge, and how large its terms are, each (t,)."""
+"""From times of shape (t,) to the integrand by the answer, by its reference, and how large its terms are, each (t,)."""
 
 
 def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floats, Floats]:
@@ -62,11 +62,13 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
             raise BudgetExceeded(what, points, MOST_POINTS, path=("outputs",), remedy=remedy)
         middle = 0.5 * (low + high)
         halves = _gauss(integrand, np.concatenate([low, middle]), np.concatenate([middle, high]))
-        (first, finer), (_, judged), (_, finer_size) = ((x[: len(low)], x[: len(low)] + x[len(low) :]) for x in halves)
+        (first, finer), (_, by_reference), (_, finer_size) = (
+            (x[: len(low)], x[: len(low)] + x[len(low) :]) for x in halves
+        )
         off = np.abs(finer - whole)
         settled = (off <= _FINE * np.maximum(finer_size, 2.0**-8 * largest)) | (middle == low) | (depth == _DEPTH - 1)
         np.add.at(piece, owner[settled], finer[settled])
-        np.add.at(error, owner[settled], (off + 4.0 * np.abs(finer - judged) + _FINE * finer_size)[settled])
+        np.add.at(error, owner[settled], (off + 4.0 * np.abs(finer - by_reference) + _FINE * finer_size)[settled])
         go = ~settled
         if not np.any(go):
             break
@@ -80,8 +82,8 @@ def integrated(integrand: Integrand, nodes: Floats, times: Floats) -> tuple[Floa
 
 
 def _gauss(integrand: Integrand, low: Floats, high: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the integral over each interval, that of the judge, and that of the terms."""
+    """Return the integral over each interval, that of the reference, and that of the terms."""
     half = 0.5 * (high - low)
     times = (0.5 * (low + high))[:, None] + half[:, None] * _POINTS
-    own, judged, size = (values.reshape(times.shape) for values in integrand(times.ravel()))
-    return half * (own @ _WEIGHTS), half * (judged @ _WEIGHTS), np.abs(half) * (size @ _WEIGHTS)
+    own, by_reference, size = (values.reshape(times.shape) for values in integrand(times.ravel()))
+    return half * (own @ _WEIGHTS), half * (by_reference @ _WEIGHTS), np.abs(half) * (size @ _WEIGHTS)

@@ -28,7 +28,7 @@ from core.multibody.trajectory.column_errors import (
 )
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES, NEAREST, Columns
 from core.multibody.trajectory.events import first_event
-from core.multibody.trajectory.inherited import changes, horizon, looks
+from core.multibody.trajectory.inherited import changes, horizon, instants
 from core.multibody.trajectory.nearest import Nearest
 from core.multibody.trajectory.occurrences import (
     ExtremesOf,
@@ -277,7 +277,7 @@ class DescribedSystem:
             return Columns(whole, times, states, "closed form").chosen(followed, self.determined)
 
         try:
-            known = changes(self.scene, self.found, np.concatenate([times, looks(times)]), following)
+            known = changes(self.scene, self.found, np.concatenate([times, instants(times)]), following)
             moved = known.of_columns(np.arange(len(times)))
         except MechanicsError as fault:
             return columns, replace(stated, why=fault.detail)

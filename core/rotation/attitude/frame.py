@@ -21,7 +21,7 @@ from core.rotation.attitude.quaternions import (
 )
 from core.rotation.attitude.sampling import phase_at_start
 from core.rotation.closed_form.circulation import SEPARATRIX
-from core.rotation.closed_form.constants_of_motion import Motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion
 from core.rotation.precession.constants import PrecessionConstants
 
 
@@ -69,7 +69,7 @@ def _shifted(x: Scaled, exponent: int, sign: float) -> Pair:
 
 @kernel()
 def from_precession(
-    motion: Motion,
+    motion: ConstantsOfMotion,
     pre: PrecessionConstants,
     i: NDArray[np.float64],
     it: NDArray[np.float64],

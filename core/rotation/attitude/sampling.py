@@ -12,7 +12,7 @@ from core.compiled import fma, kernel
 from core.double_double import dd_add, two_prod
 from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
 from core.elliptic.lattice import Lattice
-from core.rotation.closed_form.constants_of_motion import Motion, Weights
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion, Weights
 from core.rotation.closed_form.sampling import about_quarter
 from core.rotation.precession.constants import CIRCULAR, LIMIT, PrecessionConstants, Quarter
 
@@ -99,7 +99,7 @@ def _unweighted(lat: Lattice) -> Weights:
 
 # Inlined before loop optimisation: as calls they would be too long to be vectorised by four samples.
 @kernel(inline="always")
-def _near_circular(motion: Motion, pre: PrecessionConstants, t: float) -> _Instant:
+def _near_circular(motion: ConstantsOfMotion, pre: PrecessionConstants, t: float) -> _Instant:
     lat = motion.lattice
     n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
     odd, sign = half_parity(n + motion.start_quarter)
@@ -111,7 +111,7 @@ def _near_circular(motion: Motion, pre: PrecessionConstants, t: float) -> _Insta
 
 
 @kernel(inline="always")
-def _near_the_separatrix(motion: Motion, pre: PrecessionConstants, t: float) -> _Instant:
+def _near_the_separatrix(motion: ConstantsOfMotion, pre: PrecessionConstants, t: float) -> _Instant:
     lat = motion.lattice
     n, r, r_tail = split_phase(motion.rate, motion.rate_tail, t, motion.start, motion.start_tail)
     odd, sign = half_parity(n + motion.start_quarter)
@@ -125,7 +125,7 @@ def _near_the_separatrix(motion: Motion, pre: PrecessionConstants, t: float) -> 
 
 
 @kernel()
-def _on_the_separatrix(motion: Motion, pre: PrecessionConstants, t: float) -> _Instant:
+def _on_the_separatrix(motion: ConstantsOfMotion, pre: PrecessionConstants, t: float) -> _Instant:
     xh, xl = two_prod(motion.rate, t)
     yh, yl = dd_add(xh, xl + motion.rate_tail * t, motion.start, motion.start_tail)
     tanh, sech = separatrix_at(yh, yl)
@@ -149,7 +149,7 @@ def _quaternion(pre: PrecessionConstants, t: float, at: _Instant) -> tuple[float
 
 
 @kernel()
-def phase_at_start(motion: Motion, pre: PrecessionConstants) -> tuple[float, float]:
+def phase_at_start(motion: ConstantsOfMotion, pre: PrecessionConstants) -> tuple[float, float]:
     """Return cosine and sine, times a positive factor, of the periodic part of psi/2 at t = 0."""
     if pre.branch == LIMIT:
         half, _ = separatrix_at(0.5 * motion.start, 0.5 * motion.start_tail)
@@ -190,7 +190,7 @@ def _dot(row: _Row, q: tuple[float, float, float, float]) -> float:
 
 @kernel()
 def sample_attitude(
-    motion: Motion,
+    motion: ConstantsOfMotion,
     pre: PrecessionConstants,
     times: NDArray[np.float64],
     turn: NDArray[np.float64],

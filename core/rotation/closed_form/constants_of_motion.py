@@ -66,7 +66,7 @@ class Weights(NamedTuple):
     d_odd: float
 
 
-class Motion(NamedTuple):
+class ConstantsOfMotion(NamedTuple):
     """Constants of one motion; times in seconds, rates in rad/s, axes numbered in ascending order of moments."""
 
     regime: int
@@ -93,7 +93,7 @@ class Motion(NamedTuple):
     condition_bounds: ConditionBounds
     """With u = 1: for the rounding of 2^-104 with which these constants were formed."""
 
-    def mirrored(self, c: float, b: float, d: float) -> Motion:
+    def mirrored(self, c: float, b: float, d: float) -> ConstantsOfMotion:
         """Return the motion with the components along its three axes multiplied by signs."""
         k = self.weights
         weights = Weights(c * k.c_even, b * k.b_even, d * k.d_even, c * k.c_odd, b * k.b_odd, d * k.d_odd)
@@ -119,8 +119,8 @@ def _weights(ac: Pair, ab: Pair, ad: Pair, lat: Lattice) -> Weights:
 
 
 @kernel()
-def _motionless(regime: int) -> Motion:
-    return Motion(
+def _motionless(regime: int) -> ConstantsOfMotion:
+    return ConstantsOfMotion(
         regime, 2, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         0.0, 0.0, 1.0, 0.0, 0.0, 0.0, NONE,
     )  # fmt: skip
@@ -142,7 +142,7 @@ def constants_of_motion(
     wt: NDArray[np.float64],
     decided: bool,
     exact: Scaled,
-) -> Motion:
+) -> ConstantsOfMotion:
     """Return the constants of the motion that starts with angular velocity `w` at t = 0.
 
     Parameters
@@ -196,7 +196,7 @@ def constants_of_motion(
         uh, ul = rf_of_roots(gh, gl, gh, gl, 1.0, 0.0)
         uh, ul = dd_mul(uh, ul, sh, sl)
         computed = rounding_bounds(size_c, size_b, size_d, 1.0, 0.0, p_pair[0], 0.0, sh, ch, dh, uh, 1.0, top)
-        return Motion(
+        return ConstantsOfMotion(
             SEPARATRIX, circled, amplitude_c, amplitude_b, amplitude_d, 1.0, 0.0, p_pair[0],
             _no_lattice(), Weights(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             *_rate(p), 0.0, uh, ul, computed,
@@ -223,7 +223,7 @@ def constants_of_motion(
     computed = rounding_bounds(
         size_c, size_b, size_d, m, m1, p_pair[0], lat.K, sh, ch, dh, vh, 1.0 if decided else cancellation, top
     )
-    return Motion(
+    return ConstantsOfMotion(
         PERIODIC, circled, amplitude_c, amplitude_b, amplitude_d, m, m1, p_pair[0],
         lat, _weights(ac, (s * ab[0], s * ab[1]), (s * ad[0], s * ad[1]), lat),
         *_rate(f), quarter, sign * rh, sign * rl, computed,

@@ -9,7 +9,7 @@ from core.compiled import fma, kernel
 from core.double_double import two_prod
 from core.elliptic.functions import half_parity, separatrix_at, sin_cos_quarter, sinh_cosh, split_phase, theta_parts
 from core.rotation.closed_form.circulation import PERIODIC
-from core.rotation.closed_form.constants_of_motion import Motion, Weights
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion, Weights
 
 
 @kernel()
@@ -42,7 +42,7 @@ def about_quarter(
 
 @kernel()
 def _circular(
-    motion: Motion,
+    motion: ConstantsOfMotion,
     times: NDArray[np.float64],
     oc: NDArray[np.float64],
     ob: NDArray[np.float64],
@@ -60,7 +60,7 @@ def _circular(
 
 @kernel()
 def _hyperbolic(
-    motion: Motion,
+    motion: ConstantsOfMotion,
     times: NDArray[np.float64],
     oc: NDArray[np.float64],
     ob: NDArray[np.float64],
@@ -79,7 +79,7 @@ def _hyperbolic(
 
 @kernel()
 def _separatrix(
-    motion: Motion,
+    motion: ConstantsOfMotion,
     times: NDArray[np.float64],
     oc: NDArray[np.float64],
     ob: NDArray[np.float64],
@@ -100,7 +100,7 @@ def _separatrix(
 
 @kernel()
 def sample_components(
-    motion: Motion,
+    motion: ConstantsOfMotion,
     times: NDArray[np.float64],
     oc: NDArray[np.float64],
     ob: NDArray[np.float64],

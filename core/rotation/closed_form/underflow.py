@@ -6,7 +6,7 @@ import math
 
 from core.arrays import Floats
 from core.rotation.closed_form.circulation import SEPARATRIX
-from core.rotation.closed_form.constants_of_motion import Motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion
 
 UNDERFLOW = 2.0**-1070
 """What samples, and the tails of moments and components, lose in all where they are below the normal doubles."""
@@ -26,7 +26,7 @@ def unmoved_until(moments: Floats, largest_norm: float) -> float:
     return UNMOVED / steepest if steepest > 0.0 else math.inf
 
 
-def underflow_of(motion: Motion, largest_norm: float) -> float:
+def underflow_of(motion: ConstantsOfMotion, largest_norm: float) -> float:
     """Return what a sample may be wrong by, relative, because a factor of it is below the normal doubles."""
     if motion.regime == SEPARATRIX:
         return UNDERFLOW / largest_norm

@@ -48,7 +48,7 @@ from core.double_double import (
 from core.elliptic.integrals import agm_dd, rf_of_roots
 from core.elliptic.lattice import Periods
 from core.rotation.closed_form.circulation import SEPARATRIX, Circulation, amplitudes, circulation
-from core.rotation.closed_form.constants_of_motion import Motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion
 
 CIRCULAR, HYPERBOLIC, LIMIT = range(3)
 
@@ -263,7 +263,11 @@ def angle_per_period(quarter: Quarter, eta: float) -> Pair:
 
 @kernel()
 def precession_constants(
-    motion: Motion, i: NDArray[np.float64], it: NDArray[np.float64], w: NDArray[np.float64], wt: NDArray[np.float64]
+    motion: ConstantsOfMotion,
+    i: NDArray[np.float64],
+    it: NDArray[np.float64],
+    w: NDArray[np.float64],
+    wt: NDArray[np.float64],
 ) -> PrecessionConstants:
     """Return the constants of the attitude of a periodic motion, or one on the separatrix.
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from core.rotation.closed_form.circulation import SEPARATRIX, STEADY
-from core.rotation.closed_form.constants_of_motion import Motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion
 from core.rotation.uncertainty import constant_sensitivities as at
 from core.rotation.uncertainty.phase_sensitivities import largest_until
 from core.rotation.uncertainty.sensitivities import FIRST_ORDER, Sensitivities
@@ -33,7 +33,7 @@ class InputUncertainty:
 
     Attributes
     ----------
-    motion : Motion
+    motion : ConstantsOfMotion
     sensitivities : Sensitivities
         Of moments and start, with the sums over the inputs.
     unit : float
@@ -42,7 +42,7 @@ class InputUncertainty:
         Largest norm of the angular velocity in those units.
     """
 
-    motion: Motion
+    motion: ConstantsOfMotion
     sensitivities: Sensitivities
     unit: float
     largest: float

@@ -10,7 +10,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.rotation.closed_form.circulation import PERIODIC, SEPARATRIX, STEADY
-from core.rotation.closed_form.constants_of_motion import Motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion
 from core.rotation.uncertainty import constant_sensitivities as at
 from core.rotation.uncertainty.phase_sensitivities import LARGEST_MODULUS, phase_errors
 from core.rotation.uncertainty.projected_sensitivities import given_moment_sensitivities, projected_sensitivities
@@ -18,7 +18,7 @@ from core.rotation.uncertainty.projected_sensitivities import given_moment_sensi
 FIRST_ORDER = 0.1
 """Beyond this a first derivative no longer bounds an error, or the relative change of a constant."""
 
-MOST_INPUTS = 3000
+MOST_INPUTS_WITH_PHASES = 3000
 """With more inputs the bounds that need no phases are stated."""
 
 _MOST = 700.0
@@ -94,7 +94,7 @@ class Sensitivities:
         axes: Floats | None,
         tensors: Floats | None,
         velocity: Floats,
-        motion: Motion,
+        motion: ConstantsOfMotion,
         largest: float,
         unit: float,
     ) -> Sensitivities:
@@ -129,7 +129,12 @@ class Sensitivities:
                     _add_crossed(moments, gaps, components, motion, plane, across, sums)
         table = _add(moments, gaps, components, motion, dI, dw, turns, k1, sums)
         phases = None
-        if motion.regime == PERIODIC and motion.m <= LARGEST_MODULUS and not crossed and len(table) <= MOST_INPUTS:
+        if (
+            motion.regime == PERIODIC
+            and motion.m <= LARGEST_MODULUS
+            and not crossed
+            and len(table) <= MOST_INPUTS_WITH_PHASES
+        ):
             c = 0 if motion.circled == 2 else 2
             A_c, A_b, A_d = (abs(x) * unit for x in (motion.A_c, motion.A_b, motion.A_d))
             start = math.atan2(float(components[1]) * A_c, float(components[c]) * A_b)
@@ -241,7 +246,7 @@ def growth_factor(first: float, second: float, third: float, time: float) -> flo
     return math.exp(least) if least < _MOST else math.inf
 
 
-def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion) -> tuple[float, float]:
+def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: ConstantsOfMotion) -> tuple[float, float]:
     """Return dn at the start and the complementary modulus, which is right where its square has left the doubles."""
     if motion.regime == STEADY:
         return 1.0, 1.0
@@ -260,7 +265,7 @@ def _start_of(moments: Floats, gaps: tuple[float, float], w: Floats, motion: Mot
 
 
 def _add(
-    moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
+    moments: Floats, gaps: tuple[float, float], w: Floats, motion: ConstantsOfMotion,
     dI: Floats, dw: Floats, turns: Floats, k1: float, sums: Floats,
 ) -> Floats:  # fmt: skip
     axis = int(np.abs(w).argmax()) if motion.regime == STEADY else motion.circled
@@ -272,7 +277,7 @@ def _add(
 
 
 def _add_crossed(
-    moments: Floats, gaps: tuple[float, float], w: Floats, motion: Motion,
+    moments: Floats, gaps: tuple[float, float], w: Floats, motion: ConstantsOfMotion,
     plane: tuple[int, int], across: Floats, sums: Floats,
 ) -> None:  # fmt: skip
     """Add changes that would turn the axes of two equal moments, which may as well be chosen at 45 degrees."""

@@ -17,7 +17,7 @@ from core.assessment.comparisons import Comparison
 from core.assessment.figures import DESCRIBED, is_null, steps_of, value_at
 from core.assessment.formula_variations import VARIATIONS
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
-from core.assessment.propagation import MOST_INPUTS, numbers_of, relative_uncertainties
+from core.assessment.propagation import MOST_CHANGED_NUMBERS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
 from core.errors import InvalidParameter, Path
 from core.formulas import is_name
@@ -150,7 +150,11 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
     def price(question: AssessmentRequest, budget: Budget) -> float:
         once = table.price(question.question, budget)
         inputs = sum(1 for _ in numbers_of(question.question.request))
-        again = 1 + min(inputs, MOST_INPUTS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
+        again = (
+            1
+            + min(inputs, MOST_CHANGED_NUMBERS) * (1 if question.input_uncertainty is None else 3)
+            + CHANGED_BY_MISTAKES
+        )
         formulas = [claim["formula"] for claim in _claims_with("formula", question.submissions)]
         # Without names, what varies of a described scene is what a formula has.
         named = question.names is not None or question.question.path != f"/v1/{DESCRIBED}"

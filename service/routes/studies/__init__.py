@@ -29,7 +29,7 @@ from service.schemas import Request
 
 PATH = "/v1/studies"
 
-MOST_INPUTS = 20
+MOST_VARIED = 20
 MOST_QUANTITIES = 20
 
 MOST_BINS = 1000
@@ -53,7 +53,7 @@ class StudyRequest(Request):
     """One question with varied inputs, and the figures of its answers that are wanted."""
 
     question: EndpointRequest = Field(description="It has to be answerable as it is; what varies has to be in it.")
-    vary: list[StudyInput] = Field(description="What varies.", min_length=1, max_length=MOST_INPUTS)
+    vary: list[StudyInput] = Field(description="What varies.", min_length=1, max_length=MOST_VARIED)
     design: Kind = Field(
         default="product",
         description="product: every combination of levels, the last input varying fastest; zip: levels side by side; "

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from core.assessment.compare import Reference
 from core.assessment.propagation import (
     HALF_ULP,
-    MOST_INPUTS,
+    MOST_CHANGED_NUMBERS,
     Propagation,
     changed,
     numbers_of,
@@ -69,9 +69,9 @@ def test_what_cannot_be_requested_is_not_known() -> None:
 
 
 def test_many_numbers_are_changed_together_by_random_signs() -> None:
-    request = {"masses": [1.0] * (2 * MOST_INPUTS)}
+    request = {"masses": [1.0] * (2 * MOST_CHANGED_NUMBERS)}
     found = inherited(lambda r: sum(r["masses"]), request, 1e-3)
-    worst, typical = 2 * MOST_INPUTS * 1e-3, sqrt(2 * MOST_INPUTS) * 1e-3
+    worst, typical = 2 * MOST_CHANGED_NUMBERS * 1e-3, sqrt(2 * MOST_CHANGED_NUMBERS) * 1e-3
     assert found is not None
     assert typical < found < worst
 

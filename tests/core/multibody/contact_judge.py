@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from core.errors import MechanicsError
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from core.systems.trajectory import MotionEvent
 from tests.core.multibody.random_scenes import decimal
@@ -314,11 +314,11 @@ def _contact(random: np.random.Generator, name: str, place: str, on: Scene, fric
     return {"kind": "contact", "name": name, "place": place, "on": on, **_law(random, friction)}
 
 
-def solved(scene: Scene, count: int = 41) -> SceneAnswer:
+def solved(scene: Scene, count: int = 41) -> SceneSolution:
     return solve_scene(read(scene), np.linspace(0.0, END, count), OUTPUTS, 1e-6)
 
 
-def require_physical(answer: SceneAnswer, scene: Scene) -> None:
+def require_physical(answer: SceneSolution, scene: Scene) -> None:
     """Raise `AssertionError` for what no motion may do."""
     motion = answer.trajectory
     assert motion is not None
@@ -356,7 +356,7 @@ def require_physical(answer: SceneAnswer, scene: Scene) -> None:
         )
 
 
-def _require_apart(answer: SceneAnswer, scene: Scene) -> None:
+def _require_apart(answer: SceneSolution, scene: Scene) -> None:
     motion = answer.trajectory
     assert motion is not None
     for connection in scene["connections"]:
@@ -376,7 +376,7 @@ def _require_apart(answer: SceneAnswer, scene: Scene) -> None:
             _require_on_its_side(answer, scene, connection)
 
 
-def _require_on_its_side(answer: SceneAnswer, scene: Scene, connection: Scene) -> None:
+def _require_on_its_side(answer: SceneSolution, scene: Scene, connection: Scene) -> None:
     motion = answer.trajectory
     assert motion is not None
     body, _, spot = connection["place"].partition(".")
@@ -465,7 +465,7 @@ def noticeable(events: Sequence[MotionEvent]) -> list[MotionEvent]:
     return found
 
 
-def told_apart(answer: SceneAnswer) -> float:
+def told_apart(answer: SceneSolution) -> float:
     """Return until when the impacts of contacts that bounce in turn are told apart.
 
     Infinitely many come before a time that they do not reach. Where two of them are closer than they are known, which
@@ -481,7 +481,7 @@ def told_apart(answer: SceneAnswer) -> float:
     return answer.ended.time
 
 
-def require_same(answer: SceneAnswer, other: SceneAnswer) -> float:
+def require_same(answer: SceneSolution, other: SceneSolution) -> float:
     """Raise unless the answer of the mirrored scene is the same within the errors; return the largest difference."""
     if {"event-limit", "lost-event"} & {one.ended.kind for one in (answer, other) if one.ended is not None}:
         # How far a scene is followed that bounces without end depends on its units.

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from core.scenes.chain_on_wedge import ChainOnWedge
 from core.scenes.friction import Friction
@@ -107,7 +107,7 @@ def random_shafts(seed: int, *, rough: bool = False) -> UnwindingShafts:
     return drawn
 
 
-def require_same_shafts(named: UnwindingShafts, described: dict[str, Any] | None = None) -> SceneAnswer:
+def require_same_shafts(named: UnwindingShafts, described: dict[str, Any] | None = None) -> SceneSolution:
     """Raise `AssertionError` unless described shafts move as named ones; return the answer about the described."""
     times = np.linspace(0.0, END, 16)
     theirs = named.answer(times)
@@ -128,7 +128,7 @@ def require_same_shafts(named: UnwindingShafts, described: dict[str, Any] | None
     return answer
 
 
-def _require_same_events(named: UnwindingShafts, figures: Any, answer: SceneAnswer) -> None:
+def _require_same_events(named: UnwindingShafts, figures: Any, answer: SceneSolution) -> None:
     """Raise unless jerks, what they do, and the ends of slips are the same, one by one, in both directions."""
     jerks = [event for event in answer.events if event.kind == "taut"]
     settles = [event for event in answer.events if event.kind == "settle"]
@@ -250,7 +250,7 @@ def random_rod(seed: int) -> RodInHole:
     )
 
 
-def require_same_rod(named: RodInHole) -> SceneAnswer:
+def require_same_rod(named: RodInHole) -> SceneSolution:
     """Raise `AssertionError` unless the described rod turns and leaves the wall as the named one."""
     times = np.linspace(0.0, 2.0, 11)
     theirs = named.answer(times)
@@ -310,7 +310,7 @@ def _end_mass(random: np.random.Generator) -> float:
     return 0.0 if random.random() < 0.3 else decimal(random, 0.05, 3)
 
 
-def require_same_chain(named: ChainOnWedge, described: dict[str, Any] | None = None) -> SceneAnswer:
+def require_same_chain(named: ChainOnWedge, described: dict[str, Any] | None = None) -> SceneSolution:
     """Raise `AssertionError` unless the described chain slides, lifts off and ends as the named one."""
     times = np.linspace(0.0, 2.0, 11)
     theirs = named.answer(times)
@@ -353,7 +353,7 @@ def require_same_chain(named: ChainOnWedge, described: dict[str, Any] | None = N
     return answer
 
 
-JUDGES: dict[str, Callable[[int], SceneAnswer]] = {
+JUDGES: dict[str, Callable[[int], SceneSolution]] = {
     "shafts": lambda seed: require_same_shafts(random_shafts(seed)),
     "rough shafts": lambda seed: require_same_shafts(random_shafts(seed, rough=True)),
     "rod": lambda seed: require_same_rod(random_rod(seed)),

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from tests.core.multibody.random_scenes import pendulum_of_points, pendulum_of_rods
 from tests.core.multibody.worked_examples import MASSIVE_PULLEY, column, force, read
@@ -24,7 +24,7 @@ def chain(seed: int) -> dict[str, Any]:
     return pendulum_of_points(random, 2) if seed % 2 else pendulum_of_rods(random, 2)
 
 
-def answered(description: dict[str, Any], times: Any = TIMES) -> SceneAnswer:
+def answered(description: dict[str, Any], times: Any = TIMES) -> SceneSolution:
     return solve_scene(read(description), times, ("trajectory", "forces", "energy"))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.language.reading import scene_from
 from core.multibody.language.scene import Scene
 
@@ -58,18 +58,18 @@ def points(
     return {"gravity": [0, f"-{gravity}"], "let": let, "bodies": bodies, "connections": connections}
 
 
-def column(answer: SceneAnswer, name: str) -> Any:
+def column(answer: SceneSolution, name: str) -> Any:
     assert answer.trajectory is not None
     return answer.trajectory.columns[name]
 
 
-def force(answer: SceneAnswer, name: str) -> float:
+def force(answer: SceneSolution, name: str) -> float:
     assert answer.forces is not None
     value = answer.forces[name].value
     assert value is not None
     return value
 
 
-def linear(answer: SceneAnswer, body: str) -> tuple[float, ...]:
+def linear(answer: SceneSolution, body: str) -> tuple[float, ...]:
     assert answer.accelerations is not None
     return answer.accelerations[body].linear

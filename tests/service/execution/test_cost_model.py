@@ -135,6 +135,18 @@ class TestQuestions:
             seconds = route.price(asked, Budget())
             assert 0.0 < seconds < inf
 
+    @pytest.mark.parametrize(
+        "route",
+        [one for one in ROUTES.values() if isinstance(one.price, CalibratedCost)],
+        ids=lambda one: one.operation_id,
+    )
+    def test_everything_counted_of_an_example_is_in_the_table(self, route: PostRoute) -> None:
+        cost = route.price
+        assert isinstance(cost, CalibratedCost)
+        for shown in route.examples.values():
+            asked = ANSWERING.read(route, json.dumps(shown.question).encode())
+            assert {*cost.counts(asked, Budget())} <= {*cost.costs}
+
     @given(
         st.sampled_from(["/v1/rotation/trajectory", "/v1/rotation/ensemble"]),
         st.tuples(*[st.floats(5e-324, 1.7e308)] * 3),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.errors import BudgetExceeded, InvalidParameter, NotApplicable
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from core.multibody.trajectory.column_errors import worst
 from core.systems.budget import Budget
@@ -46,7 +46,7 @@ EVERY: tuple[Method, ...] = (
 )
 
 
-def moved(scene: str | dict[str, Any], times: Any, method: Method, **others: Any) -> SceneAnswer:
+def moved(scene: str | dict[str, Any], times: Any, method: Method, **others: Any) -> SceneSolution:
     return solve_scene(read(scene), times, ("trajectory", "forces-in-time"), method=method, **others)
 
 

@@ -10,7 +10,7 @@ import pytest
 from mpmath import acos, mp, mpf, quad, sqrt
 
 from core.errors import NotApplicable
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from tests.core.multibody.contact_judge import any_scene
 from tests.core.multibody.worked_examples import column as named
@@ -20,7 +20,7 @@ ALL = ["energy", "energy-in-time", "work-in-time", "paths-in-time"]
 G = mpf("9.81")
 
 
-def column(answer: SceneAnswer, name: str) -> np.ndarray:
+def column(answer: SceneSolution, name: str) -> np.ndarray:
     return named(answer, name).values
 
 
@@ -34,7 +34,7 @@ def bouncing(restitution: Any = 0.8, **body: Any) -> dict[str, Any]:
     }
 
 
-def require_balance(answer: SceneAnswer) -> None:
+def require_balance(answer: SceneSolution) -> None:
     """Raise unless all works together are the change of kinetic energy."""
     assert answer.trajectory is not None
     kinetic = answer.trajectory.columns["energy.kinetic"]

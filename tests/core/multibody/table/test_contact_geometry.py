@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from core.errors import InvalidParameter, NotApplicable
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from core.systems.methods import RungeKutta4
 from tests.core.multibody.worked_examples import column, force, read
@@ -24,11 +24,11 @@ STONE = """{"gravity":[0,-9.81],"bodies":{"stone":{"mass":1,"at":[0,-0.5],"veloc
 {"kind":"string","name":"s","through":["stone",[0,0]]}]}"""
 
 
-def kinds(answer: SceneAnswer) -> list[tuple[str, str]]:
+def kinds(answer: SceneSolution) -> list[tuple[str, str]]:
     return [(event.kind, event.name) for event in answer.events]
 
 
-def states(answer: SceneAnswer) -> list[dict[str, str]]:
+def states(answer: SceneSolution) -> list[dict[str, str]]:
     assert answer.phases is not None
     return [dict(phase.states) for phase in answer.phases]
 

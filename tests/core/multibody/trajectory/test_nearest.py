@@ -9,7 +9,7 @@ from typing import Any
 import mpmath
 import pytest
 
-from core.multibody.answer import SceneAnswer
+from core.multibody.answer import SceneSolution
 from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import TWO_RODS, column, read
@@ -33,7 +33,7 @@ THROWN: dict[str, Any] = {
 OUTPUTS = ("trajectory", "forces-in-time", "energy-in-time")
 
 
-def finest(scene: dict[str, Any], times: list[float], outputs: tuple[Any, ...] = OUTPUTS) -> SceneAnswer:
+def finest(scene: dict[str, Any], times: list[float], outputs: tuple[Any, ...] = OUTPUTS) -> SceneSolution:
     answer = solve_scene(read(scene), times, outputs, FINEST)
     assert answer.trajectory is not None
     assert answer.trajectory.accuracy.error <= FINEST

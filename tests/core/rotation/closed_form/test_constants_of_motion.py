@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from core.double_double import Scaled, scaled
 from core.rotation.closed_form.circulation import PERIODIC, REST, SEPARATRIX, STEADY, UNDECIDED, UNREACHABLE
-from core.rotation.closed_form.constants_of_motion import Motion, constants_of_motion
+from core.rotation.closed_form.constants_of_motion import ConstantsOfMotion, constants_of_motion
 from tests.oracles.elliptic import Periodic
 from tests.oracles.polhode import Polhode, accelerates
 
@@ -46,7 +46,7 @@ def difference(moments, rates) -> Scaled:
     return scaled(float(part), float(part - Fraction(float(part))), e)
 
 
-def motion(moments, rates) -> Motion:
+def motion(moments, rates) -> ConstantsOfMotion:
     return constants_of_motion(np.array(moments), ZERO, np.array(rates), ZERO, True, difference(moments, rates))
 
 

@@ -26,7 +26,7 @@ Stretch = tuple[int, int]
 
 
 @dataclass(eq=False)
-class Work:
+class UnfinishedStudy:
     """An unfinished study.
 
     Attributes
