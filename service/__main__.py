@@ -15,6 +15,7 @@ import socket
 import sys
 from collections.abc import Mapping, Sequence
 from multiprocessing import forkserver
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -69,15 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.stdout.write(f"key, shown only now: {key}\nline for keys_file:  {line}\n")
         return
     given = {name: value for name in ("host", "port", "workers") if (value := getattr(options, name)) is not None}
-    try:
-        settings = Settings(**given)
-    except ValidationError as error:
-        faults = [
-            f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}, given {str(fault['input'])!r}"
-            for fault in error.errors()
-        ]
-        sys.exit("\n".join(faults))
-    unknown = unknown_settings(os.environ)
+    settings, unknown = _read_settings(given), unknown_settings(os.environ)
     misspelt = [f"{name} is no setting; did you mean {near}?" for name, near in unknown.items() if near]
     if misspelt:
         sys.exit("\n".join(misspelt))
@@ -89,9 +82,26 @@ def main(arguments: Sequence[str] | None = None) -> None:
     configure(settings.log_level)
     for name in unknown:
         LOG.warning("%s is no setting and has no effect; python -m service --help lists them all", name)
-    host, port = settings.host, free_port(settings.host, settings.port)
     # Server processes read their settings from the environment that they inherit.
     os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
+    _serve(settings)
+
+
+def _read_settings(given: Mapping[str, Any]) -> Settings:
+    """Return the settings of the environment and the command line; end with the faults that they have."""
+    try:
+        return Settings(**given)
+    except ValidationError as error:
+        faults = [
+            f"POLHODE_{str(fault['loc'][0]).upper()}: {fault['msg']}, given {str(fault['input'])!r}"
+            for fault in error.errors()
+        ]
+        sys.exit("\n".join(faults))
+
+
+def _serve(settings: Settings) -> None:
+    """Run the service until it is stopped."""
+    host, port = settings.host, free_port(settings.host, settings.port)
     # uvicorn raises the signal that stopped it again when it has finished; this makes that an ordinary end.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     several = settings.workers > 1

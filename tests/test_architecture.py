@@ -250,7 +250,7 @@ TESTED_IN |= {
         "motion/test_numerical": (
             "equations/packed motion/products motion/returns motion/series motion/series_pairs motion/vertical_symmetry"
         ),
-        "phases/test_phase_answer": "phases/phase_states",
+        "phases/test_phase_answer": "phases/phase_states phases/phased_system",
         "test_solve": (
             "answer equations/dynamics motion/modelling motion/motion motion/uniform motion/whole trajectory/events"
         ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.answer import BodyAcceleration, Energy, ForceAnswer, PartModel, SceneModel
@@ -13,6 +13,23 @@ from core.multibody.motion.modes import Modes
 from core.multibody.motion.periods import Periodic
 from core.multibody.motion.vertical_symmetry import Shifted, Steady
 from core.multibody.table.description import Described
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def why(self) -> str: ...
+
+
+def name_of_parts(parts: Sequence[_Named]) -> tuple[str, str]:
+    """Return the name of a scene's model and why it suffices, from those of its parts."""
+    if not parts:
+        return "rest", "the connections hold everything where it is"
+    if len({part.name for part in parts}) == 1:
+        return parts[0].name, parts[0].why
+    return "parts apart", "the parts have no force or connection in common, and each has its own model"
 
 
 def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
@@ -36,15 +53,9 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
                 modes,
             )
         )
-    kinds = {part.name for part in apart}
-    if not apart:
-        held = len(table.names) == rank
-        name = "rest"
-        why = "the connections hold everything where it is" if held else "it starts at rest, and all forces balance"
-    elif len(kinds) == 1:
-        name, why = apart[0].name, apart[0].why
-    else:
-        name, why = "parts apart", "the parts have no force or connection in common, and each has its own model"
+    name, why = name_of_parts(apart)
+    if not apart and len(table.names) != rank:
+        why = "it starts at rest, and all forces balance"
     spins = any(not is_zero(frame.spin_momentum) for frame in found.described.measures.coordinates.frames.values())
     if name == "rest" and spins:
         name, why = "steady spin", "what turns spins steadily about its axis, and nothing moves its centre or the axis"

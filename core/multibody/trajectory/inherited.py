@@ -12,7 +12,7 @@ that is symmetric is to remain so.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from core.multibody.motion.modelling import Modelled, modelled
 from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.trajectory.column_errors import relative
 from core.multibody.trajectory.columns import Columns
-from core.systems.trajectory import Column
+from core.systems.trajectory import Accuracy, Column
 
 MOST_PROPAGATED_NUMBERS = 400
 """Numbers that are moved; each costs a motion of its own."""
@@ -186,3 +186,27 @@ def horizon(known: Changes, first: int, limit: float, columns: dict[str, Column]
         middle = (low + high) // 2
         low, high = (middle, high) if below(middle) else (low, middle)
     return abs(float(known.times[first + low - 1])) if low else 0.0
+
+
+def with_inherited(
+    columns: dict[str, Column], stated: Accuracy, moved: dict[str, float], uncertainty: float, *, why: str | None
+) -> tuple[dict[str, Column], Accuracy]:
+    """Return columns with what the uncertainty of the inputs does to them, and the accuracy with the largest share.
+
+    Parameters
+    ----------
+    columns : dict of Column
+    stated : Accuracy
+    moved : dict of str to float
+        Largest changes of some of the columns by relative errors of one in every input.
+    uncertainty : float
+        Relative, of every input.
+    why : str, optional
+        Why there is no horizon.
+    """
+    own = {name: columns[name] for name in moved}
+    share = uncertainty * relative(moved, own)
+    if not share < 1.0:
+        return columns, replace(stated, why="nothing is known of the motion at the latest times")
+    known = {name: replace(column, inherited=uncertainty * moved[name]) for name, column in own.items()}
+    return columns | known, replace(stated, inherited=share, why=why)

@@ -20,7 +20,6 @@ from core.multibody.trajectory.along import Along, watched_times
 from core.multibody.trajectory.column_errors import (
     FINEST,
     apart,
-    relative,
     require_known,
     require_reached,
     scales_of,
@@ -28,7 +27,7 @@ from core.multibody.trajectory.column_errors import (
 )
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES, NEAREST, Columns
 from core.multibody.trajectory.events import first_event
-from core.multibody.trajectory.inherited import changes, horizon, instants
+from core.multibody.trajectory.inherited import changes, horizon, instants, with_inherited
 from core.multibody.trajectory.nearest import Nearest
 from core.multibody.trajectory.occurrences import (
     ExtremesOf,
@@ -285,13 +284,9 @@ class DescribedSystem:
         if not own:
             return columns, replace(stated, why=ONLY_SUMS)
         moved = {name: moved[name] for name in own}
-        share = uncertainty * relative(moved, own)
         until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
         why = None if until is not None else "the change stays below the accuracy at all of the times"
-        if not share < 1.0:
-            return columns, replace(stated, horizon=until, why="nothing is known of the motion at the latest times")
-        with_own = {name: replace(column, inherited=uncertainty * moved[name]) for name, column in own.items()}
-        return columns | with_own, replace(stated, inherited=share, horizon=until, why=why)
+        return with_inherited(columns, replace(stated, horizon=until), moved, uncertainty, why=why)
 
     @property
     def _follows(self) -> bool:

@@ -134,45 +134,10 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         ]
         shown = {"reference": reference_views(grader)} if question.reveal else {}
         warnings = warnings if question.reveal else []
-        if grader.looked_for > MOST_IDENTIFIED:
-            detail = f"the method is looked for in the first {MOST_IDENTIFIED} wrong samples of a request"
-            warnings.append(Notice("methods-not-looked-for", detail, ("submissions",)))
-        if grader.formulas_left:
-            # Says nothing of the reference, and is for who set the question.
-            remedy = "choose other numbers in names"
-            if question.names is None:
-                remedy = 'say in names, beside question, which numbers formulas have: {"m": "/bodies/block/mass"}'
-            detail = f"a formula for {grader.formulas_left[0]} is not judged: where its numbers change alone, "
-            detail += f"the question has no such figure, or is about another arrangement; {remedy}"
-            warnings.append(Notice("formulas-not-judged", detail, ("names",)))
-        return {"results": results, **shown, "warnings": warnings}
+        return {"results": results, **shown, "warnings": [*warnings, *_left_out(question, grader)]}
 
     def price(question: AssessmentRequest, budget: Budget) -> float:
-        once = table.price(question.question, budget)
-        inputs = sum(1 for _ in numbers_of(question.question.request))
-        again = (
-            1
-            + min(inputs, MOST_CHANGED_NUMBERS) * (1 if question.input_uncertainty is None else 3)
-            + CHANGED_BY_MISTAKES
-        )
-        formulas = [claim["formula"] for claim in _claims_with("formula", question.submissions)]
-        # Without names, what varies of a described scene is what a formula has.
-        named = question.names is not None or question.question.path != f"/v1/{DESCRIBED}"
-        words = {"" if named else " ".join(sorted({*_WORD.findall(str(one))})) for one in formulas}
-        again += VARIATIONS * len(words)
-        # What is right is judged in a hundredth of the time; before it is judged nobody knows.
-        timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
-        columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
-        samples = SECONDS_OF_SAMPLES * len(timed) + SECONDS_OF_A_SEARCH * min(len(timed), MOST_IDENTIFIED)
-        samples += SECONDS_OF_SOLVERS * min(columns, MOST_SOLVED) + SECONDS_OF_A_COLUMN * columns
-        claims = sum(len(one) for one in question.submissions if isinstance(one, dict))
-        return (
-            SECONDS_OF_PROOF
-            + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
-            + samples
-            + SECONDS_OF_A_FORMULA * len(formulas)
-            + SECONDS_OF_A_CLAIM * claims
-        )
+        return _seconds(question, table.price(question.question, budget))
 
     def small(question: AssessmentRequest) -> bool:
         if len(question.submissions) > FEW_SUBMISSIONS:
@@ -194,6 +159,49 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         small,
         description=DESCRIPTION,
         warming=(WRONG_SAMPLES,),
+    )
+
+
+def _left_out(question: AssessmentRequest, grader: Grader) -> list[Notice]:
+    """Return warnings of what a grader did not do: methods that it did not look for, formulas that it did not judge."""
+    found: list[Notice] = []
+    if grader.looked_for > MOST_IDENTIFIED:
+        detail = f"the method is looked for in the first {MOST_IDENTIFIED} wrong samples of a request"
+        found.append(Notice("methods-not-looked-for", detail, ("submissions",)))
+    if grader.formulas_left:
+        # Says nothing of the reference, and is for who set the question.
+        remedy = "choose other numbers in names"
+        if question.names is None:
+            remedy = 'say in names, beside question, which numbers formulas have: {"m": "/bodies/block/mass"}'
+        detail = f"a formula for {grader.formulas_left[0]} is not judged: where its numbers change alone, "
+        detail += f"the question has no such figure, or is about another arrangement; {remedy}"
+        found.append(Notice("formulas-not-judged", detail, ("names",)))
+    return found
+
+
+def _seconds(question: AssessmentRequest, once: float) -> float:
+    """Return the predicted time of an assessment of a question that is answered in `once` (s)."""
+    inputs = sum(1 for _ in numbers_of(question.question.request))
+    again = (
+        1 + min(inputs, MOST_CHANGED_NUMBERS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
+    )
+    formulas = [claim["formula"] for claim in _claims_with("formula", question.submissions)]
+    # Without names, what varies of a described scene is what a formula has.
+    named = question.names is not None or question.question.path != f"/v1/{DESCRIBED}"
+    words = {"" if named else " ".join(sorted({*_WORD.findall(str(one))})) for one in formulas}
+    again += VARIATIONS * len(words)
+    # What is right is judged in a hundredth of the time; before it is judged nobody knows.
+    timed = [claim["times"] for claim in _claims_with("times", question.submissions)]
+    columns = len({times.tobytes() for times in timed if isinstance(times, np.ndarray)})
+    samples = SECONDS_OF_SAMPLES * len(timed) + SECONDS_OF_A_SEARCH * min(len(timed), MOST_IDENTIFIED)
+    samples += SECONDS_OF_SOLVERS * min(columns, MOST_SOLVED) + SECONDS_OF_A_COLUMN * columns
+    claims = sum(len(one) for one in question.submissions if isinstance(one, dict))
+    return (
+        SECONDS_OF_PROOF
+        + (again + columns * (1 + CHANGED_BY_MISTAKES)) * once
+        + samples
+        + SECONDS_OF_A_FORMULA * len(formulas)
+        + SECONDS_OF_A_CLAIM * claims
     )
 
 

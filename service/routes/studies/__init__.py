@@ -99,46 +99,7 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
     table = QuestionTable(routes, (), "have studies")
 
     def plan(question: StudyRequest, budget: Budget) -> Answer:
-        route, design = table.route(question.question), question.all_members()
-        if design.members > budget.members:
-            remedy = "take fewer levels or a smaller count, or several studies"
-            path = ("vary",) if question.count is None else ("count",)
-            raise BudgetExceeded("members", design.members, budget.members, path=path, remedy=remedy)
-        source = table.source(question.question, budget)
-        with within_question():
-            answer = source.answer(json.dumps(question.question.request))
-        inputs, figures = _paths(question)
-        for k, figure in enumerate(figures):
-            value = value_at(answer, figure)
-            if number_of(value) is None and not is_null(answer, figure):
-                rule = "lead to a number, true or false in the answer"
-                raise InvalidParameter(("quantities", k), rule)
-        members = Members(question, source)
-        together = members.together
-        each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
-        seconds = design.members * each
-        axes = zip(question.vary, inputs, strict=True)
-        return {
-            "path": route.path,
-            "count": design.members,
-            "shape": list(design.shape),
-            "inputs": [
-                {
-                    "pointer": entry.pointer,
-                    "unit": unit_at(route.question, path),
-                    "levels": None if question.count is not None else entry.levels,
-                }
-                for entry, path in axes
-            ],
-            "figures": [
-                {"pointer": pointer, "unit": unit_at(route.answer, path)}
-                for pointer, path in zip(question.quantities, figures, strict=True)
-            ],
-            "together": together,
-            "seconds": seconds,
-            "bytes": members.bytes_of(seconds),
-            "warnings": [notice.inside(*WITHIN) for notice in answer.get("warnings", ())],
-        }
+        return _planned(question, table, budget)
 
     def price(question: StudyRequest, budget: Budget) -> float:
         return table.price(question.question, budget) + PRICED * SECONDS_OF_A_MEMBER
@@ -164,6 +125,50 @@ def studying(routes: Sequence[PostRoute]) -> StudyRoute:
         description=DESCRIPTION,
         members=members,
     )
+
+
+def _planned(question: StudyRequest, table: QuestionTable, budget: Budget) -> Answer:
+    """Return members, inputs, figures, time and size of a study, or refuse it."""
+    route, design = table.route(question.question), question.all_members()
+    if design.members > budget.members:
+        remedy = "take fewer levels or a smaller count, or several studies"
+        path = ("vary",) if question.count is None else ("count",)
+        raise BudgetExceeded("members", design.members, budget.members, path=path, remedy=remedy)
+    source = table.source(question.question, budget)
+    with within_question():
+        answer = source.answer(json.dumps(question.question.request))
+    inputs, figures = _paths(question)
+    for k, figure in enumerate(figures):
+        value = value_at(answer, figure)
+        if number_of(value) is None and not is_null(answer, figure):
+            rule = "lead to a number, true or false in the answer"
+            raise InvalidParameter(("quantities", k), rule)
+    members = Members(question, source)
+    together = members.together
+    each = SECONDS_AMONG_MANY if together else SECONDS_OF_A_MEMBER + _mean_price(members, route, budget)
+    seconds = design.members * each
+    axes = zip(question.vary, inputs, strict=True)
+    return {
+        "path": route.path,
+        "count": design.members,
+        "shape": list(design.shape),
+        "inputs": [
+            {
+                "pointer": entry.pointer,
+                "unit": unit_at(route.question, path),
+                "levels": None if question.count is not None else entry.levels,
+            }
+            for entry, path in axes
+        ],
+        "figures": [
+            {"pointer": pointer, "unit": unit_at(route.answer, path)}
+            for pointer, path in zip(question.quantities, figures, strict=True)
+        ],
+        "together": together,
+        "seconds": seconds,
+        "bytes": members.bytes_of(seconds),
+        "warnings": [notice.inside(*WITHIN) for notice in answer.get("warnings", ())],
+    }
 
 
 def _paths(question: StudyRequest) -> tuple[list[Path], list[Path]]:

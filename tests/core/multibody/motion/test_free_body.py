@@ -91,7 +91,7 @@ def test_a_full_turn_returns():
 
 
 def test_a_slow_approach_of_many_turns_is_refused_and_no_touch_is_missed():
-    """The place dips by about 1 m in every turn; with sparse looks the first of these touches would be passed by."""
+    """The place dips by about 1 m in every turn; with sparse samples the first of these touches would be passed by."""
 
     def drifting(height):
         start = {"at": [0, 0, height], "velocity": [0, 0, -1], "angular_velocity": [7.3, 0.1, 0.2]}
@@ -106,7 +106,7 @@ def test_a_slow_approach_of_many_turns_is_refused_and_no_touch_is_missed():
     answer = solve_scene(read(scene | {"connections": []}), times, ("trajectory",))
     w, x, y, z = column(answer, "b.attitude").values.T
     assert np.all(column(answer, "b.position").values[:, 2] + 2.0 * (y * z + w * x) > 0.0)
-    with pytest.raises(BudgetExceeded, match="looks for events"):
+    with pytest.raises(BudgetExceeded, match="samples for events"):
         solve_scene(read(drifting(10_000)), [10_000], ("trajectory",))
 
 
