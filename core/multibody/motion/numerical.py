@@ -22,6 +22,10 @@ MOST_STEPS = 20000
 _SAME_PLACE = 1e-3
 """Relative difference of the times at which doubles and pairs may meet one singular place."""
 
+SINGULAR_TIME_ERROR = 1e-9
+"""Relative error of the time of a singular place: steps end where they are shorter than 1e-12 of the time reached, and
+a thousand such steps are a margin for what is left to the place."""
+
 _SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 

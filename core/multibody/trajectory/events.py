@@ -12,7 +12,7 @@ from core.errors import NotApplicable
 from core.multibody.algebra.polynomials import ZERO, is_zero, substituted
 from core.multibody.motion.kepler import Kepler
 from core.multibody.motion.modes import Modes
-from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.numerical import SINGULAR_TIME_ERROR, Numerical
 from core.multibody.motion.uniform import Uniform, first_zero
 from core.multibody.motion.whole import Whole, values
 from core.multibody.table.connection_effects import Limit
@@ -46,7 +46,7 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEve
         if isinstance(motion, Numerical):
             reached = motion.reach(end)
             if reached is not None:
-                found.append(MotionEvent("singular", "", reached, 1e-9 * abs(reached)))
+                found.append(MotionEvent("singular", "", reached, SINGULAR_TIME_ERROR * abs(reached)))
                 end = reached
         elif isinstance(motion, Kepler):
             reached = motion.reach(end)
