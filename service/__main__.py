@@ -82,9 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     configure(settings.log_level)
     for name in unknown:
         LOG.warning("%s is no setting and has no effect; python -m service --help lists them all", name)
-    # Server processes read their settings from the environment that they inherit.
-    os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
-    _serve(settings)
+    _serve(settings, given)
 
 
 def _read_settings(given: Mapping[str, Any]) -> Settings:
@@ -99,9 +97,11 @@ def _read_settings(given: Mapping[str, Any]) -> Settings:
         sys.exit("\n".join(faults))
 
 
-def _serve(settings: Settings) -> None:
-    """Run the service until it is stopped."""
+def _serve(settings: Settings, given: Mapping[str, Any]) -> None:
+    """Run the service until it is stopped; `given` are the settings of the command line."""
     host, port = settings.host, free_port(settings.host, settings.port)
+    # Server processes read their settings from the environment that they inherit.
+    os.environ.update({f"POLHODE_{name.upper()}": str(value) for name, value in given.items()})
     # uvicorn raises the signal that stopped it again when it has finished; this makes that an ordinary end.
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(0))
     several = settings.workers > 1
