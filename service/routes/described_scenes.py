@@ -20,7 +20,7 @@ from core.systems.budget import Budget
 from core.systems.methods.from_scipy import FromSciPy
 from core.work import WorkLimitReached, work_limit
 from service.execution.cost_model import CalibratedCost, evaluations, extent
-from service.requests.described_scene import DescribedSceneRequest
+from service.requests.described_scene import DescribedSceneRequest, SceneDescription
 from service.responses.svg import SVG
 from service.routes.described_answer import UNDECIDED_PATH, DescribedAccuracy, DescribedSceneAnswer, SceneColumn
 from service.routes.motion_figures import draw_described
@@ -158,9 +158,6 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     # What is refused anyway waits for no compute process.
     check_size(question.bodies, question.connections)
     bodies, connections = float(len(question.bodies)), float(len(question.connections))
-    turning = sum(
-        {"inertia", "moments", "tensor", "body"} & body.model_fields_set != set() for body in question.bodies.values()
-    )
     kinds = [one.get("kind") for one in question.connections if isinstance(one, Mapping)]
     pushing = float(sum(kind in PUSHING for kind in kinds))
     found = {
@@ -186,10 +183,8 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
         found |= {
             "motion": 1.0,
             "motions": bodies + connections,
-            "motions of bodies that turn": float(turning),
-            "motions of bodies in space": bodies
-            if isinstance(question.gravity, list) and len(question.gravity) == 3
-            else 0.0,
+            "motions of bodies that turn": float(turning_bodies(question)),
+            "motions of bodies in space": bodies * in_space(question),
             "motions by forces": pushing,
             "seconds of forces": seconds * min(1.0, pushing),
             "seconds of coupled bodies in pairs": seconds * coupled * lost,
@@ -207,6 +202,17 @@ def counted(question: DescribedSceneRequest, budget: Budget) -> dict[str, float]
     if "equilibria" in (question.outputs or ()):
         found |= {"search": 1.0, "searches": bodies, "searches of pairs": bodies**2}
     return found
+
+
+def turning_bodies(question: SceneDescription) -> int:
+    """Return how many bodies have a moment of inertia."""
+    known = {"inertia", "moments", "tensor", "body"}
+    return sum(not known.isdisjoint(body.model_fields_set) for body in question.bodies.values())
+
+
+def in_space(question: SceneDescription) -> bool:
+    """Return whether gravity has three components."""
+    return isinstance(question.gravity, list) and len(question.gravity) == 3
 
 
 def _in_a_row(question: DescribedSceneRequest) -> bool:

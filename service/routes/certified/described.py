@@ -16,7 +16,7 @@ from service.responses.svg import SVG
 from service.routes.certified.answers import Certified, accuracy, certified_route, times_written
 from service.routes.certified.cost import SET_UP
 from service.routes.described_answer import AtStart, OwnUnit
-from service.routes.described_scenes import DESCRIBED_SCENES, model_fields
+from service.routes.described_scenes import DESCRIBED_SCENES, in_space, model_fields, turning_bodies
 from service.routes.motion_figures import draw_described
 from service.routes.planning_probes import FEW_CERTIFIED, few_of
 from service.routing import Answer, PlanningProbe
@@ -26,6 +26,8 @@ NUMBERS_OF_A_BODY = 8
 """Numbers in a sample of a body, about."""
 PER_SECOND = 0.7
 """Time to prove a second of the motion of a pendulum to 28 digits (s)."""
+TURNING_IN_SPACE = 3
+"""As how many more bodies one counts that turns in space, as measured on tops and thrown bodies."""
 NEAR = 1e-4
 """How far (s) a motion is followed when it is planned: one step, most often."""
 LONGEST = 20.0
@@ -113,7 +115,8 @@ def certified_scene_cost(question: CertifiedSceneRequest, budget: Budget) -> flo
         return set_up
     first, last = (nearest(time) for time in ends(question.times))
     seconds = min(LONGEST, max(0.0, last) - min(0.0, first))
-    moving = float(PER_SECOND * seconds * bodies**2.5 * (question.digits / 28.0) ** 1.5)
+    weight = bodies + TURNING_IN_SPACE * turning_bodies(question) * in_space(question)
+    moving = float(PER_SECOND * seconds * weight**2.5 * (question.digits / 28.0) ** 1.5)
     return set_up + min(LONGEST, moving) + 1e-4 * samples * bodies
 
 
