@@ -59,16 +59,21 @@ class InvalidParameter(MechanicsError, ValueError):
         The rule, completing the sentence "moments/1 must ...".
     remedy : str, optional
         How to correct the parameter.
+    further : sequence of InvalidParameter
+        Faults of other parts of the same document.
     """
 
-    def __init__(self, path: str | Path, rule: str, *, remedy: str | None = None) -> None:
+    def __init__(
+        self, path: str | Path, rule: str, *, remedy: str | None = None, further: Iterable[InvalidParameter] = ()
+    ) -> None:
         steps = (path,) if isinstance(path, str) else path
         super().__init__(f"{'/'.join(map(str, steps))} must {rule}", path=steps, remedy=remedy)
-        self.rule = rule
+        self.rule, self.further = rule, tuple(further)
 
     def inside(self, *outer: str | int) -> InvalidParameter:
         """Return the same error with the path from an enclosing object."""
-        return type(self)((*outer, *self.path), self.rule, remedy=self.remedy)
+        further = [fault.inside(*outer) for fault in self.further]
+        return type(self)((*outer, *self.path), self.rule, remedy=self.remedy, further=further)
 
 
 class SlackAtStart(InvalidParameter):

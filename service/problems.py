@@ -308,14 +308,15 @@ def code_of(error: errors.MechanicsError) -> str:
 
 def problem_of(error: errors.MechanicsError) -> Problem:
     """Return the problem that an error raised while a question is being answered amounts to."""
-    fault = Fault(pointer_of(error.path), error.detail, error.remedy)
+    faults: tuple[Fault, ...] = (Fault(pointer_of(error.path), error.detail, error.remedy),)
     detail = error.detail
     if isinstance(error, errors.InvalidParameter):
-        fault = Fault(fault.pointer, f"must {error.rule}", error.remedy)
-        detail = headline((fault,))
-    known = ("detail", "path", "remedy", "rule")
+        every = (error, *error.further)
+        faults = tuple(Fault(pointer_of(fault.path), f"must {fault.rule}", fault.remedy) for fault in every)
+        detail = headline(faults)
+    known = ("detail", "path", "remedy", "rule", "further")
     data = {name: value for name, value in vars(error).items() if name not in known}
-    return Problem(REGISTRY[code_of(error)], detail, (fault,), extra=data)
+    return Problem(REGISTRY[code_of(error)], detail, faults, extra=data)
 
 
 def headline(faults: Sequence[Fault]) -> str:

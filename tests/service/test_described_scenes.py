@@ -293,6 +293,14 @@ async def test_the_largest_scene_answers_as_foreseen_and_one_body_more_is_refuse
     assert f"at most {MOST_BODIES}" in refused.json()["detail"]
 
 
+async def test_faults_of_several_parts_are_said_at_once() -> None:
+    wrong = [ROD | {"a": "nobody"}, ROD, {"kind": "spring", "a": "nobody", "b": [0, 1], "stiffness": 1}]
+    problem = (await asked(PENDULUM | {"connections": wrong})).json()
+    assert [fault["pointer"] for fault in problem["errors"]] == ["/connections/0/a", "/connections/2/a"]
+    assert problem["detail"].endswith(", and 1 more")
+    assert "further" not in problem
+
+
 async def test_a_misspelt_field_of_a_body_is_recognised_whatever_the_body_is_called() -> None:
     for name in ("p", "times", "ball", "body"):
         response = await asked({"bodies": {name: {"mass": 1, "at": [0, 0], "velocty": [0, 0]}}})

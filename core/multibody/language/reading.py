@@ -8,6 +8,7 @@ from typing import Any
 
 from core.errors import InvalidParameter, Path
 from core.multibody.language.connections import KINDS, NOT_YET
+from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.numerals import member
 from core.multibody.language.scene import Scene, SceneBody, check_size
 from core.near_names import did_you_mean
@@ -19,19 +20,28 @@ def scene_from(description: Any) -> Scene:
     Raises
     ------
     InvalidParameter
-        For fields that are missing or unknown, kinds that do not exist, and names that clash.
+        For fields that are missing or unknown, kinds that do not exist, and names that clash; for every body and
+        connection that has such a fault.
     """
     given = _object(description, (), Scene)
+    faults = FaultsOfParts()
     bodies = given.get("bodies")
     if isinstance(bodies, Mapping):
         check_size(bodies, ())
-        given["bodies"] = {
-            name: SceneBody(**_object(body, member(("bodies",), name), SceneBody)) for name, body in bodies.items()
-        }
+        read: dict[str, SceneBody] = {}
+        for name, body in bodies.items():
+            with faults.part():
+                read[name] = SceneBody(**_object(body, member(("bodies",), name), SceneBody))
+        given["bodies"] = read
     connections = given.get("connections", ())
     if isinstance(connections, Sequence) and not isinstance(connections, str):
         check_size((), connections)
-        given["connections"] = tuple(_connection(entry, ("connections", i)) for i, entry in enumerate(connections))
+        known: list[Any] = []
+        for i, entry in enumerate(connections):
+            with faults.part():
+                known.append(_connection(entry, ("connections", i)))
+        given["connections"] = tuple(known)
+    faults.raised()
     return Scene(**given)
 
 

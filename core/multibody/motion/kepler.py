@@ -30,6 +30,7 @@ from core.multibody.table.table import Table
 
 _SMALL = 2.0**-98
 _SOLVED = 2.0**-200
+_STUMPFF = [(1 / math.factorial(2 * k + 2), 1 / math.factorial(2 * k + 3)) for k in reversed(range(8))]
 _NODES = 96
 """Of a period, or of the way to a time, alike in s: the steps are short where the motion is fast."""
 
@@ -138,7 +139,8 @@ class Kepler:
         distance, product, beta = self.constants
         period = self.period
         if period is not None:
-            time = time - period * (time / period).mid().floor().mid() if abs(time) > period else time
+            # The nearest passage of the start: half a period from it at most, Kepler's equation is solved fastest.
+            time = time - period * (time / period + 0.5).mid().floor().mid()
         s = self._universal(time)
         g0, g1, g2, g3 = stumpff(beta, s)
         r = distance * g0 + product * g1 + self.mu * g2
@@ -250,7 +252,7 @@ def _around(measure: Poly, places: Sequence[int], length: int) -> tuple[Ball, ..
 def stumpff(beta: Ball, s: Ball) -> tuple[Ball, Ball, Ball, Ball]:
     """Return G_0, G_1, G_2, G_3: G_n = sum of (-beta)^k s^(n + 2k)/(n + 2k)!."""
     x = beta * s * s
-    if not abs(x) < 0.1:
+    if not abs(x) < 2.0**-32:
         if x > 0:
             root = beta.sqrt()
             sine, cosine = (root * s).sin_cos()
@@ -283,8 +285,9 @@ def universal_in_doubles(product: float, mu: float, beta: float, time: float) ->
     def at(s: float) -> tuple[float, float]:
         x = beta * s * s
         if abs(x) < 0.1:
-            c2 = sum((-x) ** k / math.factorial(2 * k + 2) for k in range(8))
-            c3 = sum((-x) ** k / math.factorial(2 * k + 3) for k in range(8))
+            c2 = c3 = 0.0
+            for even, odd in _STUMPFF:
+                c2, c3 = even - x * c2, odd - x * c3
             g2, g3 = c2 * s * s, c3 * s**3
             g0, g1 = 1.0 - beta * g2, s - beta * g3
         elif x > 0.0:
@@ -314,7 +317,7 @@ def universal_in_doubles(product: float, mu: float, beta: float, time: float) ->
         new = s - step
         if not low < new < high:
             new = 0.5 * (low + high)
-        if abs(new - s) <= 1e-15 * abs(s):
+        if abs(new - s) <= 1e-12 * abs(s):
             return new
         s = new
     return s

@@ -22,6 +22,7 @@ from core.multibody.algebra.polynomials import (
     is_zero,
 )
 from core.multibody.language.connections import GROUND, Place
+from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.inertia import inertia_of
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene, SceneBody
@@ -41,8 +42,11 @@ class Coordinates:
         self.gravity = numerals.vector(gravity, ("gravity",), self.dimension)
         self.frames: dict[str, Frame] = {}
         self.given: list[Given] = []
+        faults = FaultsOfParts()
         for name, body in scene.bodies.items():
-            self._add(name, body, seen.get(name, set()))
+            with faults.part():
+                self._add(name, body, seen.get(name, set()))
+        faults.raised()
 
     def point(self, place: Place, path: Path) -> Point:
         """Return a place.

@@ -10,6 +10,7 @@ from core.errors import InvalidParameter, Path
 from core.multibody.algebra.directions import perpendicular
 from core.multibody.algebra.polynomials import ONE, Poly, constant, difference, evaluated, is_zero
 from core.multibody.language.connections import GROUND
+from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.table import attraction, laws
@@ -43,7 +44,7 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
     Raises
     ------
     InvalidParameter
-        With the path to what cannot be.
+        With the paths to what cannot be: to a fault of every connection, where the bodies have none.
     """
     numerals = numerals or Numerals.of(scene.let, scene.numbers)
     names = scene.names()
@@ -55,9 +56,12 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
     measures = Measures(coordinates, one_sided=one_sided)
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
     paths["clock"] = ()
+    faults = FaultsOfParts()
     for i, (name, connection) in enumerate(zip(names, scene.connections, strict=True)):
         paths[name] = ("connections", i)
-        _connect(measures, name, connection, ("connections", i))
+        with faults.part():
+            _connect(measures, name, connection, ("connections", i))
+    faults.raised()
     if "gravity" not in paths:
         measures.works.extend(_weight(measures))
     return Described(scene, measures, paths)

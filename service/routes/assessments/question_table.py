@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import Field
 
 from core.assessment.graded_question import GradedQuestion
-from core.errors import MechanicsError, Path
+from core.errors import MechanicsError, Path, inside_field, pointer_of
 from core.systems.budget import Budget
 from service.problems import Fault, Problem, Refusal, headline
 from service.requests.request_reader import Limits, Reader
@@ -104,19 +104,17 @@ class QuestionTable:
 def within_question() -> Iterator[None]:
     """Have refusals of the question point into the document that holds it."""
     try:
-        yield
+        with inside_field(*WITHIN):
+            yield
     except Refusal as refusal:
         raise _moved(refusal.problem) from None
     except Refused as refused:
         raise _moved(refused.refusal.problem) from None
-    except MechanicsError as error:
-        error.path = (*WITHIN, *error.path)
-        raise
 
 
 def _moved(problem: Problem) -> Refusal:
     """Return the refusal of the question itself, with pointers into the document that holds it."""
     faults = problem.faults or (Fault("", problem.detail),)
-    moved = [Fault("/question/request" + fault.pointer, fault.detail, fault.remedy) for fault in faults]
+    moved = [Fault(pointer_of(WITHIN) + fault.pointer, fault.detail, fault.remedy) for fault in faults]
     code = problem.type.code if problem.type.status == 422 else "invalid-parameter"
     return Refusal(code, headline(moved), faults=moved, extra=problem.extra)
