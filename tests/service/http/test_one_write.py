@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from service.http.connection import OneWrite
+from service.http.one_write import OneWrite
 
 pytestmark = pytest.mark.anyio
 
