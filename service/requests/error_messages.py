@@ -64,7 +64,7 @@ _MISSING, _NOT_KNOWN = "is required", "is not known here"
 _MEANT = "did you mean "
 _SPAN = frozenset({"start", "stop", "count"})
 _NOT_FREE = f"{_NOT_KNOWN}: only torque-free motion is answered"
-_FREE_ONLY = "leave it out; motion under forces is answered for the scenes that GET /v1/scenes lists"
+_FREE_ONLY = "leave it out; motion under forces is a scene: POST /v1/scenes"
 
 
 class Wording:

@@ -191,7 +191,9 @@ class DescribedSceneAnswer(AtStart[float]):
 
     method: str | None = Field(default=None, description="Kind of the method that was named, if one was.")
     work: Work | None = Field(default=None, description="What that method cost.")
-    period: Seconds[float] | None = Field(description="Of the motion, where a single part moves and repeats.")
+    period: Seconds[float] | None = Field(
+        description="Of the motion; null where nothing moves, several parts move, or it is not known to repeat."
+    )
     ended: str | None = Field(
         description="horizon, or the kind of the event that ended the motion; null without times."
     )

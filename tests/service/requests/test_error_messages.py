@@ -228,7 +228,7 @@ def test_a_torque_is_answered_with_that_only_torque_free_motion_is_answered(key:
     question = {"body": TRAJECTORY["body"], key: [0.0, 0.0, 1.0]}
     pointer, detail, remedy = errors(question, path)[0]
     assert (pointer, detail) == (f"/{key}", "is not known here: only torque-free motion is answered")
-    assert "GET /v1/scenes" in str(remedy)
+    assert "POST /v1/scenes" in str(remedy)
 
 
 def test_a_torque_on_a_scene_is_any_unknown_key() -> None:
