@@ -36,11 +36,11 @@ def scene_from(description: Any) -> Scene:
     connections = given.get("connections", ())
     if isinstance(connections, Sequence) and not isinstance(connections, str):
         check_size((), connections)
-        known: list[Any] = []
+        joined: list[Any] = []
         for i, entry in enumerate(connections):
             with faults.part():
-                known.append(_connection(entry, ("connections", i)))
-        given["connections"] = tuple(known)
+                joined.append(_connection(entry, ("connections", i)))
+        given["connections"] = tuple(joined)
     faults.raised()
     return Scene(**given)
 

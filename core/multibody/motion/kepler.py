@@ -139,7 +139,7 @@ class Kepler:
         distance, product, beta = self.constants
         period = self.period
         if period is not None:
-            # The nearest passage of the start: half a period from it at most, Kepler's equation is solved fastest.
+            # Beside the nearest passage of the start, at most half a period away, the equation takes the fewest steps.
             time = time - period * (time / period + 0.5).mid().floor().mid()
         s = self._universal(time)
         g0, g1, g2, g3 = stumpff(beta, s)
@@ -252,6 +252,7 @@ def _around(measure: Poly, places: Sequence[int], length: int) -> tuple[Ball, ..
 def stumpff(beta: Ball, s: Ball) -> tuple[Ball, Ball, Ball, Ball]:
     """Return G_0, G_1, G_2, G_3: G_n = sum of (-beta)^k s^(n + 2k)/(n + 2k)!."""
     x = beta * s * s
+    # Down to here the differences below lose 35 of the 320 bits at most.
     if not abs(x) < 2.0**-32:
         if x > 0:
             root = beta.sqrt()

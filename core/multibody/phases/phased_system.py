@@ -21,7 +21,7 @@ from core.multibody.phases.phase_states import columns_in, in_closed_form, phase
 from core.multibody.phases.searches_in_phases import SearchInPhases
 from core.multibody.phases.stretches import stretches
 from core.multibody.phases.sums_in_phases import SumsInPhases
-from core.multibody.trajectory.column_errors import require_reached, scales_of, worst
+from core.multibody.trajectory.column_errors import require_reached, scaled, worst
 from core.multibody.trajectory.inherited import with_inherited
 from core.multibody.trajectory.occurrences import ExtremesOf, When
 from core.multibody.trajectory.trajectories import ONLY_SUMS, require_affordable
@@ -57,10 +57,9 @@ class PhasedSystem:
             if question.input_uncertainty is not None and len(times):
                 end = float(np.max(question.times))
                 columns, stated = self._with_inherited(times, columns, stated, question.input_uncertainty, end)
-        scales = scales_of(columns)
         return Trajectory(
             times,
-            {name: replace(column, scale=scales[name]) for name, column in columns.items()},
+            scaled(columns),
             stated,
             None,
             ClosedFormEvaluation().kind,

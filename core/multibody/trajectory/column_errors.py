@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -58,6 +59,12 @@ def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
         if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
             largest[unit] = 0.0
     return {name: largest[column.unit] for name, column in columns.items()}
+
+
+def scaled(columns: Mapping[str, Column]) -> dict[str, Column]:
+    """Return columns with what their errors are relative to."""
+    scales = scales_of(columns)
+    return {name: replace(column, scale=scales[name]) for name, column in columns.items()}
 
 
 def require_known(columns: Mapping[str, Column]) -> None:

@@ -22,7 +22,7 @@ from core.multibody.trajectory.column_errors import (
     apart,
     require_known,
     require_reached,
-    scales_of,
+    scaled,
     worst,
 )
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES, NEAREST, Columns
@@ -151,10 +151,9 @@ class DescribedSystem:
             stated = Accuracy(question.accuracy, worst(columns), how)
             if question.input_uncertainty is not None and len(times):
                 columns, stated = self._with_inherited(times, columns, stated, question.input_uncertainty)
-        scales = scales_of(columns)
         return Trajectory(
             times,
-            {name: replace(column, scale=scales[name]) for name, column in columns.items()},
+            scaled(columns),
             stated,
             None,
             ClosedFormEvaluation().kind if method is None else method.kind,
