@@ -9,7 +9,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --requir
 # Wheels are compiled to byte code when they are first imported: most of what scipy holds never is.
 PIP += --no-compile
 
-.PHONY: serve test check kernels old-kernels environment openapi judge plans record peers peers-scenes newest clean
+.PHONY: serve test check kernels environment openapi judge plans record peers peers-scenes newest clean
 .PHONY: browser pictures vendor site
 
 serve: $(ENV)/runs
@@ -27,11 +27,6 @@ check: environment
 # Otherwise both processes of the tests would compile all of them.
 kernels: environment
 	$(BIN)/python -c 'from service.app import app; app.answering.warm()'
-
-# What was compiled from earlier sources: it is not removed by itself, as a server that still runs from them may need it.
-old-kernels: environment
-	current=$$($(BIN)/python -c 'import core.compiled, numba, os; print(os.path.basename(numba.config.CACHE_DIR))') && \
-		find core/__pycache__ -maxdepth 1 -name 'compiled-*' ! -name "$$current" -print -exec rm -r {} +
 
 environment: $(ENV)/made
 

@@ -1,9 +1,10 @@
 """Compilation with numba, and three machine instructions that numba does not provide.
 
-Compiled code is cached on disk, so only the first process after an installation compiles. Numba's cache depends only on
-the file of a function, and would return outdated code if an inlined function of another file changed. The cache
-directory is therefore named by a digest of all files that contain compiled functions or constants used in them.
-Floating-point semantics are strict (no reassociation, no contraction), because the error bounds rely on them.
+Compiled code is cached on disk, so only the first process after an installation compiles. Numba's cache depends on the
+path and the content of the file of a function: it would compile again in a copy of the directory, and return outdated
+code if an inlined function of another file changed. Here every function is cached under a digest of what it is compiled
+from: its own byte code, the constants that it uses, and the functions that it calls. Floating-point semantics are
+strict (no reassociation, no contraction), because the error bounds rely on them.
 """
 
 from __future__ import annotations
@@ -11,15 +12,16 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
-import re
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, wraps
 from pathlib import Path
+from types import CodeType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import caching, serialize
@@ -30,33 +32,18 @@ from core.lanes import LANES, fused
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-_IMPORTED = re.compile(rb"^from core\.([\w.]+) import", re.MULTILINE)
-
-
-def _digest() -> str:
-    """Return a digest of every source file with compiled functions, and of those that provide constants to them."""
-    found, core = hashlib.sha256(numba.__version__.encode()), Path(__file__).parent
-    texts = {path: path.read_bytes() for path in core.rglob("*.py")}
-    compiling = {path for path, text in texts.items() if b"core.compiled" in text or path.name == "compiled.py"}
-    imported = {name.decode().replace(".", "/") for path in compiling for name in _IMPORTED.findall(texts[path])}
-    taken_from = {core / f"{name}.py" for name in imported} & set(texts)
-    for path in sorted(compiling | taken_from):
-        found.update(texts[path])
-    return found.hexdigest()[:16]
-
-
-def _keep_by_content() -> None:
-    """Set the cache directory: named by the digest, in NUMBA_CACHE_DIR or beside this file.
+def _choose_directory() -> None:
+    """Set the cache directory: in NUMBA_CACHE_DIR or beside this file.
 
     If that is not writable, numba's own choice, a directory of the user, remains.
     """
     config: Any = numba.config
     base = Path(config.CACHE_DIR or Path(__file__).parent / "__pycache__")
     if os.access(base if base.exists() else base.parent, os.W_OK):
-        config.CACHE_DIR = str(base / f"compiled-{_digest()}")
+        config.CACHE_DIR = str(base / "compiled")
 
 
-_keep_by_content()
+_choose_directory()
 
 
 def has_compiled_code() -> bool:
@@ -66,6 +53,74 @@ def has_compiled_code() -> bool:
     return bool(directory) and any(Path(directory).rglob("*.nbc"))
 
 
+@cache
+def _extensions() -> bytes:
+    """Return the source of what extends numba, which every function may use."""
+    return b"".join(Path(__file__).with_name(name).read_bytes() for name in ("compiled.py", "lanes.py"))
+
+
+class _Sources:
+    """What a compiled function consists of, as text that is the same wherever and whenever it is read."""
+
+    def __init__(self) -> None:
+        self.parts: list[str] = []
+        self.known: list[Any] = []
+
+    def add(self, name: str, value: Any) -> None:
+        """Add what a name stands for in compiled code."""
+        self.parts.append(name)
+        if hasattr(value, "py_func"):
+            self.add_function(value.py_func)
+        elif isinstance(value, type):
+            # Of the classes, compiled code knows named tuples.
+            self.parts.append(f"{value.__qualname__} {getattr(value, '_fields', '')} {value.__annotations__}")
+        elif isinstance(value, np.ndarray):
+            self.parts.append(f"{value.dtype} {value.shape} {value.tobytes().hex()}")
+        elif type(value) in (ModuleType, type(_fma)):
+            # Of this version of their package, or of the extensions.
+            self.parts.append(value.__name__)
+        elif isinstance(value, (bool, int, float, str, tuple, type(None))):
+            self.parts.append(repr(value))
+        else:
+            raise TypeError(f"compiled code may not depend on {name}, a {type(value).__name__}")
+
+    def add_function(self, function: Any) -> None:
+        """Add a function, and what it refers to."""
+        if function in self.known:
+            self.parts.append(f"function {self.known.index(function)}")
+            return
+        self.known.append(function)
+        self._add_code(function.__code__, function.__globals__)
+        for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+            self.add(name, cell.cell_contents)
+
+    def _add_code(self, code: CodeType, names: dict[str, Any]) -> None:
+        self.parts.append(f"{code.co_code.hex()} {code.co_names} {code.co_varnames}")
+        for constant in code.co_consts:
+            if isinstance(constant, CodeType):
+                self._add_code(constant, names)
+            else:
+                self.parts.append(repr(constant))
+        for name in code.co_names:
+            if name in names:
+                self.add(name, names[name])
+
+    def digest(self) -> str:
+        """Return a digest of all of it, and of the extensions."""
+        return hashlib.sha256("\n".join(self.parts).encode() + _extensions()).hexdigest()[:20]
+
+
+def _digest(function: Any, signature: Any) -> str:
+    """Return a digest of what a function is compiled from, for arguments that may be compiled functions themselves."""
+    sources = _Sources()
+    sources.add_function(function)
+    # The types of a call come as a tuple. A declared signature, of another type, has no functions among its arguments.
+    for kind in signature if isinstance(signature, tuple) else ():
+        if isinstance(kind, types.Dispatcher):
+            sources.add("argument", kind.dispatcher)
+    return sources.digest()
+
+
 class CacheUnusable(RuntimeWarning):
     """Compiled code could not be cached, or the cache is damaged; the code is compiled again."""
 
@@ -73,11 +128,23 @@ class CacheUnusable(RuntimeWarning):
 # Numba's packages have no type annotations.
 _CodeCache: Any = caching.CompileResultCacheImpl
 _FunctionCache: Any = caching.FunctionCache
+_IndexFile: Any = caching.IndexDataCacheFile
+_Locator: Any = caching.UserProvidedCacheLocator
 _dumps: Any = serialize.dumps
+
+
+class _OneDirectory(_Locator):  # type: ignore[misc]
+    """All functions are cached in one directory, as their digests tell them apart."""
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, py_file: str) -> str:
+        return ""
 
 
 class _CheckedCode(_CodeCache):  # type: ignore[misc]
     """Compiled code with a digest of its bytes, because damaged machine code might run and give wrong results."""
+
+    _locator_classes = (_OneDirectory, caching.InTreeCacheLocator, caching.UserWideCacheLocator)
 
     def reduce(self, cres: Any) -> tuple[bytes, bytes]:
         code: bytes = _dumps(super().reduce(cres))
@@ -91,11 +158,14 @@ class _CheckedCode(_CodeCache):  # type: ignore[misc]
 
 
 class _CheckedCache(_FunctionCache):  # type: ignore[misc]
-    """Numba's cache of one function; an error in it only causes a new compilation."""
+    """Numba's cache of one function, by content; an error in it only causes a new compilation."""
 
     _impl_class = _CheckedCode
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
+        name = f"{self._py_func.__module__}.{self._py_func.__name__}-{_digest(self._py_func, sig)}"
+        # The name says what the file contains: it needs no date of a source.
+        self._cache_file = _IndexFile(self.cache_path, name, None)
         try:
             return super().load_overload(sig, target_context)
         # Reading a damaged file may raise anything.
@@ -108,6 +178,9 @@ class _CheckedCache(_FunctionCache):  # type: ignore[misc]
             super().save_overload(sig, data)
         except Exception as fault:
             self._unusable(fault)
+
+    def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
+        return sig, codegen.magic_tuple()
 
     def _unusable(self, fault: Exception) -> None:
         # One place in the code, so that many errors give one warning.

@@ -75,6 +75,87 @@ def compiled(tmp_path_factory: pytest.TempPathFactory) -> Program:
     return program
 
 
+INLINED = """
+from core.compiled import kernel
+
+FACTOR = 2.0
+
+@kernel()
+def double(x):
+    return FACTOR * x
+"""
+
+CALLING = """
+from inlined import double
+from core.compiled import kernel
+
+@kernel("float64(float64)")
+def quadruple(x):
+    return double(double(x))
+
+@kernel("float64(float64)")
+def half(x):
+    return 0.5 * x
+
+print(half(3.0), quadruple(1.5))
+print(sum(sum(dispatcher.stats.cache_hits.values()) for dispatcher in (half, quadruple)))
+"""
+
+
+class TwoFiles(Program):
+    """A program with a kernel that calls one of another file, and one that does not."""
+
+    def __init__(self, directory: Path) -> None:
+        super().__init__(directory)
+        self.file.write_text(CALLING)
+        self.inlined = directory / "inlined.py"
+        self.inlined.write_text(INLINED)
+
+    def printed(self, program: Path | None = None) -> tuple[str, int]:
+        """Return the numbers, and how many functions were not compiled anew."""
+        given = {"NUMBA_CACHE_DIR": str(self.cache), "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+        command = [sys.executable, "-W", "error", str(program or self.file)]
+        done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **given}, check=True)
+        numbers, hits = done.stdout.splitlines()
+        return numbers, int(hits)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "numbers", "hits"),
+    [
+        ("FACTOR = 2.0", "FACTOR = 3.0", "1.5 13.5", 1),
+        ("FACTOR * x", "FACTOR + x", "1.5 5.5", 1),
+        ("FACTOR = 2.0", "# Of a comment nothing is compiled.\n\nFACTOR = 2.0\nOTHER = 3.0", "1.5 6.0", 2),
+    ],
+)
+def test_what_calls_a_changed_function_is_compiled_again_and_nothing_else(
+    tmp_path: Path, old: str, new: str, numbers: str, hits: int
+) -> None:
+    program = TwoFiles(tmp_path)
+    assert program.printed() == ("1.5 6.0", 0)
+    program.inlined.write_text(INLINED.replace(old, new))
+    assert program.printed() == (numbers, hits)
+
+
+def test_in_another_directory_nothing_is_compiled_again(tmp_path: Path) -> None:
+    program = TwoFiles(tmp_path)
+    program.printed()
+    copy = tmp_path / "copy"
+    copy.mkdir()
+    for file in (program.file, program.inlined):
+        (copy / file.name).write_bytes(file.read_bytes())
+    assert program.printed(copy / program.file.name) == ("1.5 6.0", 2)
+
+
+def test_what_compiled_code_may_not_depend_on_is_refused(tmp_path: Path) -> None:
+    """A dictionary has no text by which a change of it would be seen."""
+    program = TwoFiles(tmp_path)
+    program.inlined.write_text(INLINED.replace("FACTOR = 2.0", "FACTOR = {}"))
+    with pytest.raises(subprocess.CalledProcessError) as fault:
+        program.printed()
+    assert "compiled code may not depend on FACTOR" in fault.value.stderr
+
+
 def truncated(data: bytes) -> bytes:
     return data[: len(data) // 2]
 
