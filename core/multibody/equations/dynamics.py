@@ -9,7 +9,7 @@ from math import inf
 from flint import arb_mat
 
 from core.errors import AccuracyUnreachable, InvalidParameter
-from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, entry, evaluated, is_zero, variables
+from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, entry, evaluated, is_zero
 from core.multibody.algebra.rank import Elimination, independent
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.measures import Measures
@@ -38,15 +38,17 @@ def parts(table: Table) -> list[list[int]]:
         for key in keys:
             join(key)
     for row in table.rows:
-        join(sorted({*row.rates, *row.drag, *variables(row.rates.values()), *variables(row.drag.values())}))
+        join(sorted(row.coordinates()))
     groups: dict[int, list[int]] = {}
     for i in range(len(parent)):
         if timeless[i]:
             groups.setdefault(root(i), []).append(i)
-    if not groups and parent:
-        return [list(range(len(parent)))]
     clocks = [i for i in range(len(parent)) if not timeless[i]]
-    return [[*group, *clocks] if _sees(table, group, clocks) else group for group in groups.values()]
+    found = [[*group, *clocks] if _sees(table, group, clocks) else group for group in groups.values()]
+    if clocks and not any(set(clocks) <= set(group) for group in found):
+        # What is driven alone is an expression of the time, which then is a part of its own.
+        found.append(clocks)
+    return found
 
 
 def _sees(table: Table, group: list[int], clocks: list[int]) -> bool:
@@ -58,7 +60,7 @@ def _sees(table: Table, group: list[int], clocks: list[int]) -> bool:
         for key in keys:
             if timed & set(key) and inside & set(key):
                 return True
-    return any(timed & (found := {*row.rates, *variables(row.rates.values())}) and inside & found for row in table.rows)
+    return any(timed & (seen := row.coordinates()) and inside & seen for row in table.rows)
 
 
 def restricted(table: Table, indices: Sequence[int]) -> Table:
@@ -73,7 +75,7 @@ def restricted(table: Table, indices: Sequence[int]) -> Table:
     new.damping = {(number[i], number[j]): x for (i, j), x in table.damping.items() if i in number}
     new.gyration = {(number[i], number[j], number[k]): x for (i, j, k), x in table.gyration.items() if i in number}
     for row in table.rows:
-        if not set(row.rates) <= set(number):
+        if not row.coordinates() <= set(number):
             continue
         renamed = None
         if row.measure is not None:
@@ -243,6 +245,8 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
 
     Raises
     ------
+    InvalidParameter
+        At a singular place, if none do.
     AccuracyUnreachable
         If numbers of very different size leave none that do.
     """
@@ -256,6 +260,13 @@ def multipliers_at_start(measures: Measures, acceleration: Sequence[Ball]) -> Mu
     for line, inertia, force in zip(lines, pushed, given, strict=True):
         left = elimination.add(line, inertia - force)
         if left is not None and not is_zero(left):
+            if len(independent(row.line(table.q) for row in table.rows)) < len(table.rows):
+                raise InvalidParameter(
+                    ("connections",),
+                    "be able to carry the loads: the start is a singular place, where no finite forces hold the bodies "
+                    "as the connections require",
+                    remedy="start elsewhere, or leave out the loads that act there",
+                )
             # What is small beside the largest of the numbers was lost, and with it a coefficient.
             reason = f"the forces are not known in {BITS} bits, as the numbers of the scene differ too much in size"
             remedy = "choose units and an origin by which the numbers are moderate"

@@ -167,9 +167,8 @@ def _motion(piece: Piece) -> Motion:
     if found is not None:
         return found
     free = piece.freedom
-    why = (
-        "one degree of freedom that does not return soon, or is driven or damped"
-        if free == 1
-        else f"{free} degrees of freedom are coupled by quadratic terms"
-    )
+    why = {
+        0: "the rates that are prescribed leave nothing free",
+        1: "one degree of freedom that does not return soon, or is driven or damped",
+    }.get(free, f"{free} degrees of freedom are coupled by quadratic terms")
     return Numerical.of(part, gain, chosen, why)

@@ -83,6 +83,19 @@ def coefficients(table: Packed, space: Saddle, products: Products, since: int) -
 
 
 @kernel()
+def _first_motion(q: Floats, group: Integers, which: int) -> tuple[int, float]:
+    """Return the lowest order with a coefficient of one group that is not zero, and the largest of that order."""
+    for k in range(q.shape[1]):
+        largest = 0.0
+        for i in range(q.shape[0]):
+            if group[i] == which:
+                largest = max(largest, abs(q[i, k]))
+        if largest > 0.0:
+            return k, largest
+    return q.shape[1], 0.0
+
+
+@kernel()
 def step_size(q: Floats, group: Integers, tolerance: float) -> float:
     """Return the step at which the last terms of the series are `tolerance` of what they are added to."""
     n, order = q.shape[0], q.shape[1] - 1
@@ -105,6 +118,12 @@ def step_size(q: Floats, group: Integers, tolerance: float) -> float:
                 # What starts at zero is measured by how far it comes within the radius of convergence.
                 scale = max(scale, gain + 2.0 * (gain - size) / (power - 2))
                 scale = max(scale, rate + (rate - size) / (power - 1))
+                if scale == -np.inf:
+                    k, moved = _first_motion(q, group, g)
+                    if k >= power:
+                        # It moves by rounding alone.
+                        continue
+                    scale = math.log(moved) + k * (math.log(moved) - size) / (power - k)
                 best = min(best, (math.log(tolerance) + scale - size) / power)
     return math.exp(best)
 

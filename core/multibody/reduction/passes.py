@@ -28,6 +28,7 @@ from core.multibody.algebra.polynomials import (
     variables,
 )
 from core.multibody.algebra.rank import Elimination
+from core.multibody.reduction.degenerate_rows import resolve
 from core.multibody.reduction.pinning import pin, separate
 from core.multibody.reduction.reduction import Reduced, substitute
 from core.multibody.table.table import Row, Table, identity
@@ -45,6 +46,8 @@ def reduced(table: Table, *, pinning: bool) -> Reduced:
         changed = _factor(state) or changed
         changed = _linear(state) or changed
         changed = _straighten(state) or changed
+        if not changed:
+            changed = resolve(state)
         if not changed and pinning:
             changed = pin(state) or separate(state)
         if not changed:

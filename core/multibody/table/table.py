@@ -24,6 +24,7 @@ from core.multibody.algebra.polynomials import (
     gradient,
     is_zero,
     substituted,
+    variables,
 )
 
 
@@ -65,6 +66,10 @@ class Row:
     def constant(self) -> bool:
         """Whether the lines of W and X do not depend on the coordinates."""
         return all(degree(poly) <= 0 for part in (self.rates, self.drag) for poly in part.values())
+
+    def coordinates(self) -> set[int]:
+        """Return the coordinates that occur in the lines of W and X."""
+        return {*self.rates, *self.drag, *variables(self.rates.values()), *variables(self.drag.values())}
 
     def line(self, q: Sequence[Ball]) -> dict[int, Ball]:
         """Return the line of W at a state."""

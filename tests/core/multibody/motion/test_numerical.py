@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
@@ -138,3 +140,42 @@ def test_what_starts_beside_its_turning_point_has_a_period(speed: str, angle: st
         g = mpmath.mpf("9.81")
         m = mpmath.sin(mpmath.mpf(angle) / 2) ** 2 + mpmath.mpf(speed) ** 2 / (4 * g)
         assert answer.period == pytest.approx(float(4 * mpmath.ellipk(m) / mpmath.sqrt(g)), rel=4e-16)
+
+
+def on_a_line(cosine: str, sine: str) -> dict[str, object]:
+    """Return a body at rest that hangs from a place on a line, all turned about the vertical."""
+    return {
+        "gravity": [0, 0, -10],
+        "bodies": {
+            "b": {
+                "mass": 1,
+                "moments": [0.1, 0.2, 0.3],
+                "at": [0, 0, 0],
+                "axes": [[cosine, sine, 0], [f"-({sine})", cosine, 0], [0, 0, 1]],
+                "places": {"p": [0.5, 0, 0]},
+            }
+        },
+        "connections": [
+            {
+                "kind": "track",
+                "place": "b.p",
+                "on": {
+                    "at": [f"({cosine})/2", f"({sine})/2", 0],
+                    "direction": [f"0.6*({cosine}) - 0.8*({sine})", f"0.6*({sine}) + 0.8*({cosine})", 0],
+                },
+            }
+        ],
+    }
+
+
+@pytest.mark.parametrize(("cosine", "sine"), [("1", "0"), ("0.8", "-0.6"), ("5/13", "12/13")])
+def test_coordinates_that_only_rounding_moves_do_not_shorten_steps(cosine: str, sine: str) -> None:
+    times = (0.2, 0.5)
+    # Turned by acos 3/5 the line lies along x, and the coordinate across it is given away.
+    expected = solve_scene(read(on_a_line("0.6", "-0.8")), times, ("trajectory",))
+    found = solve_scene(read(on_a_line(cosine, sine)), times, ("trajectory",))
+    first, second = (column(one, "b.position") for one in (expected, found))
+    back = complex(0.6, -0.8) / complex(Fraction(cosine), Fraction(sine))
+    turned = (np.asarray(second.values)[:, :2] @ [1, 1j]) * back
+    assert np.max(np.abs(turned - np.asarray(first.values)[:, :2] @ [1, 1j])) < 1e-14
+    assert np.max(np.abs(np.asarray(second.values)[:, 2] - np.asarray(first.values)[:, 2])) < 1e-14
