@@ -57,7 +57,7 @@ SERVICE_LAYERS = (
 MULTIBODY_LAYERS = (
     {"__init__", "algebra", "undecided"},
     {"language", "answer"},
-    {"table"},
+    {"table", "audit"},
     {"equations"},
     {"reduction"},
     {"contacts", "motion"},
@@ -149,6 +149,15 @@ def test_multibody_imports_downwards(path: Path) -> None:
             assert other == own or height[other] < height[own], f"{own} imports {other}"
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "core" / "multibody" / "audit").rglob("*.py")), ids=name)
+def test_the_audit_shares_nothing_with_what_it_checks(path: Path) -> None:
+    """It reads the description and the answer, and knows none of the equations that the answer comes from."""
+    seen = {entry for entry in imports(path) if entry.startswith("core.")}
+    allowed = ("core.multibody.audit", "core.multibody.language", "core.multibody.answer", "core.systems.trajectory")
+    assert all(entry.startswith(allowed) for entry in seen)
+    assert not {"scipy", "numba", "flint"} & {entry.split(".")[0] for entry in imports(path)}
+
+
 @pytest.mark.parametrize("path", SERVICE, ids=name)
 def test_the_service_has_no_mechanics(path: Path) -> None:
     """Routes call core; they use no mathematics of their own."""
@@ -224,6 +233,10 @@ TESTED_IN |= {
     f"core/multibody/{name}.py": f"core/multibody/{through}.py"
     for through, names in {
         "contacts/test_impacts": "contacts/impulses phases/accumulation phases/recurring_bounces",
+        "audit/test_definitions": (
+            "audit/bodies audit/contact_definitions audit/contacts audit/definition audit/joints audit/laws "
+            "audit/newton audit/placement audit/strings"
+        ),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "
             "table/frames table/laws table/measures table/rolling table/spatial_orientation "
@@ -251,9 +264,7 @@ TESTED_IN |= {
             "equations/packed motion/products motion/returns motion/series motion/series_pairs motion/vertical_symmetry"
         ),
         "phases/test_phase_answer": "phases/phase_states phases/phased_system",
-        "test_solve": (
-            "answer equations/dynamics motion/modelling motion/motion motion/uniform motion/whole trajectory/events"
-        ),
+        "test_solve": ("answer motion/modelling motion/motion motion/uniform motion/whole trajectory/events"),
     }.items()
     for name in names.split()
 }

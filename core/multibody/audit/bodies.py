@@ -1,0 +1,142 @@
+"""The bodies of a description and its places, read into doubles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from core.multibody.audit.placement import Numbers, Place, Placement, Pose, turned
+from core.multibody.language.connections import GROUND
+from core.multibody.language.inertia import inertia_of
+from core.multibody.language.numerals import Numerals
+from core.multibody.language.scene import Scene
+
+Path = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """One body.
+
+    Attributes
+    ----------
+    mass : float
+    inertia : ndarray, shape () in the plane and (3, 3) in space, or None
+        About the centre of mass, in space in body axes (kg m^2); None of a particle.
+    radius : float or None
+    start : Pose
+    velocity, angular_velocity : ndarray or None
+        As far as they are given; in space the angular velocity is in body axes.
+    places : mapping of str to tuple of float
+    """
+
+    name: str
+    mass: float
+    inertia: Numbers | None
+    radius: float | None
+    start: Pose
+    velocity: Numbers | None = None
+    angular_velocity: Numbers | None = None
+    places: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+
+class Reader:
+    """Reads numbers, bodies and places of a scene; what is wrong with them has been refused before.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Attributes
+    ----------
+    dimension : int
+    gravity : tuple of float
+    bodies : mapping of str to RigidBody
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.numerals = Numerals.of(scene.let, scene.numbers)
+        self.dimension = _dimension(scene)
+        self.gravity = self.vector((0,) * self.dimension if scene.gravity is None else scene.gravity, ("gravity",))
+        self.bodies = {name: self._body(name) for name in scene.bodies}
+        self.start: Placement = {name: body.start for name, body in self.bodies.items()}
+
+    def number(self, value: Any, path: Path) -> float:
+        """Return a number as the nearest double."""
+        return float(self.numerals.number(value, path))
+
+    def vector(self, value: Any, path: Path) -> tuple[float, ...]:
+        """Return a vector of the dimension of the scene."""
+        return tuple(float(x) for x in self.numerals.vector(value, path, self.dimension))
+
+    def unit(self, value: Any, path: Path) -> tuple[float, ...]:
+        """Return the direction of a vector."""
+        found = np.array(self.vector(value, path))
+        return tuple((found / np.linalg.norm(found)).tolist())
+
+    def direction(self, slope: Any, path: Path) -> tuple[float, float]:
+        """Return cosine and sine of a slope."""
+        cosine, sine = self.numerals.angle(0 if slope is None else slope, path)
+        return float(cosine), float(sine)
+
+    def place(self, value: Any, path: Path) -> Place:
+        """Return a place: of a body, by name, or of the ground."""
+        if not isinstance(value, str):
+            return Place(None, self.vector(value, path))
+        if value == GROUND:
+            return Place(None, (0.0,) * self.dimension)
+        body, _, spot = value.partition(".")
+        if spot in ("", "centre"):
+            return Place(body, (0.0,) * self.dimension)
+        return Place(body, self.bodies[body].places[spot])
+
+    def rim(self, value: Any) -> float:
+        """Return the radius of a body that is named as a whole; 0 of any other place."""
+        body = self.bodies.get(value) if isinstance(value, str) else None
+        return 0.0 if body is None or body.radius is None else body.radius
+
+    def turns(self, body: str | None) -> bool:
+        """Return whether something is a body with inertia."""
+        return body is not None and body in self.bodies and self.bodies[body].inertia is not None
+
+    def _body(self, name: str) -> RigidBody:
+        body, path = self.scene.bodies[name], ("bodies", name)
+        mass, inertia = inertia_of(name, body, self.numerals, self.dimension)
+        position = np.array(self.vector(body.at, (*path, "at")))
+        tensor, start = None, Pose(position)
+        if inertia is not None and self.dimension == 2:
+            tensor = np.array(float(inertia))
+            turn = np.array(0.0 if body.angle is None else self.number(body.angle, (*path, "angle")))
+            start = Pose(position, turned(turn), turn)
+        elif inertia is not None:
+            tensor = np.array([[float(x) for x in row] for row in inertia])
+            start = Pose(position, self._attitude(body.axes, (*path, "axes")))
+        omega: Any = body.angular_velocity
+        if omega is not None:
+            where = (*path, "angular_velocity")
+            omega = np.array(self.number(omega, where) if self.dimension == 2 else self.vector(omega, where))
+        return RigidBody(
+            name,
+            float(mass),
+            tensor,
+            None if body.radius is None else self.number(body.radius, (*path, "radius")),
+            start,
+            None if body.velocity is None else np.array(self.vector(body.velocity, (*path, "velocity"))),
+            omega,
+            {spot: self.vector(value, (*path, "places", spot)) for spot, value in body.places.items()},
+        )
+
+    def _attitude(self, axes: Sequence[Any] | None, path: Path) -> Numbers:
+        if axes is None:
+            return np.eye(3)
+        return np.array([self.vector(axis, (*path, i)) for i, axis in enumerate(axes)]).T
+
+
+def _dimension(scene: Scene) -> int:
+    """Return 2 in the plane and 3 in space, as gravity or the first position says."""
+    leading: Any = next(iter(scene.bodies.values())).at if scene.gravity is None else scene.gravity
+    return 2 if isinstance(leading, Mapping) else len(leading)

@@ -1,0 +1,196 @@
+"""The laws of Newton and Euler for every body, as the power of all forces in every virtual motion.
+
+For the virtual velocity dv and spin dw of one body, with J its tensor and g gravity,
+
+    m (a - g).dv + (J w' + w x J w).dw  =  sum of F x effort + loads:
+
+one equation for each component. What holds bodies without a force in the answer, as the moment in a weld, may add
+anything along the rates of what it holds: that part of the equations is taken out by projection.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.multibody.audit.bodies import RigidBody
+from core.multibody.audit.definitions import Description
+from core.multibody.audit.placement import Motion, Numbers, Placement, Twist, cross
+
+Forces = Mapping[str, Numbers]
+
+
+@dataclass(frozen=True)
+class Acceleration:
+    """Acceleration of a body.
+
+    Attributes
+    ----------
+    linear : ndarray, shape (d,)
+        Of the centre of mass (m/s^2).
+    angular : ndarray, shape () in the plane and (3,) in space, or None
+        In space in the axes of space (rad/s^2).
+    """
+
+    linear: Numbers
+    angular: Numbers | None
+
+
+class Freedoms:
+    """The components of the virtual motions of the bodies of a description, numbered.
+
+    Attributes
+    ----------
+    where : mapping of str to (int, int)
+        Numbers of the first component of velocity and of spin of every body; the second is -1 of a particle.
+    count : int
+    """
+
+    def __init__(self, description: Description) -> None:
+        self.dimension = description.dimension
+        spins = 1 if description.dimension == 2 else 3
+        self.where: dict[str, tuple[int, int]] = {}
+        self.count = 0
+        for name, body in description.bodies.items():
+            turns = body.inertia is not None
+            self.where[name] = (self.count, self.count + self.dimension if turns else -1)
+            self.count += self.dimension + (spins if turns else 0)
+        self.spins = spins
+
+    def virtual(self, bodies: Collection[str]) -> tuple[list[int], Motion]:
+        """Return the components of some bodies, and the unit virtual motions along each; they are the first axis."""
+        numbers: list[int] = []
+        for name in bodies:
+            first, spin = self.where[name]
+            numbers.extend(range(first, first + self.dimension))
+            if spin >= 0:
+                numbers.extend(range(spin, spin + self.spins))
+        units = np.eye(self.count)[numbers][:, None, :]
+        motion = {}
+        for name in bodies:
+            first, spin = self.where[name]
+            velocity = units[..., first : first + self.dimension]
+            turning = None
+            if spin >= 0:
+                turning = units[..., spin] if self.spins == 1 else units[..., spin : spin + 3]
+            motion[name] = Twist(velocity, turning)
+        return numbers, motion
+
+
+@dataclass(frozen=True)
+class Balance:
+    """What is left over of the equations at some samples, shapes (freedoms, samples).
+
+    Attributes
+    ----------
+    rest : ndarray
+        Inertial terms less forces.
+    size : ndarray
+        Sum of the sizes of its terms.
+    free : ndarray, shape (freedoms, freedoms, samples) or None
+        Projection on what is not held by unanswered forces; None where nothing is.
+    """
+
+    rest: Numbers
+    size: Numbers
+    free: Numbers | None
+
+    def left(self) -> Numbers:
+        """Return what is left over apart from what unanswered forces may do, shape (freedoms, samples)."""
+        return self.rest if self.free is None else np.einsum("ijt,jt->it", self.free, self.rest)
+
+
+def balance(
+    description: Description,
+    placement: Placement,
+    motion: Motion,
+    accelerations: Mapping[str, Acceleration],
+    forces: Forces,
+) -> Balance:
+    """Return what is left over of the equations of motion at some samples.
+
+    Parameters
+    ----------
+    placement, motion, accelerations
+        With one leading axis, the samples.
+    forces : mapping of str to ndarray, shape (samples,)
+        Those of the answer. Those that it does not determine are left out, and projected out.
+    """
+    freedoms = Freedoms(description)
+    samples = next(iter(placement.values())).position.shape[0]
+    rest, size = np.zeros((freedoms.count, samples)), np.zeros((freedoms.count, samples))
+    for name, body in description.bodies.items():
+        _add_inertia(rest, size, freedoms, body, description.gravity, placement, motion, accelerations[name])
+    held: list[Numbers] = []
+    for connection in description.connections:
+        numbers, virtual = freedoms.virtual(connection.bodies)
+        for name, effort in connection.efforts(placement, virtual).items():
+            row = np.broadcast_to(effort, (len(numbers), samples))
+            if name in forces:
+                rest[numbers] -= row * forces[name]
+                size[numbers] += np.abs(row * forces[name])
+            else:
+                held.append(_spread(row, numbers, freedoms.count))
+        for line in connection.unanswered(placement, virtual):
+            held.append(_spread(np.broadcast_to(line, (len(numbers), samples)), numbers, freedoms.count))
+        load = np.broadcast_to(connection.load(placement, motion, virtual), (len(numbers), samples))
+        rest[numbers] -= load
+        size[numbers] += np.abs(load)
+    return Balance(rest, size, _free(held))
+
+
+def _add_inertia(
+    rest: Numbers,
+    size: Numbers,
+    freedoms: Freedoms,
+    body: RigidBody,
+    gravity: tuple[float, ...],
+    placement: Placement,
+    motion: Motion,
+    acceleration: Acceleration,
+) -> None:
+    first, spin = freedoms.where[body.name]
+    for i, g in enumerate(gravity):
+        rest[first + i] += body.mass * (acceleration.linear[..., i] - g)
+        size[first + i] += body.mass * (np.abs(acceleration.linear[..., i]) + abs(g))
+    if body.inertia is None:
+        return
+    angular, twist = acceleration.angular, motion[body.name].spin
+    assert angular is not None, "a body with inertia has an angular acceleration"
+    if freedoms.spins == 1:
+        rest[spin] += body.inertia * angular
+        size[spin] += np.abs(body.inertia * angular)
+        return
+    rotation = placement[body.name].rotation
+    assert rotation is not None, "the caller knows the attitude of what it balances"
+    assert twist is not None, "a body with inertia has a spin"
+    tensor = rotation @ body.inertia @ np.swapaxes(rotation, -1, -2)
+    terms = (
+        np.einsum("tij,tj->ti", tensor, angular),
+        cross(twist, np.einsum("tij,tj->ti", tensor, twist)),
+    )
+    for term in terms:
+        rest[spin : spin + 3] += term.T
+        size[spin : spin + 3] += np.abs(term.T)
+
+
+def _spread(row: Numbers, numbers: list[int], count: int) -> Numbers:
+    found = np.zeros((count, row.shape[1]))
+    found[numbers] = row
+    return found
+
+
+def _free(held: list[Numbers]) -> Numbers | None:
+    """Return the projections on what is at right angles to all of the held directions, shape (n, n, samples)."""
+    if not held:
+        return None
+    rows = np.stack(held, axis=0).transpose(2, 0, 1)
+    size = np.linalg.norm(rows, axis=2, keepdims=True)
+    rows = rows / np.where(size > 0.0, size, 1.0)
+    _, values, directions = np.linalg.svd(rows, full_matrices=False)
+    # Dependent rows leave singular values of rounding's size.
+    kept = np.where((values > 1e-9)[..., None], directions, 0.0)
+    projection: Numbers = np.eye(rows.shape[2]) - np.swapaxes(kept, 1, 2) @ kept
+    return projection.transpose(1, 2, 0)
