@@ -10,12 +10,13 @@ T. R. Kane, "A dynamics puzzle" (1984): with friction, Newton's law may add ener
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import permutations
 
 from flint import arb, arb_mat
 
+from core.errors import BudgetExceeded
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.contacts.contact_responses import (
     Forces,
@@ -53,8 +54,8 @@ class Impact:
         Of these impulses (J): they add up to the change of kinetic energy.
     unilateral : sequence of Unilateral
         The measures, those that slip in space turned into the direction in which they did.
-    change : list of ball
-        Of all rates.
+    changes : mapping of int to list of ball
+        What the impulses of each measure change of all rates.
     together : bool
         Whether several take impulses at once.
     shared : set of int
@@ -65,7 +66,7 @@ class Impact:
     impulses: dict[int, tuple[Ball, Ball, Ball]]
     works: dict[int, Ball]
     unilateral: Sequence[Unilateral]
-    change: list[Ball]
+    changes: dict[int, list[Ball]]
     together: bool = False
     shared: set[int] = field(default_factory=set)
 
@@ -115,15 +116,18 @@ def impact(
     Raises
     ------
     BudgetExceeded
-        For more than eight touching contacts that push one another.
+        For more than eight touching contacts that push one another, and for more than four of which every order would
+        have to be tried.
     """
     table = phase_table(base, (), (), q, v).table
     unilateral = along_slip(measures, touching, q, v)
     found = responses(table, unilateral, touching)
     normal, slips, across = found.normal, found.slips, found.across
-    before = kinetic(table)
-    after, impulses, works, together = list(v), {}, {}, False
-    shared: set[int] = set()
+    before, after, lines = kinetic(table), list(v), range(len(found.columns))
+    impulses: dict[int, tuple[Ball, Ball, Ball]] = {}
+    works: dict[int, Ball] = {}
+    changes: dict[int, list[Ball]] = {}
+    together, shared, driven = False, set[int](), ZERO
     for group in found.clusters():
         if not approaching(unilateral, group, q, v):
             continue
@@ -132,25 +136,33 @@ def impact(
         if isinstance(outcome, Problem):
             return outcome
         works.update(outcome.works)
-        for b, x in outcome.impulses.items():
-            if x != 0:
-                after = [a + x * y for a, y in zip(after, found.columns[b], strict=True)]
+        driven = driven + _driven(table, found, outcome.impulses)
+        for i in group:
+            own = (normal[i], *found.grip(i))
+            changes[i] = found.accelerations(
+                [outcome.impulses.get(b, ZERO) if b in own else ZERO for b in lines], from_rest=True
+            )
+            after = [a + x for a, x in zip(after, changes[i], strict=True)]
         taking = [i for i in group if outcome.impulses.get(normal[i], ZERO) != 0]
         together = together or len(taking) > 1
         if len(taking) > 1 and _shares(unilateral, taking, q, after, found):
             shared.update(taking)
         rubs = [[outcome.impulses.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
         impulses.update({i: (outcome.impulses[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
-    loss = before - kinetic(replace(table, v=after))
-    if not is_zero(loss) and loss < 0 and settled is None:
+    gain = kinetic(replace(table, v=after)) - before - driven
+    if not is_zero(gain) and gain > 0 and settled is None:
         return Problem(
             "energy-gain",
-            f"Newton's law of restitution with friction would add {float(-loss):.6g} J to the motion",
+            f"Newton's law of restitution with friction would add {float(gain):.6g} J to the motion",
             tuple(unilateral[i].name for i in impulses),
             decided_by="another law of impact (Poisson's or Stronge's), or a smaller coefficient of restitution",
         )
-    change = [x - y for x, y in zip(after, v, strict=True)]
-    return Impact(after, impulses, works, unilateral, change, together, shared)
+    return Impact(after, impulses, works, unilateral, changes, together, shared)
+
+
+def _driven(table: Table, found: Responses, impulses: Forces) -> Ball:
+    """Return the work that drives do while impulses act: of every row its impulse times the rate that it holds."""
+    return sum((p * x * table.rows[r].rate for b, p in impulses.items() for r, x in found.reactions[b].items()), ZERO)
 
 
 def _shares(
@@ -178,11 +190,11 @@ def _group(
     names = tuple(unilateral[i].name for i in group)
     given = [i for i in group if unilateral[i].order is not None]
     if len(given) == len(group) > 1:
-        ordered = sorted(given, key=lambda i: (float(unilateral[i].order or ZERO), i))
-        in_turn = _in_turn(unilateral, ordered, rates, found)
-        return in_turn if in_turn is not None else _endless(names)
+        return _in_turn(unilateral, _by_order(unilateral, given), rates, found)
     if settled is not None:
-        return _outcome(group, likest(unilateral, group, rates, settled.change, found), rates, found)
+        known = [settled.changes[i] for i in group if i in settled.changes]
+        change = [sum(parts, ZERO) for parts in zip(*known, strict=True)] or [ZERO] * len(v)
+        return _outcome(group, likest(unilateral, group, rates, change, found), rates, found)
     impulses = impulses_at_once(unilateral, group, rates, found)
     if isinstance(impulses, Problem):
         return impulses
@@ -193,31 +205,55 @@ def _group(
     if len(apart) <= 1 and sum(rates[normal[i]] < 0 for i in group) <= 1:
         return at_once
     outcomes: list[tuple[str, Forces]] = [("together", impulses)]
-    if len(group) <= _MOST_ORDERED:
-        middle = _without_width(rates, found)
-        for order in permutations(group):
-            in_turn = _in_turn(unilateral, order, *middle)
-            if in_turn is not None:
-                outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn.impulses))
-    first = rates_after(impulses, rates, found)
-    in_order = [rates_after(one, rates, found) for _, one in outcomes[1:]]
-    if len(group) <= _MOST_ORDERED and all(alike(first, then, rates) for then in in_order):
-        return at_once
+    middle = _without_width(rates, found)
+    for order in permutations(group) if len(group) <= _MOST_ORDERED else _rotations(group):
+        in_turn = _in_turn(unilateral, [[i] for i in order], *middle)
+        if isinstance(in_turn, _Outcome):
+            outcomes.append((" then ".join(unilateral[i].name for i in order), in_turn.impulses))
     different: list[tuple[str, RatesByLine]] = []
-    for told, one in outcomes:
+    for described, one in outcomes:
         then = rates_after(one, rates, found)
         if not any(alike(then, other, rates) for _, other in different):
-            different.append((told, then))
+            different.append((described, then))
+    if len(different) == 1 and len(group) <= _MOST_ORDERED:
+        return at_once
+    if len(different) == 1:
+        raise BudgetExceeded(
+            f"contacts in one impact ({', '.join(names)}), of which every order has to be tried",
+            len(group),
+            _MOST_ORDERED,
+            path=("connections",),
+            remedy='give the contacts an "order", equal where they act together',
+        )
     return Problem(
         "simultaneous-impacts",
         "several contacts take impulses at once, and rigid bodies do not say in which order",
         names,
         tuple(
-            {"order": told} | {unilateral[i].name: _gap_afterwards(unilateral[i], normal[i], then) for i in group}
-            for told, then in different
+            {"order": described} | {unilateral[i].name: _gap_afterwards(unilateral[i], normal[i], then) for i in group}
+            for described, then in different
         ),
-        'the order in which they happen, as "order" of the contacts',
+        'the order in which they happen, as "order" of the contacts, equal where they act together',
     )
+
+
+def _by_order(unilateral: Sequence[Unilateral], group: Iterable[int]) -> list[list[int]]:
+    """Return contacts in their order, those of equal order together."""
+    orders = {i: unilateral[i].order or ZERO for i in group}
+    found: list[list[int]] = []
+    for i in sorted(orders, key=lambda i: float(orders[i])):
+        if found and is_zero(orders[found[-1][0]] - orders[i]):
+            found[-1].append(i)
+        else:
+            found.append([i])
+    return found
+
+
+def _rotations(group: Sequence[int]) -> Iterator[Sequence[int]]:
+    """Yield the orders that begin with each contact and go on in one sense or the other."""
+    for way in (list(group), list(group)[::-1]):
+        for k in range(len(way)):
+            yield [*way[k:], *way[:k]]
 
 
 def _without_width(rates: RatesByLine, found: Responses) -> tuple[RatesByLine, Responses]:
@@ -250,17 +286,10 @@ def _gap_afterwards(one: Unilateral, line: int, after: RatesByLine) -> str:
     return f"opens at {rate:.10g} {'rad/s' if one.unit == 'N m' else 'm/s'}"
 
 
-def _endless(names: tuple[str, ...]) -> Problem:
-    return Problem("simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order")
-
-
 def _in_turn(
-    unilateral: Sequence[Unilateral],
-    order: Sequence[int],
-    rates: RatesByLine,
-    found: Responses,
-) -> _Outcome | None:
-    """Return the sum of the impulses if the first that approaches always comes first; None if that does not end."""
+    unilateral: Sequence[Unilateral], order: Sequence[Sequence[int]], rates: RatesByLine, found: Responses
+) -> _Outcome | Problem:
+    """Return the sum of the impulses if of groups that act together the first in which one approaches comes first."""
     total: Forces = {}
     works: dict[int, Ball] = {}
     normal = found.normal
@@ -268,16 +297,18 @@ def _in_turn(
     # Impacts that only come ever nearer to an end have come to it here.
     least = LIMIT * max((float(abs(x)) for x in rates.values()), default=0.0) * 2.0**-24
     for _ in range(_MOST_IN_TURN):
-        hit = next((i for i in order if now[normal[i]] < -least), None)
+        hit = next((one for one in order if any(now[normal[i]] < -least for i in one)), None)
         if hit is None:
             return _Outcome(total, works)
-        one = impulses_at_once(unilateral, [hit], now, found)
-        if isinstance(one, Problem):
-            return None
-        work = _outcome([hit], one, now, found).works[hit] + works.get(hit, ZERO)
-        works[hit] = ZERO if is_zero(work) else work
-        for b, x in one.items():
+        impulses = impulses_at_once(unilateral, hit, now, found)
+        if isinstance(impulses, Problem):
+            return impulses
+        for i, more in _outcome(hit, impulses, now, found).works.items():
+            work = more + works.get(i, ZERO)
+            works[i] = ZERO if is_zero(work) else work
+        for b, x in impulses.items():
             total[b] = total.get(b, ZERO) + x
         now = rates_after(total, rates, found)
         now = {a: ZERO if is_zero(x) else x for a, x in now.items()}
-    return None
+    names = tuple(unilateral[i].name for one in order for i in one)
+    return Problem("simultaneous-impacts", "in this order the impacts never end", names, decided_by="another order")

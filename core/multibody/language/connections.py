@@ -118,7 +118,7 @@ class Contact(Connection):
     ``{at, normal}``, free on the side of its normal, and a circle is a sphere. Or `a` does not pass `b`, of which one
     has a rim at least. Or with `measure` "turn", the turn of `a` relative to `b` stays `at_least` or
     `at_most` an angle. `friction` is one coefficient or two, that of sticking first; `order` says, where several
-    impacts at once leave their outcome open, in which order they happen.
+    impacts at once leave their outcome open, in which order they happen: those of equal order together.
     """
 
     place: Place | None = None

@@ -8,7 +8,6 @@ summed up.
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -18,7 +17,7 @@ from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero
 from core.multibody.contacts.complementarity import LOOKED, Decided, decided
-from core.multibody.contacts.contact_responses import gap_rate, slip_rate
+from core.multibody.contacts.contact_responses import slip_rate
 from core.multibody.contacts.contact_start import assemble_contacts
 from core.multibody.contacts.contact_states import Problem, State, change_of, phase_table
 from core.multibody.contacts.impacts import Impact, approaching, impact
@@ -31,18 +30,16 @@ from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.phases.sampled_crossings import SingularPlace
+from core.multibody.phases.slow_bounces import SLOW, rate_share, slowness
 from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import turns
+from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
 from core.multibody.table.measures import COMPONENTS
 from core.systems.trajectory import MotionEvent
 
 MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
-SLOW = 2.0**-42
-"""Share of the largest rate below which several contacts that bounce in turn come to rest."""
-OFTEN = 3
-"""Impacts among the last ones by which a contact shows that it bounces in turn with others."""
 PRECISIONS = (480, 1280)
 """Precisions of a motion: the second where, in closed form, balls have become wide. An impact takes three bits."""
 EXACT = 2.0**-130
@@ -161,23 +158,16 @@ class _Run:
             hit = approaching(self.unilateral, self.touching, q, v)
             if not hit:
                 return True
-            unilateral, share = self.unilateral, self._slowness(hit)
-            if share > 0.0:
-                # What still bounces so little comes to rest in no time; the tracks are moved apart by what that omits.
-                unilateral = [replace(one, restitution=ZERO) for one in self.unilateral]
-                tracks.floor = max(tracks.floor, share)
-                tracks.part(self.motion.phases[-1].still, share)
-                tracks.delay(share * tracks.own_time())
-                tracks.lose(*([share * x for x in scales] for scales in tracks.scales()))
-                q, v = tracks.wide()
-                # What is within that of another contact touches it.
-                near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
-                self.touching = sorted({*self.touching, *near})
-                # What each of them takes of the bounces left out is not known, only that it is not more than all take.
-                left_out = arb(0, kinetic(replace(table, q=q, v=v)).rad())
-                names = [self.unilateral[i].name for i in self.touching]
-                self.motion.impacts.extend((len(self.motion.phases), name, left_out) for name in names)
-            outcome = impact(table, unilateral, self.touching, q, v)
+            unilateral, settling = self.unilateral, list[int]()
+            for limit in (SLOW, SMALL):
+                share = slowness(self.unilateral, hit, self.motion.events, tracks, limit)
+                if share > 0.0:
+                    unilateral, settling = self._settling(share, limit)
+                    q, v = tracks.wide()
+                outcome = impact(table, unilateral, self.touching, q, v)
+                # Which of small bounces in turn comes first may be beyond what is known of the state.
+                if not (isinstance(outcome, Problem) and outcome.code == "simultaneous-impacts"):
+                    break
             if isinstance(outcome, Problem):
                 self._stop(outcome)
                 return False
@@ -192,26 +182,36 @@ class _Run:
                         return False
                     rates.append(alike.v)
             tracks.each = [replace(track, v=v) for track, v in zip(tracks.each, rates, strict=True)]
+            for i in settling:
+                if self.states[i] is State.OPEN and self.unilateral[i].restitution > 0:
+                    self._event("settle", self.unilateral[i].name)
         self._stop(Problem("no-progress", "impacts follow one another without end", ()))
         return False
 
-    def _slowness(self, hit: Sequence[int]) -> float:
-        """Return what is left of bounces that are slow, as a share of the largest rate, if there were many; else 0."""
-        names = Counter(event.name for event in self.motion.events[-2 * LISTED :])
-        if len(self.motion.events) < LISTED or any(names[self.unilateral[i].name] < OFTEN for i in hit):
-            return 0.0
-        share = max(self._share(i) for i in hit)
-        if not share < SLOW:
-            return 0.0
-        # All bounces that would follow, each less than the one before by the restitution, and as much again.
-        bounciest = max(float(self.unilateral[i].restitution) for i in hit)
-        return 2.0 * share / (1.0 - bounciest) if bounciest < 1.0 else 0.0
+    def _settling(self, share: float, limit: float) -> tuple[list[Unilateral], list[int]]:
+        """Let what bounces so little come to rest in no time; return the measures, and which of them do.
 
-    def _share(self, i: int) -> float:
-        """Return the rate of a gap as a share of the largest rate so far of its unit."""
-        one, first = self.unilateral[i], self.tracks.first
-        fastest = self.tracks.fastest("rad" if one.unit == "N m" else "m")
-        return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf
+        The tracks are moved apart by what that omits: a share of the largest rates.
+        """
+        table, tracks = self.base.measures.table, self.tracks
+        tracks.floor = max(tracks.floor, share)
+        tracks.part(self.motion.phases[-1].still, share)
+        tracks.delay(share * tracks.own_time())
+        tracks.lose(*([share * x for x in scales] for scales in tracks.scales()))
+        q, v = tracks.wide()
+        # What is within that of another contact touches it.
+        near = [i for i, one in enumerate(self.unilateral) if is_zero(evaluated(one.gap, q))]
+        self.touching = sorted({*self.touching, *near})
+        settling = [i for i in self.touching if rate_share(self.unilateral[i], tracks) < limit]
+        # What each of them takes of the bounces left out is not known, only that it is not more than all take.
+        left_out = arb(0, kinetic(replace(table, q=q, v=v)).rad())
+        names = [self.unilateral[i].name for i in self.touching]
+        self.motion.impacts.extend((len(self.motion.phases), name, left_out) for name in names)
+        # They come to rest together.
+        return [
+            replace(one, restitution=ZERO, order=ZERO) if i in settling else one
+            for i, one in enumerate(self.unilateral)
+        ], settling
 
     def _record(self, hit: Sequence[int], outcome: Impact) -> None:
         """Add the events of an impact, each with the energy that its connection takes."""
@@ -323,7 +323,7 @@ class _Run:
         """Pass over infinitely many bounces, where those that follow are alike; return whether that was done."""
         for i, count in self.bounced.items():
             own_time = self.tracks.own_time()
-            few = len(self.motion.events) >= MANY or self._share(i) < SMALL
+            few = len(self.motion.events) >= MANY or rate_share(self.unilateral[i], self.tracks) < SMALL
             listed = count >= (LATER_LISTED if few else LISTED)
             found = recurring(self.unilateral, i, phase, own_time, arb(self.end), listed=listed)
             if found is None:
@@ -342,8 +342,8 @@ class _Run:
                 self.tracks.part(phase.still, max(FLOOR, part**2), max(FLOOR, part**3))
                 if part:
                     self.tracks.delay(own_time * part**2)
-            self.touching = sorted({*(j for j, s in enumerate(phase.states) if s is not State.OPEN), i})
             self._event("settle", self.unilateral[i].name)
+            self._meet(phase, i)
             self.bounced = {}
             return True
         return False

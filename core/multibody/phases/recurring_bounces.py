@@ -9,9 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from flint import arb
-
-from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero
+from core.multibody.algebra.polynomials import ZERO, Ball, evaluated, is_zero, size
 from core.multibody.contacts.contact_responses import (
     Responses,
     across_rate,
@@ -25,6 +23,7 @@ from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.phases.accumulation import Accumulation
 from core.multibody.phases.crossings import is_uniform
 from core.multibody.phases.phase import Phase
+from core.multibody.phases.tracks import FLOOR, SAFETY_FACTOR
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.table import Row, Table
 
@@ -79,7 +78,7 @@ def recurring(
         if tail is None:
             return None
         found.append(tail)
-    if phase.start + found[0].length > end or not _alone(unilateral, i, phase, found[0]):
+    if phase.start + found[0].length > end or not _alone(unilateral, i, phase, found):
         return None
     return Recurring(found, exact)
 
@@ -170,23 +169,42 @@ def _pressed(unilateral: Sequence[Unilateral], phase: Phase, k: int, found: Resp
     return True
 
 
-def _alone(unilateral: Sequence[Unilateral], i: int, phase: Phase, tail: Accumulation) -> bool:
-    """Return whether nothing else can happen until the bounces end: all else is too far away, or slips too fast."""
-    length, total = tail.length, tail.total
-    reach = [
-        length * (abs(v) + abs(a) * length + abs(r) * total) for v, a, r in zip(tail.v, tail.a, tail.push, strict=True)
-    ]
-    here = phase.tracks[0].q
-    around = [arb(x.mid(), float(y.upper())) for x, y in zip(here, reach, strict=True)]
+def _alone(unilateral: Sequence[Unilateral], i: int, phase: Phase, tails: Sequence[Accumulation]) -> bool:
+    """Return whether nothing else can happen until the bounces end: all else is too far away, or slips too fast.
+
+    A gap may close at their end: one that shrinks all the while, and is not known to be below zero then.
+    """
+    tail = tails[0]
+    length, total, here = tail.length, tail.total, phase.tracks[0].q
+    change = [length * abs(a) + abs(r) * total for a, r in zip(tail.a, tail.push, strict=True)]
+    around = [_within(x, length * (abs(v) + y)) for x, v, y in zip(here, tail.v, change, strict=True)]
+    rates = [_within(v, y) for v, y in zip(tail.v, change, strict=True)]
     for j, (one, state) in enumerate(zip(unilateral, phase.states, strict=True)):
         if j == i:
             continue
-        if state is State.OPEN and not evaluated(one.gap, around) > 0:
-            return False
+        if state is State.OPEN:
+            away = evaluated(one.gap, around) > 0
+            if not (away or (gap_rate(one, around, rates) < 0 and _may_be_open(one, tails))):
+                return False
         if state.sense:
             # A contact whose slip the impulses do not stop.
             along = Row(one.name, None, one.slip or {}).line(here)
-            change, jerk = rate_along(along, tail.a), rate_along(along, tail.push)
-            if not abs(slip_rate(one, here, tail.v)) > abs(change) * length + abs(jerk) * total:
+            gain, jerk = rate_along(along, tail.a), rate_along(along, tail.push)
+            if not abs(slip_rate(one, here, tail.v)) > abs(gain) * length + abs(jerk) * total:
                 return False
     return True
+
+
+def _may_be_open(one: Unilateral, tails: Sequence[Accumulation]) -> bool:
+    """Return whether a gap is not known to be below zero when bounces end."""
+    places = [tail.limit()[0] for tail in tails]
+    gaps = [evaluated(one.gap, q) for q in places]
+    width = ZERO
+    if len(tails) > 1:
+        width = SAFETY_FACTOR * abs(gaps[0] - gaps[1]) + FLOOR * size(one.gap, places[0])
+    return not gaps[0] + width < 0
+
+
+def _within(middle: Ball, reach: Ball) -> Ball:
+    """Return everything that is no farther from a number than so much."""
+    return (middle - reach).union(middle + reach)

@@ -373,3 +373,99 @@ def test_a_rod_lands_after_many_turns() -> None:
         assert event.name == end
         assert 40 * root > FEW_RADIANS
         assert abs(event.time - root) <= event.error < 1e-14
+
+
+@pytest.mark.parametrize("rate", [2, -0.7])
+@pytest.mark.parametrize("restitution", [0, 0.4, 1])
+@pytest.mark.parametrize(("along", "angle"), [(1.118033988749895, 0.4636476090008061), (0.3, 1.1)])
+def test_what_a_motor_strikes_takes_the_work_of_the_motor(
+    rate: float, restitution: float, along: float, angle: float
+) -> None:
+    """A mass m at rest at the distance r leaves at (1 + e) r w, by an impulse m times that, as the rate is held."""
+    side = 1 if rate > 0 else -1
+    scene = {
+        "bodies": {
+            "paddle": {"mass": 1, "inertia": 0.1, "at": [0, 0], "angular_velocity": rate},
+            "m": {
+                "mass": 3,
+                "at": [f"{along}*cos({angle})", f"{side * along}*sin({angle})"],
+                "velocity": [0, 0],
+            },
+        },
+        "connections": [
+            {"kind": "pin", "a": "paddle", "b": [0, 0]},
+            {"kind": "motor", "a": "paddle", "rate": rate},
+            {
+                "kind": "contact",
+                "name": "face",
+                "place": "m",
+                "on": {"at": "paddle", "slope": {"degrees": 0 if rate > 0 else 180}},
+                "restitution": restitution,
+            },
+        ],
+    }
+    answer = solve_scene(read(scene), [1.001 * angle / abs(rate)], ("trajectory", "energy-in-time"))
+    (touch, *_) = answer.events
+    speed = (1 + restitution) * abs(rate) * along
+    assert touch.kind == "touch"
+    assert touch.time == pytest.approx(angle / abs(rate), rel=1e-12)
+    assert touch.impulses["normal"] == pytest.approx(3 * speed, rel=1e-12)
+    # The contact takes its impulse times the mean of the closing rate before and after.
+    lost = 3 * speed * (1 - restitution) * abs(rate) * along / 2
+    assert touch.energy_loss == pytest.approx(lost, rel=1e-12, abs=1e-15)
+    if restitution > 0:
+        assert math.hypot(*column(answer, "m.velocity").values[0]) == pytest.approx(speed, rel=1e-12)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(("places", "restitution"), [((-0.5, 0.5), 0.5), ((-0.2, 0.6), 0), ((-0.5, 0.1, 0.7), 0.3)])
+def test_contacts_of_equal_order_act_together(turned: bool, places: tuple[float, ...], restitution: float) -> None:
+    """A beam that falls flat on several places bounces flat, whatever comes first in the list."""
+    floor = [
+        {
+            "kind": "contact",
+            "name": f"c{i}",
+            "place": f"beam.p{i}",
+            "on": {"at": [0, 0]},
+            "restitution": restitution,
+            "order": 1,
+        }
+        for i in range(len(places))
+    ]
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {
+            "beam": {
+                "mass": 1,
+                "inertia": 0.05,
+                "at": [0, 1.25],
+                "places": {f"p{i}": [x, 0] for i, x in enumerate(places)},
+            }
+        },
+        "connections": floor[::-1] if turned else floor,
+    }
+    answer = solve_scene(read(scene), [0.5, 0.55])
+    assert answer.problem is None
+    assert sum(event.impulses["normal"] for event in answer.events[: len(places)] if event.time < 0.51) == (
+        pytest.approx(5 * (1 + restitution))
+    )
+    assert column(answer, "beam.angle").values == pytest.approx(0, abs=1e-14)
+    late = 0.05
+    expected = max(0.0, 5 * restitution * late - 5 * late**2)
+    assert column(answer, "beam.position").values[1, 1] == pytest.approx(expected, abs=1e-12)
+
+
+def test_more_impacts_than_orders_are_tried_for_differ_or_are_refused_with_their_names() -> None:
+    """Of two orders with different outcomes both are candidates, also where there are too many to try them all."""
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"bar": {"mass": 2, "inertia": 1, "at": [0, 1], "places": {f"p{k}": [k - 2, 0] for k in range(5)}}},
+        "connections": [
+            {"kind": "contact", "name": f"c{k}", "place": f"bar.p{k}", "on": {"at": [0, 0]}, "restitution": 0.5}
+            for k in range(5)
+        ],
+    }
+    answer = solve_scene(read(scene), [1])
+    assert answer.problem is not None
+    assert answer.problem.code == "simultaneous-impacts"
+    assert len(answer.problem.candidates) > 1

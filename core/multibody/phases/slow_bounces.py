@@ -1,0 +1,49 @@
+"""Bounces of several contacts in turn, which have no common limit that could be summed up: slow ones come to rest."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+
+from core.multibody.contacts.contact_responses import gap_rate
+from core.multibody.phases.recurring_bounces import LISTED
+from core.multibody.phases.tracks import Tracks
+from core.multibody.table.connection_effects import Unilateral
+from core.systems.trajectory import MotionEvent
+
+SLOW = 2.0**-42
+"""Share of the largest rate below which several contacts that bounce in turn come to rest."""
+OFTEN = 3
+"""Impacts among the last ones by which a contact shows that it bounces in turn with others."""
+
+
+def slowness(
+    unilateral: Sequence[Unilateral], hit: Sequence[int], events: Sequence[MotionEvent], tracks: Tracks, limit: float
+) -> float:
+    """Return what is left of bounces that are slow, as a share of the largest rate, if there were many; else 0.
+
+    Parameters
+    ----------
+    hit : sequence of int
+        Measures that approach.
+    events : sequence of MotionEvent
+        All events until now.
+    limit : float
+        Share of the largest rate below which bounces are slow.
+    """
+    names = Counter(event.name for event in events[-2 * LISTED :])
+    if len(events) < LISTED or any(names[unilateral[i].name] < OFTEN for i in hit):
+        return 0.0
+    share = max(rate_share(unilateral[i], tracks) for i in hit)
+    if not share < limit:
+        return 0.0
+    # All bounces that would follow, each less than the one before by the restitution, and as much again.
+    bounciest = max(float(unilateral[i].restitution) for i in hit)
+    return 2.0 * share / (1.0 - bounciest) if bounciest < 1.0 else 0.0
+
+
+def rate_share(one: Unilateral, tracks: Tracks) -> float:
+    """Return the rate of a gap as a share of the largest rate so far of its unit."""
+    first, fastest = tracks.first, tracks.fastest("rad" if one.unit == "N m" else "m")
+    return abs(float(gap_rate(one, first.q, first.v))) / fastest if fastest > 0.0 else math.inf

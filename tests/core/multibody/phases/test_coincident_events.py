@@ -1,0 +1,144 @@
+"""What happens at one instant: impacts of several contacts, the end of bounces beside what is met just then."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from core.multibody.solve import solve_scene
+from tests.core.multibody.table.test_contact_geometry import kinds
+from tests.core.multibody.worked_examples import column, read
+
+
+def quarter(length: float, angle: float) -> float:
+    """Return the time from rest at an angle to the lowest point (s): K(sin(angle/2)) sqrt(l/g)."""
+    return float(mpmath.ellipk(mpmath.sin(mpmath.mpf(angle) / 2) ** 2) * mpmath.sqrt(mpmath.mpf(length) / 10))
+
+
+@pytest.mark.parametrize("restitution", [0, 0.5, 1])
+@pytest.mark.parametrize(("length", "angle"), [(1, 0.6435011087932844), (2.5, 1.2), (0.4, 2.9)])
+def test_equal_pendulums_reach_their_walls_at_one_time(restitution: float, length: float, angle: float) -> None:
+    """The spring between them keeps its length, so that each moves as a pendulum alone."""
+    bodies = {
+        name: {"mass": 1, "at": [f"{x} + {length}*sin({angle})", f"-{length}*cos({angle})"]}
+        for name, x in (("a", 0), ("b", 5))
+    }
+    walls = [
+        {
+            "kind": "contact",
+            "name": f"wall-{name}",
+            "place": name,
+            "on": {"at": [x, 0], "slope": {"degrees": -90}},
+            "restitution": restitution,
+        }
+        for name, x in (("a", 0), ("b", 5))
+    ]
+    rods = [{"kind": "rod", "a": name, "b": [x, 0]} for name, x in (("a", 0), ("b", 5))]
+    spring = {"kind": "spring", "a": "a", "b": "b", "stiffness": 3}
+    first = quarter(length, angle)
+    speed = math.sqrt(20 * length * (1 - math.cos(angle)))
+    scene = {"gravity": [0, -10], "bodies": bodies, "connections": [*rods, spring, *walls]}
+    answer = solve_scene(read(scene), [1.01 * first])
+    assert answer.problem is None
+    assert kinds(answer)[:2] == [("touch", "wall-a"), ("touch", "wall-b")]
+    assert len(answer.events) == 2
+    for event in answer.events:
+        assert event.time == pytest.approx(first, rel=1e-12)
+        assert event.impulses["normal"] == pytest.approx((1 + restitution) * speed, rel=1e-12)
+    for name in "ab":
+        velocity = np.linalg.norm(column(answer, f"{name}.velocity").values[0])
+        assert velocity <= restitution * speed + 1e-9
+        assert velocity > 0.9 * restitution * speed - 1e-9
+
+
+def balls(restitution: float, drop: float, other: dict[str, Any], rebound: float) -> dict[str, Any]:
+    """Return a ball that bounces to rest beside another one, which is part of the scene by a contact never reached."""
+    return {
+        "gravity": [0, -10],
+        "bodies": {
+            "a": {"mass": 1, "inertia": 1, "radius": 0.1, "at": [0, drop + 0.1]},
+            "b": {"mass": 2, "inertia": 1, "radius": 0.1, **other},
+        },
+        "connections": [
+            {"kind": "contact", "name": "a-floor", "place": "a", "on": {"at": [0, 0]}, "restitution": restitution},
+            {"kind": "contact", "name": "b-floor", "place": "b", "on": {"at": [0, 0]}, "restitution": rebound},
+            {"kind": "contact", "name": "pair", "a": "a", "b": "b"},
+        ],
+    }
+
+
+@pytest.mark.parametrize(("restitution", "share"), [(0.5, 3), (0.2, 1.5), (0.25, 5 / 3), (0.75, 7)])
+@pytest.mark.parametrize("rebound", [1, 0.8])
+def test_a_ball_that_lands_when_the_bounces_of_another_end_bounces(
+    restitution: float, share: float, rebound: float
+) -> None:
+    """Bounces end at T = sqrt(2h/g)(1 + e)/(1 - e), when what fell from g T^2/2 lands with the speed g T."""
+    end = 0.5 * share
+    other = {"at": [3, f"0.1 + 5*(0.5*(1 + {restitution})/(1 - {restitution}))^2"]}
+    answer = solve_scene(read(balls(restitution, 1.25, other, rebound)), [end, 1.1 * end])
+    landed = [event for event in answer.events if event.name == "b-floor"]
+    settled = [event for event in answer.events if event.kind == "settle"]
+    assert [event.name for event in settled] == ["a-floor"]
+    assert abs(settled[0].time - end) <= settled[0].error + 2e-16 * end
+    assert abs(landed[0].time - end) <= landed[0].error + 2e-16 * end
+    assert landed[0].impulses["normal"] == pytest.approx(2 * (1 + rebound) * 10 * end, rel=1e-9)
+    height = column(answer, "b.position")
+    late = 0.1 * end
+    assert abs(height.values[1, 1] - (0.1 + rebound * 10 * end * late - 5 * late**2)) <= height.error + 1e-14
+
+
+@pytest.mark.parametrize(("restitution", "drop"), [(0.5, 1), (0.3, 2.5)])
+def test_two_balls_that_come_to_rest_together_both_settle(restitution: float, drop: float) -> None:
+    answer = solve_scene(read(balls(restitution, drop, {"at": [3, drop + 0.1]}, restitution)), [20.0])
+    end = math.sqrt(drop / 5) * (1 + restitution) / (1 - restitution)
+    settled = [event for event in answer.events if event.kind == "settle"]
+    assert {event.name for event in settled} == {"a-floor", "b-floor"}
+    for event in settled:
+        assert abs(event.time - end) <= event.error
+        assert event.error < 1e-9
+    assert answer.phases is not None
+    assert answer.phases[-1].model == "rest"
+
+
+@pytest.mark.parametrize("trial", range(6))
+def test_a_string_becomes_taut_when_the_bounces_of_its_weight_end(trial: int) -> None:
+    """The heavier weight of Atwood's machine lands at v with e = 1/2.
+
+    Its bounces take 2 e v/(g (1 - e)) = 2 v/g, just as long as the other weight flies up and falls back to where the
+    string is taut. The jerk leaves both at m v/(m + M), by an impulse M m v/(m + M).
+    """
+    random = np.random.default_rng(trial)
+    light = round(float(random.uniform(1, 2)), 2)
+    heavy = round(light * float(random.uniform(1.01, 3)), 2)
+    height = round(float(random.uniform(0.1, 0.6)), 2)
+    gain = 10 * (heavy - light) / (heavy + light)
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"a": {"mass": heavy, "at": [-0.5, 2]}, "b": {"mass": light, "at": [0.5, 2]}},
+        "connections": [
+            {"kind": "string", "name": "s", "through": ["a", [-0.5, 4], [0.5, 4], "b"]},
+            {
+                "kind": "contact",
+                "name": "floor",
+                "place": "a",
+                "on": {"at": [0, f"2 - {height}"]},
+                "restitution": 0.5,
+            },
+        ],
+    }
+    speed = math.sqrt(2 * gain * height)
+    landed = speed / gain
+    end = landed + 2 * speed / 10
+    answer = solve_scene(read(scene), [end + 0.1 * speed / 10], accuracy=1e-8)
+    taut = next(event for event in answer.events if event.kind == "taut")
+    settle = next(event for event in answer.events if event.kind == "settle")
+    assert (settle.time, taut.time) == (pytest.approx(end, rel=1e-12), pytest.approx(end, rel=1e-12))
+    after = light * speed / (light + heavy)
+    assert taut.impulses["normal"] == pytest.approx(heavy * after, rel=1e-9)
+    late = 0.1 * speed / 10
+    lifted = column(answer, "a.position")
+    assert abs(lifted.values[0, 1] - (2 - height + after * late - gain * late**2 / 2)) <= lifted.error + 1e-12
