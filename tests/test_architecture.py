@@ -63,6 +63,7 @@ MULTIBODY_LAYERS = (
     {"contacts", "motion"},
     {"trajectory", "statics", "start"},
     {"phases"},
+    {"parts"},
     {"proven"},
     {"solve"},
 )
@@ -260,6 +261,9 @@ TESTED_IN |= {
         "motion/test_free_body": "motion/turning_body",
         "trajectory/test_nearest": "motion/attitudes",
         "phases/test_sums_in_phases": "phases/stretches",
+        "parts/test_joined_answer": (
+            "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"
+        ),
         "motion/test_numerical": (
             "equations/packed motion/products motion/returns motion/series motion/series_pairs motion/vertical_symmetry"
         ),

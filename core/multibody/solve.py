@@ -16,6 +16,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.motion.modelling import modelled
+from core.multibody.parts.joined_answer import answered_by_parts
 from core.multibody.phases.phase_answer import THRESHOLDS, answer_in_phases
 from core.multibody.phases.phases import one_sided
 from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
@@ -123,10 +124,11 @@ def solve_scene(
             for i, output in enumerate(outputs)
             if isinstance(output, RestOf)
         ]
-        return replace(_answered(scene, request), thresholds=tuple(ranges) or None)
+        return replace(answered_by_parts(scene, request, _answered), thresholds=tuple(ranges) or None)
 
 
 def _answered(scene: Scene, request: SceneRequest) -> SceneSolution:
+    """Answer a question about a scene as one part."""
     if one_sided(scene):
         return answer_in_phases(scene, request)
     try:

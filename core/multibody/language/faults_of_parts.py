@@ -9,7 +9,7 @@ from core.errors import InvalidParameter, SlackAtStart
 
 
 class FaultsOfParts:
-    """Collects the faults of parts that are read or built independently of each other."""
+    """Collects the faults of parts that are read or built independently of each other, each fault once."""
 
     def __init__(self) -> None:
         self._found: list[InvalidParameter] = []
@@ -22,7 +22,8 @@ class FaultsOfParts:
         except SlackAtStart:
             raise
         except InvalidParameter as fault:
-            self._found += (fault, *fault.further)
+            known = {(one.path, one.rule) for one in self._found}
+            self._found += [one for one in (fault, *fault.further) if (one.path, one.rule) not in known]
 
     def raised(self) -> None:
         """Raise the first fault with the others, if there are any."""

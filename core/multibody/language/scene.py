@@ -7,7 +7,7 @@ by `core.multibody.language.numerals`; what they mean is checked where the table
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Sized
+from collections.abc import Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal
@@ -114,10 +114,14 @@ class Scene:
                 raise InvalidParameter(("connections", i), "be a connection")
         self.names()
 
+    def numbered(self) -> Iterable[tuple[int, Connection]]:
+        """Return the connections, each with its number in the description."""
+        return enumerate(self.connections)
+
     def names(self) -> tuple[str, ...]:
         """Return the names of the connections: those given, else kind and number."""
         found: dict[str, int] = {}
-        for i, connection in enumerate(self.connections):
+        for i, connection in self.numbered():
             given: Any = getattr(connection, "name", None)
             if given is not None:
                 check_name(given, ("connections", i, "name"))
@@ -130,6 +134,22 @@ class Scene:
                 )
             found[name] = i
         return tuple(found)
+
+
+@dataclass(frozen=True)
+class ScenePart(Scene):
+    """Some bodies of a scene with their connections, which keep the numbers that they have in the description.
+
+    Attributes
+    ----------
+    numbers_of_connections : tuple of int
+    """
+
+    numbers_of_connections: tuple[int, ...] = ()
+
+    def numbered(self) -> Iterable[tuple[int, Connection]]:
+        """Return the connections, each with its number in the description."""
+        return zip(self.numbers_of_connections, self.connections, strict=True)
 
 
 def _unlike(name: str, others: set[str]) -> str:

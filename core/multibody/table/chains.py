@@ -112,7 +112,7 @@ def _require_alone(measures: Measures, path: Path) -> None:
         )
     if measures.dimension != 2:
         raise InvalidParameter(path, "be in the plane: the plane of the chain and its peg")
-    for i, other in enumerate(measures.coordinates.scene.connections):
+    for i, other in measures.coordinates.scene.numbered():
         if other.kind in ALONE:
             raise NotApplicable(
                 f"what a {other.kind} does to the links of a chain is not modelled", path=("connections", i)

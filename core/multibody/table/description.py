@@ -57,7 +57,7 @@ def described(scene: Scene, numerals: Numerals | None = None, *, one_sided: bool
     paths: dict[str, Path] = {name: ("bodies", name) for name in scene.bodies}
     paths["clock"] = ()
     faults = FaultsOfParts()
-    for i, (name, connection) in enumerate(zip(names, scene.connections, strict=True)):
+    for name, (i, connection) in zip(names, scene.numbered(), strict=True):
         paths[name] = ("connections", i)
         with faults.part():
             _connect(measures, name, connection, ("connections", i))

@@ -36,6 +36,9 @@ VISIBLE = 2.0**-34
 
 It is less than the share by which velocities may miss the connections."""
 
+NO_HORIZON_NEEDED = "the change stays below the accuracy at all of the times"
+"""Why there is no horizon, where none is needed."""
+
 Derived = Callable[[Whole, Floats, WholeStates], dict[str, Column]]
 """From a scene and its states at some times to columns that follow from them."""
 

@@ -27,7 +27,7 @@ from core.multibody.trajectory.column_errors import (
 )
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES, NEAREST, Columns
 from core.multibody.trajectory.events import first_event
-from core.multibody.trajectory.inherited import changes, horizon, instants, with_inherited
+from core.multibody.trajectory.inherited import NO_HORIZON_NEEDED, changes, horizon, instants, with_inherited
 from core.multibody.trajectory.nearest import Nearest
 from core.multibody.trajectory.occurrences import (
     ExtremesOf,
@@ -284,7 +284,7 @@ class DescribedSystem:
             return columns, replace(stated, why=ONLY_SUMS)
         moved = {name: moved[name] for name in own}
         until = horizon(known, len(times), stated.requested / uncertainty, own) if uncertainty else None
-        why = None if until is not None else "the change stays below the accuracy at all of the times"
+        why = None if until is not None else NO_HORIZON_NEEDED
         return with_inherited(columns, replace(stated, horizon=until), moved, uncertainty, why=why)
 
     @property

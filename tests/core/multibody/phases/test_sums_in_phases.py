@@ -207,6 +207,10 @@ def test_what_drives_through_impacts_takes_a_share_that_is_not_answered() -> Non
         {"kind": "pin", "a": "wheel", "b": [5, 0]},
         {"kind": "motor", "a": "wheel", "rate": 2},
     ]
+    apart = solve_scene(read(scene), [1.0], ["work-in-time"])
+    assert apart.trajectory is not None
+    assert apart.trajectory["motor-3.work"][0] == 0.0
+    scene["connections"].append({"kind": "spring", "a": "ball", "b": "wheel", "stiffness": 1})
     with pytest.raises(NotApplicable, match="driven through impacts") as found:
         solve_scene(read(scene), [1.0], ["work-in-time"])
     assert found.value.remedy is not None

@@ -76,10 +76,12 @@ def test_the_path_of_a_pendulum_at_any_horizon_is_that_of_elliptic_functions(amp
 
 
 def test_an_integral_of_too_many_pieces_is_refused():
-    """Two pendulums of different periods repeat together nowhere near."""
+    """Two pendulums of different periods on one beam repeat together nowhere near."""
     bodies = {f"p{i}": {"mass": 1, "at": [f"{i} + sin(1)*{size}", f"-cos(1)*{size}"]} for i, size in ((0, 1), (1, 1.7))}
-    rods = [{"kind": "rod", "a": f"p{i}", "b": [i, 0]} for i in (0, 1)]
-    scene = read({"gravity": [0, "-9.81"], "bodies": bodies, "connections": rods})
+    beam = {"mass": 1, "inertia": 1, "at": [0, 0], "places": {"end": [1, 0]}}
+    rods = [{"kind": "rod", "a": f"p{i}", "b": place} for i, place in enumerate(("beam", "beam.end"))]
+    held = {"kind": "weld", "a": "beam", "b": "ground"}
+    scene = read({"gravity": [0, "-9.81"], "bodies": bodies | {"beam": beam}, "connections": [*rods, held]})
     with pytest.raises(BudgetExceeded):
         solve_scene(scene, [3000.0], ["paths-in-time"])
 

@@ -1,0 +1,84 @@
+"""Which bodies of a scene share no connection with the others: each such part moves as if it were alone.
+
+Gravity, named numbers and the frame of reference are common to all parts, and tie none to another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from core.multibody.language.connections import GROUND, Connection
+from core.multibody.language.scene import Scene, ScenePart
+
+_ENDS = ("a", "b", "place", "body")
+"""Fields of connections that name a place or a body."""
+
+
+def independent_parts(scene: Scene) -> Sequence[Scene]:
+    """Return the parts of a scene that have no connection in common, in the order of their first bodies.
+
+    They are the connected components of the graph whose vertices are the bodies and whose edges are the connections. A
+    scene that is connected, or that has a fault which only the whole shows, is returned as it is.
+    """
+    if len({_dimension(body.at) for body in scene.bodies.values()}) > 1:
+        return [scene]
+    part_of = {name: name for name in scene.bodies}
+
+    def first_of(name: str) -> str:
+        while part_of[name] != name:
+            part_of[name] = part_of[part_of[name]]
+            name = part_of[name]
+        return name
+
+    order = {name: number for number, name in enumerate(scene.bodies)}
+    joined: dict[int, list[str]] = {}
+    for number, connection in scene.numbered():
+        joined[number] = list(_bodies_of(connection))
+        if not all(name in order for name in joined[number]):
+            return [scene]
+        firsts = sorted({first_of(name) for name in joined[number]}, key=order.__getitem__)
+        part_of.update({name: firsts[0] for name in firsts})
+    leaders = [name for name in scene.bodies if first_of(name) == name]
+    if len(leaders) == 1:
+        return [scene]
+    return [
+        _part(scene, [name for name in scene.bodies if first_of(name) == leader], joined, first=leader == leaders[0])
+        for leader in leaders
+    ]
+
+
+def _part(scene: Scene, bodies: Sequence[str], joined: Mapping[int, Sequence[str]], *, first: bool) -> ScenePart:
+    """Return the part with some of the bodies; connections that join no body are faults, which the first part shows."""
+    own = [
+        (number, connection)
+        for number, connection in scene.numbered()
+        if (joined[number][0] in bodies if joined[number] else first or connection.kind == "spinning-frame")
+    ]
+    return ScenePart(
+        {name: scene.bodies[name] for name in bodies},
+        tuple(connection for _, connection in own),
+        scene.gravity,
+        scene.let,
+        scene.numbers,
+        tuple(number for number, _ in own),
+    )
+
+
+def _bodies_of(connection: Connection) -> Iterator[str]:
+    """Yield the names of the bodies that a connection joins."""
+    places: list[Any] = [getattr(connection, end, None) for end in _ENDS]
+    on = getattr(connection, "on", None)
+    places.append(on.get("at") if isinstance(on, Mapping) else None)
+    through = getattr(connection, "through", ())
+    places += through if isinstance(through, (list, tuple)) else []
+    for place in places:
+        if isinstance(place, str) and place != GROUND:
+            yield place.partition(".")[0]
+
+
+def _dimension(at: Any) -> int | None:
+    """Return the number of components of a vector as it is written, None for what is no vector."""
+    if isinstance(at, Mapping):
+        return 2
+    return len(at) if isinstance(at, (list, tuple)) else None

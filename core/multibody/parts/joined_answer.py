@@ -1,0 +1,99 @@
+"""The answer to a question about a scene of independent parts, from the answers about each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+from core.multibody.answer import Energy, Equilibrium, SceneSolution
+from core.multibody.language.independent_parts import independent_parts
+from core.multibody.language.scene import Scene
+from core.multibody.parts.common_span import answers_in_common
+from core.multibody.parts.joined_model import joined_model, period_of
+from core.multibody.parts.joined_phases import joined_phases
+from core.multibody.parts.joined_trajectory import joined_trajectory
+from core.multibody.parts.searched_parts import ELSEWHERE, joined_searches, outputs_of, part_of
+from core.multibody.trajectory.trajectories import SceneRequest
+from core.systems.rounding import shortened
+
+Figure = TypeVar("Figure")
+
+
+def answered_by_parts(
+    scene: Scene, request: SceneRequest, answered: Callable[[Scene, SceneRequest], SceneSolution]
+) -> SceneSolution:
+    """Answer a question about a scene: about each of its independent parts, where it has several.
+
+    A method integrates the equations of the whole scene, and quantities of the whole scene are searched along its whole
+    motion: such questions are not divided.
+
+    Parameters
+    ----------
+    scene : Scene
+    request : SceneRequest
+    answered : callable
+        Answers a question about a scene as one part.
+
+    Raises
+    ------
+    MechanicsError
+        As `answered`, of the first part that is refused; faults of the description of all parts.
+    """
+    parts = independent_parts(scene)
+    whole = [output for output in request.outputs if not isinstance(output, str)]
+    if len(parts) == 1 or request.method is not None or any(part_of(one.quantity, parts) is None for one in whole):
+        return answered(scene, request)
+    requests = [replace(request, outputs=outputs_of(k, request.outputs, parts), digits=None) for k in range(len(parts))]
+    found, span = answers_in_common(parts, requests, answered)
+    solutions = [one.solution for one in found]
+    events = sorted(
+        (event for solution in solutions for event in solution.events if span.begin <= event.time <= span.end),
+        key=lambda event: event.time,
+    )
+    ending = [solution for solution in solutions if solution.ended is not None and solution.ended.time <= span.end]
+    trajectory = joined_trajectory(found, request.times, events)
+    if trajectory is not None and request.digits is not None:
+        trajectory = shortened(trajectory, request.digits)
+    return SceneSolution(
+        joined_model([solution.model for solution in solutions]),
+        _together([solution.accelerations for solution in solutions]),
+        _together([solution.forces for solution in solutions]),
+        _energy([solution.energy for solution in solutions]),
+        trajectory,
+        period_of(solutions),
+        _equilibria(scene, request, answered),
+        tuple(events),
+        ending[0].ended if ending else None,
+        *joined_searches(solutions, request.outputs, parts),
+        phases=joined_phases(solutions, span.end),
+        problem=ending[0].problem if ending else None,
+    )
+
+
+def _equilibria(
+    scene: Scene, request: SceneRequest, answered: Callable[[Scene, SceneRequest], SceneSolution]
+) -> tuple[Equilibrium, ...] | None:
+    """Return the places where all parts rest, which are places of the whole scene; None if they are not requested."""
+    if "equilibria" not in request.outputs:
+        return None
+    places = [output if output == "equilibria" else ELSEWHERE for output in request.outputs]
+    return answered(scene, replace(request, times=request.times[:0], outputs=places)).equilibria
+
+
+def _together(parts: Sequence[Mapping[str, Figure] | None]) -> Mapping[str, Figure] | None:
+    """Return the figures of all parts in one mapping; None where they are not requested."""
+    if any(figures is None for figures in parts):
+        return None
+    return {name: figure for figures in parts if figures is not None for name, figure in figures.items()}
+
+
+def _energy(parts: Sequence[Energy | None]) -> Energy | None:
+    own = [energy for energy in parts if energy is not None]
+    if not own:
+        return None
+    kinetic, potential, total = (
+        math.fsum(getattr(energy, name) for energy in own) for name in ("kinetic", "potential", "total")
+    )
+    return Energy(kinetic, potential, total, all(energy.conserved for energy in own))
