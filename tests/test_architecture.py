@@ -251,7 +251,7 @@ TESTED_IN |= {
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
             "phases/crossings phases/phase phases/phase_ends phases/phases "
-            "phases/taylor_crossings phases/tracks phases/watches start "
+            "phases/slow_bounces phases/taylor_crossings phases/tracks phases/watches start "
             "table/contact_places"
         ),
         "table/test_contact_geometry_in_space": (
