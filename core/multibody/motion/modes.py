@@ -15,10 +15,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from flint import acb, acb_mat, acb_poly, arb, arb_mat, ctx
+from flint import acb, acb_mat, arb, arb_mat, ctx
 
 from core.arrays import Floats
 from core.balls import precision
+from core.multibody.algebra.characteristic_roots import roots_but_zero
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
@@ -50,22 +51,6 @@ class Mode:
 
     frequency: Ball
     growth: Ball
-
-
-def _roots_but_zero(matrix: Any) -> list[Any]:
-    """Return the characteristic roots without zero, which is double where something moves freely.
-
-    Raises
-    ------
-    ValueError
-        Where others coincide.
-    """
-    coefficients = matrix.charpoly().coeffs()
-    while coefficients and is_zero(coefficients[0].real) and is_zero(coefficients[0].imag):
-        del coefficients[0]
-    rest = acb_poly(coefficients)
-    size = min((float(abs(root)) for root in rest.roots()), default=1.0)
-    return list(rest.roots(tol=size * 2.0**-100))
 
 
 @dataclass(frozen=True)
@@ -147,7 +132,7 @@ class Modes:
                 roots = inner.eig(multiple=True)
             except ValueError:
                 try:
-                    roots = _roots_but_zero(inner)
+                    roots = roots_but_zero(inner)
                 except ValueError:
                     return ()
         found = []

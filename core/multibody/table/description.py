@@ -121,7 +121,7 @@ def _seen(scene: Scene, numerals: Numerals) -> dict[str, set[str]]:
         if kind in _TURNED or (kind == "damper" and connection.measure == "turn"):
             for place in (getattr(connection, "a", None), getattr(connection, "b", None)):
                 see(place, "turn")
-            see(getattr(connection, "body", None), "turn", "orientation")
+            see(getattr(connection, "body", None), "turn" if plane else "orientation")
     return found
 
 

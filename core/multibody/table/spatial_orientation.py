@@ -84,7 +84,7 @@ class SpatialOrientation:
                 rate = cross(space, axes[a])
                 for i in range(3):
                     self.given.append(Given({frame.axes[a][i]: ONE}, rate[i], (*path, "angular_velocity")))
-        if "turn" in seen and "orientation" not in seen:
+        if "turn" in seen:
             self._turns(frame)
 
     def _turns(self, frame: Frame) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
 
 from core.errors import BudgetExceeded
@@ -169,3 +171,27 @@ def test_a_hundred_masses_on_springs_swing_as_their_closed_form_says() -> None:
             )
             place = column(answer, f"m{i}.position")
             assert abs(place.values[0, 0] - i - away) <= place.error
+
+
+@pytest.mark.parametrize("stiffness", ["4", "3", "2/7"])
+def test_critical_damping_lists_its_double_root(stiffness: str) -> None:
+    (part,) = solve_scene(read(oscillator(f"2*sqrt({stiffness})", stiffness)), [1.0]).model.apart
+    root = -math.sqrt(float(Fraction(stiffness)))
+    assert np.array(part.modes) == pytest.approx(np.array([(0.0, root), (0.0, root)]), rel=1e-15)
+
+
+def test_a_double_root_stands_beside_others() -> None:
+    # Two equal masses in a row with dampers in proportion: s^2 + c l s + l = 0 for l of [[2, -1], [-1, 1]].
+    slow, fast = (3 - math.sqrt(5)) / 2, (3 + math.sqrt(5)) / 2
+    share = "2/sqrt((3 + sqrt(5))/2)"
+    scene = oscillator(share, "1")
+    scene["bodies"]["n"] = {"mass": 1, "at": [4, 0]}  # type: ignore[index]
+    scene["connections"] += [  # type: ignore[operator]
+        {"kind": "spring", "a": "m", "b": "n", "stiffness": 1},
+        {"kind": "damper", "a": "m", "b": "n", "coefficient": share},
+    ]
+    (part,) = solve_scene(read(scene), [1.0]).model.apart
+    decay = slow / math.sqrt(fast)
+    swings = (math.sqrt(slow - decay**2), -decay)
+    expected = np.array([(0.0, -math.sqrt(fast)), (0.0, -math.sqrt(fast)), swings])
+    assert np.array(part.modes) == pytest.approx(expected, rel=1e-14)

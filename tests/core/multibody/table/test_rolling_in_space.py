@@ -128,3 +128,21 @@ def test_what_cannot_roll_is_refused_with_its_path(changes, on, path):
     with pytest.raises(InvalidParameter) as fault:
         solve_scene(read(scene), [0.1])
     assert fault.value.path == path
+
+
+@pytest.mark.parametrize("moments", [[0.1, 0.1, 0.1], [0.1, 0.1, 0.12], [0.1, 0.11, 0.12]])
+def test_what_rolls_may_be_driven_by_a_torque_whatever_its_moments(moments: list[float]) -> None:
+    scene = {
+        "gravity": [0, 0, -10],
+        "bodies": {"b": {"mass": 1, "radius": 0.5, "moments": moments, "at": [0, 0, 0.5]}},
+        "connections": [
+            {"kind": "rolling", "place": "b", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}},
+            {"kind": "torque", "body": "b", "torque": [0, 3, 0]},
+        ],
+    }
+    answer = solve_scene(read(scene))
+    assert answer.accelerations is not None
+    # About the point of contact: (I_2 + m r^2) w' = 3.
+    turned = 3 / (moments[1] + 0.25)
+    assert answer.accelerations["b"].angular == pytest.approx((0, turned, 0), abs=1e-15)
+    assert answer.accelerations["b"].linear == pytest.approx((turned / 2, 0, 0), abs=1e-15)
