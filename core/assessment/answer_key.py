@@ -21,6 +21,7 @@ from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.grader import Grader
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.results import Result, submission_view
+from core.assessment.typed_entry import Locale
 from core.errors import NotApplicable, Path, pointer_of
 from core.quantities import members_of
 
@@ -52,12 +53,15 @@ class Terms:
         Whether results may say anything from which the reference could be found.
     names : mapping of str to path, or None
         Of the numbers of the request, in formulas.
+    locale : {"de", "en", "es", "fr"}, optional
+        Of who types the texts of submissions.
     """
 
     comparison: Comparison | None
     comparisons: Mapping[str, Comparison]
     reveal: bool
     names: Mapping[str, Path] | None
+    locale: Locale | None = None
 
 
 def key_of(
@@ -109,6 +113,7 @@ def key_of(
         "comparison": None if terms.comparison is None else vars(terms.comparison),
         "comparisons": {pointer: vars(comparison) for pointer, comparison in terms.comparisons.items()},
         "reveal": terms.reveal,
+        "locale": terms.locale,
         "figures": [_figure(question, place, reference, recognised) for place, reference in found],
         "mistakes": [
             {name: getattr(entry, name) for name in ("tag", "summary", "feedback", "credit")} for entry in catalogue
@@ -204,7 +209,7 @@ class AnswerKey:
         catalogue = [
             Mistake(**entry, wrong=partial(self._wrong_values, entry["tag"])) for entry in document["mistakes"]
         ]
-        return Grader(self, comparison, comparisons, document["reveal"], catalogue, None)
+        return Grader(self, comparison, comparisons, document["reveal"], catalogue, None, document["locale"])
 
     def results(self, submissions: Sequence[Any]) -> list[Result]:
         """Return the results of submissions, as the service answers them."""

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from core.arrays import Floats
+from core.assessment.typed_entry import LONGEST_ENTRY, Locale, typed_entry
 from core.errors import InvalidParameter
 from core.formulas import LONGEST_FORMULA
 
@@ -18,7 +19,7 @@ MOST_CLAIMS = 100
 LONGEST_TEXT = 200
 """Characters of a choice or a unit."""
 
-KEYS = ("value", "unit", "times", "formula")
+KEYS = ("value", "unit", "times", "formula", "text")
 NUMBERS = {float, int}
 
 
@@ -34,17 +35,26 @@ class Claim:
     times : ndarray, shape (n,), or None
         Of samples (s).
     formula : str or None
-        In place of a value.
+        In place of a value; beside one that is a word, what the word is as a formula.
+    field : {"formula", "text"}
+        In which the formula was submitted.
     """
 
     value: Any
     unit: str | None = None
     times: Floats | None = None
     formula: str | None = None
+    field: Literal["formula", "text"] = "formula"
 
     @classmethod
-    def read(cls, entry: Any) -> Claim:
+    def read(cls, entry: Any, locale: Locale | None = None) -> Claim:
         """Return the claim that a JSON value states; arrays in it may be arrays of numpy.
+
+        Parameters
+        ----------
+        entry : Any
+        locale : {"de", "en", "es", "fr"}, optional
+            Of who typed a text.
 
         Raises
         ------
@@ -59,6 +69,8 @@ class Claim:
             raise InvalidParameter(shown, "be left out: it is not known here", remedy=f"known here: {', '.join(KEYS)}")
         # An empty field of a form is no unit.
         unit = (_text(entry, "unit", LONGEST_TEXT) or "").strip() or None
+        if entry.get("text") is not None:
+            return cls._typed(entry, unit, locale)
         formula = _text(entry, "formula", LONGEST_FORMULA)
         if formula is not None:
             if "value" in entry or entry.get("times") is not None:
@@ -75,6 +87,19 @@ class Claim:
         if not isinstance(value, np.ndarray) or len(value) != len(times):
             raise InvalidParameter("value", f"have {len(times)} entries, one for each time")
         return cls(value, unit, times)
+
+    @classmethod
+    def _typed(cls, entry: dict[str, Any], unit: str | None, locale: Locale | None) -> Claim:
+        """Return the claim of a text; a unit of its own takes precedence over the one beside it."""
+        for other in ("value", "formula", "times"):
+            if entry.get(other) is not None:
+                raise InvalidParameter(other, "be left out beside a text")
+        text = _text(entry, "text", LONGEST_ENTRY) or ""
+        try:
+            typed = typed_entry(text, locale)
+        except InvalidParameter as fault:
+            raise fault.inside("text") from None
+        return cls(_value(typed.value, "text"), typed.unit or unit, formula=typed.formula, field="text")
 
 
 def _text(entry: dict[str, Any], name: str, longest: int) -> str | None:

@@ -19,6 +19,7 @@ from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmissio
 from core.assessment.judged_formulas import AT_ONE_PLACE, FORMULA, NOT_JUDGED, JudgedFormula, Varied, judge_formula
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
+from core.assessment.typed_entry import Locale
 from core.assessment.units import factor
 from core.errors import InvalidParameter, MechanicsError, Path, pointer_of
 from core.formulas import Formula
@@ -95,6 +96,8 @@ class Grader:
     catalogue : sequence of Mistake
     names : mapping of str to path, or None
         Of the numbers of the request, in formulas.
+    locale : {"de", "en", "es", "fr"}, optional
+        Of who typed the texts of submissions.
 
     Attributes
     ----------
@@ -114,9 +117,10 @@ class Grader:
         reveal: bool,
         catalogue: Sequence[Mistake],
         names: Mapping[str, Path] | None,
+        locale: Locale | None = None,
     ) -> None:
         self._question, self._comparison, self._comparisons = question, comparison, comparisons
-        self._reveal, self._names = reveal, names
+        self._reveal, self._names, self._locale = reveal, names, locale
         # Who knows how a value is wrong can often compute the right one from it.
         self._catalogue = tuple(catalogue) if reveal else ()
         self.references: dict[str, Reference] = {}
@@ -137,7 +141,7 @@ class Grader:
         for pointer, entry in submission.items():
             spend(CLAIM)
             try:
-                claims.append(self._claim(pointer, Claim.read(entry)))
+                claims.append(self._claim(pointer, Claim.read(entry, self._locale)))
             except InvalidParameter as fault:
                 faults.append(fault.inside(pointer) if len(pointer) <= LONGEST_POINTER else fault)
         return JudgedSubmission(claims, faults)
@@ -145,8 +149,9 @@ class Grader:
     def _claim(self, pointer: str, claim: Claim) -> JudgedClaim:
         path = steps_of(pointer)
         reference = self._reference(pointer, path, claim.times)
-        if claim.formula is not None:
-            return self._formula(pointer, path, reference, claim.formula)
+        # A word that was typed may be either.
+        if claim.formula is not None and not (claim.value is not None and reference.form == "choice"):
+            return self._formula(pointer, path, reference, claim, claim.formula)
         try:
             value = _converted(claim, reference)
         except InvalidParameter as fault:
@@ -175,13 +180,13 @@ class Grader:
             why += [] if found is None else [found.sentence]
         return self._result(pointer, judgement, reference, mistakes, " ".join(why), samples)
 
-    def _formula(self, pointer: str, path: Path, reference: Reference, text: str) -> JudgedClaim:
+    def _formula(self, pointer: str, path: Path, reference: Reference, claim: Claim, text: str) -> JudgedClaim:
         if reference.form not in ("number", "angle", "none"):
-            raise InvalidParameter("formula", "be left out: the figure is no number")
+            raise InvalidParameter(claim.field, "be left out: the figure is no number")
         try:
             formula = Formula.read(text, self._parameters)
         except InvalidParameter as fault:
-            raise fault.inside("formula") from None
+            raise fault.inside(claim.field) from None
         if reference.form == "none":
             return self._result(pointer, Judgement("incorrect"), reference)
         judged = self._agreeing(formula, path, reference)

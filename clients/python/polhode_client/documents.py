@@ -2386,6 +2386,7 @@ class AssessmentRequest(TypedDict):
     input_uncertainties: NotRequired[Mapping[str, float] | None]
     names: NotRequired[Mapping[str, str] | None]
     credits: NotRequired[Mapping[str, float] | None]
+    locale: NotRequired[Literal["de", "en", "es", "fr"] | None]
     reveal: NotRequired[bool]
 
 
@@ -2402,6 +2403,7 @@ class ClaimDocument(TypedDict):
     value: NotRequired[Any]
     unit: NotRequired[str | None]
     formula: NotRequired[str | None]
+    text: NotRequired[str | None]
     times: NotRequired[Numbers | None]
 
 

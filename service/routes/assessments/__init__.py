@@ -19,6 +19,7 @@ from core.assessment.formula_variations import VARIATIONS
 from core.assessment.grader import LONGEST_POINTER, MOST_IDENTIFIED, MOST_SOLVED, Grader, credited
 from core.assessment.propagation import MOST_CHANGED_NUMBERS, numbers_of, relative_uncertainties
 from core.assessment.results import reference_views, submission_view
+from core.assessment.typed_entry import Locale
 from core.errors import InvalidParameter, Path
 from core.formulas import is_name
 from core.multibody.language.numerals import member
@@ -85,6 +86,11 @@ class AssessmentRequest(Request):
     credits: dict[str, Credit] | None = Field(
         default=None, description="Share of the score for a recognised mistake, by tag, in place of the catalogue's."
     )
+    locale: Locale | None = Field(
+        default=None,
+        description="Of who typed each `text`: whether its decimal mark is a point (en) or a comma (de, es, fr). "
+        "Without it a comma is one where it cannot group digits.",
+    )
     reveal: bool = Field(
         default=True,
         description="If false, the answer holds verdicts and nothing else that depends on the reference.",
@@ -127,7 +133,9 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
         _check_tags(credits)
         _check_figures(comparisons, graded.answer)
         catalogue = credited(MISTAKES, credits)
-        grader = Grader(graded, question.comparison, comparisons, question.reveal, catalogue, _names(question))
+        grader = Grader(
+            graded, question.comparison, comparisons, question.reveal, catalogue, _names(question), question.locale
+        )
         results = [
             submission_view(i, grader.judged(submission), reveal=question.reveal)
             for i, submission in enumerate(question.submissions)
@@ -142,7 +150,7 @@ def assessing(routes: Sequence[PostRoute], certified: Sequence[PostRoute]) -> Po
     def small(question: AssessmentRequest) -> bool:
         if len(question.submissions) > FEW_SUBMISSIONS:
             return False
-        if _claims_with("formula", question.submissions) or _claims_with("times", question.submissions):
+        if any(_claims_with(key, question.submissions) for key in ("formula", "text", "times")):
             # The question is then answered in many variations, or methods are run.
             return False
         return table.small(question.question)
@@ -185,7 +193,8 @@ def _seconds(question: AssessmentRequest, once: float) -> float:
     again = (
         1 + min(inputs, MOST_CHANGED_NUMBERS) * (1 if question.input_uncertainty is None else 3) + CHANGED_BY_MISTAKES
     )
-    formulas = [claim["formula"] for claim in _claims_with("formula", question.submissions)]
+    # Whether a text is a formula is known when it has been read.
+    formulas = [claim[key] for key in ("formula", "text") for claim in _claims_with(key, question.submissions)]
     # Without names, what varies of a described scene is what a formula has.
     named = question.names is not None or question.question.path != f"/v1/{DESCRIBED}"
     words = {"" if named else " ".join(sorted({*_WORD.findall(str(one))})) for one in formulas}
@@ -222,13 +231,13 @@ def answer_key(routes: Sequence[PostRoute], certified: Sequence[PostRoute], body
     for pointer, entry in (pair for one in question.submissions if isinstance(one, dict) for pair in one.items()):
         # What cannot be read is no example of what students claim.
         with suppress(InvalidParameter):
-            times = Claim.read(entry).times
+            times = Claim.read(entry, question.locale).times
             steps_of(pointer)
             if times is None:
                 claimed.append(pointer)
             else:
                 timed.append((pointer, tuple(times.tolist())))
-    terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question))
+    terms = Terms(question.comparison, question.comparisons or {}, question.reveal, _names(question), question.locale)
     return key_of(graded, terms, credited(MISTAKES, question.credits or {}), claimed, [*dict.fromkeys(timed)])
 
 

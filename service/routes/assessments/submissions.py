@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import Field, TypeAdapter
 
 from core.assessment.claims import LONGEST_TEXT, MOST_CLAIMS, array_of
+from core.assessment.typed_entry import LONGEST_ENTRY
 from core.formulas import LONGEST_FORMULA
 from service.schemas import View
 
@@ -26,6 +27,10 @@ class ClaimDocument(View):
     formula: str | None = Field(
         default=None, max_length=LONGEST_FORMULA, description="In place of a value: in the names of the question's "
         "parameters, with + - * / ^ ( ), pi and functions such as sqrt, sin, atan."
+    )  # fmt: skip
+    text: str | None = Field(
+        default=None, max_length=LONGEST_ENTRY, description="In place of value and formula: what somebody typed, such "
+        "as 6,28 s or 2*pi s or 3·10² N. What can be read in two ways is a format error; see locale."
     )  # fmt: skip
     times: list[float] | None = Field(
         default=None, description="Of the samples in value, at any times (s); of a column of samples."

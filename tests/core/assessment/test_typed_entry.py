@@ -1,0 +1,154 @@
+"""What students type: numbers in the notations of several countries, with units, formulas and words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from core.assessment.claims import Claim
+from core.assessment.typed_entry import LOCALES, Locale, TypedEntry, typed_entry
+from core.errors import InvalidParameter
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "unit"),
+    [
+        ("6,28 s", 6.28, "s"),
+        ("2,75", 2.75, None),
+        ("0,125 m", 0.125, "m"),
+        (",5", 0.5, None),
+        ("6.28s", 6.28, "s"),
+        ("1.234", 1.234, None),
+        ("1 234,5 N", 1234.5, "N"),
+        ("1\u202f234\u202f567,25 Pa", 1234567.25, "Pa"),
+        ("1'234.5", 1234.5, None),
+        ("1,234.5", 1234.5, None),
+        ("1.234,5", 1234.5, None),
+        ("1,234,567", 1234567.0, None),
+        ("1e3", 1000.0, None),
+        ("\u22122.5E-3 kg\u00b7m\u00b2", -0.0025, "kg\u00b7m\u00b2"),
+        ("3\u00b710\u00b2 N", 300.0, "N"),
+        ("3\u00d710\u207b\u00b2", 0.03, None),
+        ("3 x 10^-2 m", 0.03, "m"),
+        ("2,5*10^3", 2500.0, None),
+        ("10^3 Pa", 1000.0, "Pa"),
+        ("30\u00b0", 30.0, "\u00b0"),
+        ("9,81 m/s\u00b2", 9.81, "m/s\u00b2"),
+        ("[1,2,3] m", [1, 2, 3], "m"),
+        ("[1,5; 2; -3,25]", [1.5, 2.0, -3.25], None),
+        ("TRUE", True, None),
+        ("null", None, None),
+    ],
+)
+def test_values_with_units(text: str, value: Any, unit: str | None) -> None:
+    assert typed_entry(text) == TypedEntry(value, unit)
+
+
+@pytest.mark.parametrize(
+    ("text", "formula", "unit"),
+    [
+        ("2*pi s", "2*pi", "s"),
+        ("2\u03c0 s", "2*pi", "s"),
+        ("M*g\u00b7sin(alpha)/3", "M*g*sin(alpha)/3", None),
+        ("2,5*m*g", "2.5*m*g", None),
+        ("sqrt(2) m/s", "sqrt(2)", "m/s"),
+    ],
+)
+def test_formulas(text: str, formula: str, unit: str | None) -> None:
+    assert typed_entry(text) == TypedEntry(None, unit, formula)
+
+
+def test_a_word_may_be_a_choice_or_a_name() -> None:
+    assert typed_entry("saddle") == TypedEntry("saddle", None, "saddle")
+
+
+@pytest.mark.parametrize(
+    ("text", "locale", "value"),
+    [
+        ("1,234", "de", 1.234),
+        ("1,234", "fr", 1.234),
+        ("1,234", "es", 1.234),
+        ("1,234", "en", 1234.0),
+        ("1,5", "en", 1.5),
+    ],
+)
+def test_a_locale_decides_what_a_comma_is(text: str, locale: Locale, value: float) -> None:
+    assert typed_entry(text, locale).value == value
+
+
+@pytest.mark.parametrize(
+    ("text", "locale"),
+    [
+        ("1,234", None),
+        ("12,345 kg", None),
+        ("1.234", "de"),
+        ("1.2.3", None),
+        ("1,23,456", None),
+        ("1,5,5", "de"),
+        ("  ", None),
+    ],
+)
+def test_what_can_be_read_in_two_ways_or_in_none_is_refused(text: str, locale: Locale | None) -> None:
+    with pytest.raises(InvalidParameter):
+        typed_entry(text, locale)
+
+
+def test_both_readings_are_in_the_remedy_and_can_be_read() -> None:
+    with pytest.raises(InvalidParameter, match=r"1,234 may be 1234 or 1\.234") as fault:
+        typed_entry("1,234")
+    assert fault.value.remedy == "write 1234 or 1,2340"
+    assert typed_entry("1234").value == 1234.0
+    assert typed_entry("1,2340").value == 1.234
+
+
+WRITTEN = {"en": ".", "de": ",", "es": ",", "fr": ","}
+
+
+@given(
+    st.integers(-(10**9), 10**9),
+    st.integers(0, 6),
+    st.integers(-30, 30),
+    st.sampled_from(LOCALES),
+    st.sampled_from(["", " ", "\u202f"]),
+    st.sampled_from(["", "e{}", "\u00b710^{}", " x 10^{}", "*10**{}"]),
+)
+def test_numbers_come_back_as_they_were_written(
+    digits: int, places: int, exponent: int, locale: Locale, group: str, power: str
+) -> None:
+    """The double is that of Python's own reading of the same decimal."""
+    sign, text = "-" * (digits < 0), str(abs(digits)).rjust(places + 1, "0")
+    whole, part = text[: len(text) - places], text[len(text) - places :]
+    grouped = f"{int(whole):,}".replace(",", group) if group else whole
+    written = sign + grouped + (WRITTEN[locale] + part if part else "") + power.format(exponent)
+    expected = float(f"{sign}{whole}.{part or 0}e{exponent if power else 0}")
+    assert typed_entry(f"{written} m", locale) == TypedEntry(expected, "m")
+
+
+@given(st.text(max_size=40))
+def test_any_text_is_read_or_refused(text: str) -> None:
+    try:
+        found = typed_entry(text)
+    except InvalidParameter:
+        return
+    assert found.value is not None or found.formula is not None or text.strip().lower() == "null"
+
+
+def test_a_unit_of_its_own_takes_precedence() -> None:
+    assert Claim.read({"text": "6,28 s", "unit": "min"}).unit == "s"
+    assert Claim.read({"text": "6,28", "unit": "min"}).unit == "min"
+
+
+@pytest.mark.parametrize("other", [{"value": 1}, {"formula": "x"}, {"times": [0]}])
+def test_a_text_stands_alone(other: dict[str, Any]) -> None:
+    with pytest.raises(InvalidParameter, match="beside a text"):
+        Claim.read({"text": "1", **other})
+
+
+@pytest.mark.parametrize("text", ["1e400", "x" * 301, 3, ["1"]])
+def test_texts_that_cannot_be_read(text: Any) -> None:
+    with pytest.raises(InvalidParameter) as fault:
+        Claim.read({"text": text})
+    assert fault.value.path == ("text",)
