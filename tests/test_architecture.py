@@ -247,7 +247,10 @@ TESTED_IN |= {
         "language/test_scene": "language/connections language/reading",
         "reduction/test_passes": "reduction/pinning reduction/reduction",
         "trajectory/test_along": "trajectory/integrals",
-        "contacts/test_complementarity": "contacts/contact_forces contacts/contact_responses contacts/contact_states",
+        "contacts/test_complementarity": (
+            "contacts/conditions_of_states contacts/contact_forces contacts/contact_responses contacts/contact_states"
+        ),
+        "contacts/test_certificates": "contacts/admissible_forces",
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
             "phases/crossings phases/phase phases/phase_ends phases/phases "

@@ -1,14 +1,10 @@
-"""What is answered about a scene.
-
-An object that holds one value has its bound as `error`; an object with several has `errors`, by the names of its
-fields. Both are in the unit of the value, and None where the value is, or where its digits are proven.
-"""
+"""What is answered about a scene."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from core.multibody.undecided import Code
 from core.quantities import Unit
@@ -16,38 +12,6 @@ from core.systems.trajectory import How, MotionEvent, Trajectory
 
 Seconds = Annotated[float, Unit("s")]
 OwnUnit = Annotated[float, Unit("as in the field unit")]
-
-
-@dataclass(frozen=True)
-class ModeErrors:
-    """Errors of a mode: of its angular frequency (rad/s) and of its growth rate (1/s)."""
-
-    frequency: float | None
-    growth_rate: float | None
-
-
-class SmallMotion(NamedTuple):
-    """A mode, q = exp(growth_rate t) cos(frequency t).
-
-    Attributes
-    ----------
-    frequency : float
-        Angular frequency (rad/s).
-    growth_rate : float
-        1/s.
-    """
-
-    frequency: float
-    growth_rate: float
-    errors: ModeErrors | None = None
-
-
-@dataclass(frozen=True)
-class PartErrors:
-    """Errors of the period of a part (s) and of its precession (rad)."""
-
-    period: float | None
-    precession: float | None
 
 
 @dataclass(frozen=True)
@@ -64,9 +28,8 @@ class PartModel:
         Time after which it repeats (s), up to a turn about the vertical by `precession`.
     precession : float or None
         That angle (rad).
-    modes : tuple of SmallMotion
-        Of a linear part.
-    errors : PartErrors or None
+    modes : tuple of (float, float)
+        Angular frequency (rad/s) and growth rate (1/s) of every mode of a linear part.
     """
 
     name: str
@@ -75,8 +38,7 @@ class PartModel:
     coordinates: tuple[str, ...]
     period: float | None = None
     precession: float | None = None
-    modes: tuple[SmallMotion, ...] = ()
-    errors: PartErrors | None = None
+    modes: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -111,14 +73,6 @@ class SceneModel:
 
 
 @dataclass(frozen=True)
-class AccelerationErrors:
-    """Errors of accelerations, of a vector its length: linear (m/s^2) and angular (rad/s^2)."""
-
-    linear: float | None
-    angular: float | None
-
-
-@dataclass(frozen=True)
 class BodyAcceleration:
     """Accelerations of a body at the start.
 
@@ -132,7 +86,6 @@ class BodyAcceleration:
 
     linear: tuple[float, ...]
     angular: float | tuple[float, ...] | None = None
-    errors: AccelerationErrors | None = None
 
 
 @dataclass(frozen=True)
@@ -147,24 +100,12 @@ class ForceAnswer:
     determined : bool
     shared_with : tuple of str
         Connections that share what is not determined.
-    error : float or None
-        Of the value.
     """
 
     value: float | None
     unit: str
     determined: bool
     shared_with: tuple[str, ...] = ()
-    error: float | None = None
-
-
-@dataclass(frozen=True)
-class EnergyErrors:
-    """Errors of energies (J)."""
-
-    kinetic: float | None
-    potential: float | None
-    total: float | None
 
 
 @dataclass(frozen=True)
@@ -182,7 +123,6 @@ class Energy:
     potential: float
     total: float
     conserved: bool
-    errors: EnergyErrors | None = None
 
 
 @dataclass(frozen=True)
@@ -251,7 +191,8 @@ class Equilibrium:
         In the plane, of bodies whose direction matters.
     stable : bool or None
         Whether small deviations stay small; None where the linear motion does not decide.
-    modes : tuple of SmallMotion
+    modes : tuple of (float, float)
+        Angular frequency and growth rate of the small motions.
     residual : float
         Largest force left over, relative to the forces of the scene.
     """
@@ -259,7 +200,7 @@ class Equilibrium:
     positions: Mapping[str, tuple[float, ...]]
     angles: Mapping[str, float]
     stable: bool | None
-    modes: tuple[SmallMotion, ...]
+    modes: tuple[tuple[float, float], ...]
     residual: float
 
 
@@ -275,8 +216,6 @@ class MotionPhase:
         Coordinates that remain.
     states : mapping of str to str
         By contact, stop or string: open, closed, stick, slide, slide back.
-    errors : mapping of str to float or None
-        Of the start and the end (s).
     """
 
     start: Seconds
@@ -286,7 +225,6 @@ class MotionPhase:
     degrees_of_freedom: int
     coordinates: int
     states: Mapping[str, str]
-    errors: Mapping[str, Annotated[float | None, Unit("s")]]
 
 
 @dataclass(frozen=True)
@@ -303,8 +241,6 @@ class SceneProblem:
         What is possible.
     decided_by : str
         Which further assumption would decide it.
-    error : float
-        Of the time (s).
     """
 
     code: Code
@@ -313,7 +249,6 @@ class SceneProblem:
     connections: tuple[str, ...]
     candidates: tuple[Mapping[str, str], ...]
     decided_by: str
-    error: Seconds
 
 
 @dataclass(frozen=True)
@@ -364,7 +299,6 @@ class SceneSolution:
     energy: Energy | None
     trajectory: Trajectory | None
     period: float | None
-    period_error: float | None
     equilibria: tuple[Equilibrium, ...] | None
     events: tuple[MotionEvent, ...]
     ended: MotionEvent | None

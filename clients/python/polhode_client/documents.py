@@ -1486,7 +1486,6 @@ class DescribedSceneAnswer(TypedDict):
     method: NotRequired[str | None]
     work: NotRequired[Work | None]
     period: float | None
-    errors: dict[str, float | None]
     ended: str | None
     events: list[EndEvent]
     phases: NotRequired[list[MotionPhase] | None]
@@ -1523,7 +1522,6 @@ class ScenePart(TypedDict):
     period: float | None
     precession: float | None
     modes: list[SmallMotion]
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class SmallMotion(TypedDict):
@@ -1531,7 +1529,6 @@ class SmallMotion(TypedDict):
 
     frequency: float
     growth_rate: float
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class BodyAccelerations(TypedDict):
@@ -1539,7 +1536,6 @@ class BodyAccelerations(TypedDict):
 
     linear: list[float | None]
     angular: float | list[float | None] | None
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class ConnectionForce(TypedDict):
@@ -1549,7 +1545,6 @@ class ConnectionForce(TypedDict):
     unit: str
     determined: bool
     shared_with: list[str]
-    error: NotRequired[float | None]
 
 
 class StartEnergy(TypedDict):
@@ -1559,7 +1554,6 @@ class StartEnergy(TypedDict):
     potential: float | None
     total: float | None
     conserved: bool
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class EndEvent(TypedDict):
@@ -1571,14 +1565,6 @@ class EndEvent(TypedDict):
     error: float
     impulses: dict[str, float]
     energy_loss: float
-    errors: ImpactErrors
-
-
-class ImpactErrors(TypedDict):
-    """Of impulses and energy loss; that of the time is in error."""
-
-    impulses: dict[str, float | None]
-    energy_loss: float | None
 
 
 class MotionPhase(TypedDict):
@@ -1591,7 +1577,6 @@ class MotionPhase(TypedDict):
     degrees_of_freedom: int
     coordinates: int
     states: dict[str, str]
-    errors: dict[str, float | None]
 
 
 class SceneProblem(TypedDict):
@@ -1618,7 +1603,6 @@ class SceneProblem(TypedDict):
     connections: list[str]
     candidates: list[dict[str, str]]
     decided_by: str
-    error: float
 
 
 class DescribedTrajectory(TypedDict):
@@ -2267,7 +2251,6 @@ class CertifiedScenePart(TypedDict):
     period: str | None
     precession: str | None
     modes: list[CertifiedSmallMotion]
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedSmallMotion(TypedDict):
@@ -2275,7 +2258,6 @@ class CertifiedSmallMotion(TypedDict):
 
     frequency: str
     growth_rate: str
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedBodyAccelerations(TypedDict):
@@ -2283,7 +2265,6 @@ class CertifiedBodyAccelerations(TypedDict):
 
     linear: list[str | None]
     angular: str | list[str | None] | None
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedConnectionForce(TypedDict):
@@ -2293,7 +2274,6 @@ class CertifiedConnectionForce(TypedDict):
     unit: str
     determined: bool
     shared_with: list[str]
-    error: NotRequired[float | None]
 
 
 class CertifiedStartEnergy(TypedDict):
@@ -2303,7 +2283,6 @@ class CertifiedStartEnergy(TypedDict):
     potential: str | None
     total: str | None
     conserved: bool
-    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedMotion(TypedDict):

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
+from core.multibody.contacts.contact_states import PhaseTable
 from core.multibody.equations.expansion import Expansion, expansion, slope, value
 from core.multibody.equations.polynomial_roots import first_negative
 from core.multibody.motion.modelling import Modelled
 from core.multibody.motion.uniform import Uniform
 from core.multibody.phases.watches import Watch
 from core.multibody.table.table import Table
+
+_ORDER = 6
+"""Of the series that shows whether forces change: they are rational in time, and change from the first power on."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +43,19 @@ def is_uniform(model: Modelled) -> bool:
     return all(isinstance(motion, Uniform) or motion.name == "rest" for _, motion in model.whole.parts)
 
 
+def has_constant_forces(phase: PhaseTable) -> bool:
+    """Return whether no force of a contact changes, as far as the start of its series shows.
+
+    With constant accelerations forces may change all the same: where their arms do.
+    """
+    if all(row is None for row in phase.normal):
+        return True
+    multipliers = expansion(phase.table, _ORDER).multipliers
+    return all(is_zero(x) for series in multipliers for x in series[1:])
+
+
 def uniform_motion(table: Table, model: Modelled) -> Expansion:
-    """Return a motion with constant accelerations as an exact expansion, its multipliers constant."""
+    """Return a motion with constant accelerations and forces as an exact expansion."""
     places = [[q, v, a / 2, ZERO, ZERO] for q, v, a in zip(table.q, table.v, model.whole.acceleration, strict=True)]
     # What is free has no multipliers to be found.
     multipliers = expansion(table, 2).multipliers if table.rows else []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from core.multibody.algebra.polynomials import ZERO, Ball
 from core.multibody.contacts.complementarity import Decided
@@ -15,7 +16,7 @@ from core.multibody.motion.modelling import Modelled, Piece, models_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.accumulation import Accumulation
-from core.multibody.phases.crossings import is_uniform
+from core.multibody.phases.crossings import has_constant_forces, is_uniform
 from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import ENDED, TurningSlip, turning_model
 from core.multibody.table.connection_effects import Unilateral
@@ -62,10 +63,10 @@ class Phase:
         """Time at which it begins."""
         return self.tracks[0].time
 
-    @property
+    @cached_property
     def uniform(self) -> bool:
-        """Whether every acceleration is constant."""
-        return all(is_uniform(model) for model in self.models)
+        """Whether every acceleration is constant, and every force of a contact."""
+        return all(is_uniform(model) for model in self.models) and has_constant_forces(self.tables[0])
 
     @property
     def turning(self) -> bool:

@@ -13,10 +13,11 @@ from dataclasses import replace
 
 from flint import arb
 
-from core.balls import distance_bound, precision
+from core.balls import precision
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero
-from core.multibody.contacts.complementarity import LOOKED, Decided, decided
+from core.multibody.contacts.complementarity import Decided, decided
+from core.multibody.contacts.conditions_of_states import LOOKED
 from core.multibody.contacts.contact_responses import slip_rate
 from core.multibody.contacts.contact_start import assemble_contacts
 from core.multibody.contacts.contact_states import Problem, State, change_of, phase_table
@@ -36,7 +37,7 @@ from core.multibody.phases.turning_slip import turns
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
 from core.multibody.table.measures import COMPONENTS
-from core.systems.trajectory import ImpactErrors, MotionEvent
+from core.systems.trajectory import MotionEvent
 
 MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
@@ -218,13 +219,12 @@ class _Run:
         self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
             one, (push, rub, beside) = outcome.unilateral[i], outcome.impulses[i]
-            balls = {"normal": push}
+            impulses = {"normal": nearest(push)}
             if one.tangents is not None:
                 for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
-                    balls[f"friction.{axis}"] = rub * x + beside * y
+                    impulses[f"friction.{axis}"] = nearest(rub * x + beside * y)
             elif one.slip is not None:
-                balls["friction"] = rub
-            impulses = {name: nearest(ball) for name, ball in balls.items()}
+                impulses["friction"] = nearest(rub)
             time, late = nearest(self.tracks.time), self.tracks.late()
             work = outcome.works[i]
             loss, known = nearest(ZERO - work), None if i in outcome.shared else work
@@ -235,11 +235,7 @@ class _Run:
                     remedy="choose units in which the numbers are moderate",
                 )
             self.motion.impacts.append((len(self.motion.phases), one.name, known))
-            errors = ImpactErrors(
-                {name: None if known is None else distance_bound(x, impulses[name]) for name, x in balls.items()},
-                None if known is None else distance_bound(-work, loss),
-            )
-            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss, errors))
+            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss))
 
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""
