@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from math import isfinite
+from math import inf, isfinite, nextafter
 from threading import RLock
 
 from flint import arb, ctx
@@ -25,6 +25,17 @@ def as_text(ball: arb, digits: int) -> str:
     value = float(ball.mid())
     plain = isfinite(value) and (value != 0.0 or ball.mid() == 0)
     return f"{value:.{digits}g}" if plain else str(ball.mid().str(digits, radius=False))
+
+
+def distance_bound(ball: arb, value: float) -> float | None:
+    """Return a bound of how far a double is from the number in a ball; None where no double bounds it."""
+    if not isfinite(value):
+        return None
+    apart = abs(ball - arb(value)).upper()
+    if apart == 0:
+        return 0.0
+    bound = nextafter(float(apart), inf)
+    return bound if isfinite(bound) else None
 
 
 # Held while the precision is changed, so that no thread computes at the precision of another.

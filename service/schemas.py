@@ -47,6 +47,8 @@ Radians = Annotated[N, Unit("rad")]
 RadiansPerSecond = Annotated[N, Unit("rad s^-1")]
 PerSecond = Annotated[N, Unit("s^-1")]
 Joules = Annotated[N, Unit("J")]
+Errors = dict[str, Annotated[float | None, Unit("as in the field of that name")]]
+"""Bounds of the errors of the figures beside it, by their names; of a vector its length, null where the figure is."""
 AngularMomentumMagnitude = Annotated[N, Unit("kg m^2 s^-1")]
 
 

@@ -45,7 +45,7 @@ def rounding_errors(body: MassProperties) -> dict[str, Any]:
     wrong = share * float(np.abs(body.inertia).max())
     errors: dict[str, Any] = dict.fromkeys(("mass", "center_of_mass", "inertia_about_origin", "principal_about_origin"))
     errors["inertia"] = _bounds(body.inertia_tail, wrong)
-    errors["principal"] = _principal(body.principal, wrong)
+    errors["principal"] = principal_errors(body.principal, wrong)
     if body.mass is not None:
         errors["mass"] = float(_bounds(np.array(body.mass_tail), once * body.mass + body.mass_error))
     if body.center_of_mass is not None:
@@ -58,7 +58,7 @@ def rounding_errors(body: MassProperties) -> dict[str, Any]:
             wrong += 12.0 * body.mass * reach * body.center_of_mass_error + 3.0 * body.mass_error * reach**2
             wrong += 2.0 * max(share, ROUNDED_ONCE.share) * float(np.abs(moved).max())
             errors["inertia_about_origin"] = _bounds(moved_tail, wrong)
-            errors["principal_about_origin"] = _principal(body.principal_about_origin, wrong)
+            errors["principal_about_origin"] = principal_errors(body.principal_about_origin, wrong)
     return errors
 
 
@@ -67,7 +67,7 @@ def _bounds(tail: Floats, wrong: float) -> Floats:
     return found
 
 
-def _principal(inertia: PrincipalInertia, wrong: float) -> dict[str, Floats]:
+def principal_errors(inertia: PrincipalInertia, wrong: float) -> dict[str, Floats]:
     """Return bounds for moments and axes of a tensor of which a component may be wrong by so much."""
     if inertia.rounding.exact_zeros:
         return {"moments": _bounds(inertia.moments_tail, wrong), "axes": np.zeros((3, 3))}

@@ -1,10 +1,14 @@
-"""What is answered about a scene."""
+"""What is answered about a scene.
+
+An object that holds one value has its bound as `error`; an object with several has `errors`, by the names of its
+fields. Both are in the unit of the value, and None where the value is, or where its digits are proven.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from core.multibody.undecided import Code
 from core.quantities import Unit
@@ -12,6 +16,38 @@ from core.systems.trajectory import How, MotionEvent, Trajectory
 
 Seconds = Annotated[float, Unit("s")]
 OwnUnit = Annotated[float, Unit("as in the field unit")]
+
+
+@dataclass(frozen=True)
+class ModeErrors:
+    """Errors of a mode: of its angular frequency (rad/s) and of its growth rate (1/s)."""
+
+    frequency: float | None
+    growth_rate: float | None
+
+
+class SmallMotion(NamedTuple):
+    """A mode, q = exp(growth_rate t) cos(frequency t).
+
+    Attributes
+    ----------
+    frequency : float
+        Angular frequency (rad/s).
+    growth_rate : float
+        1/s.
+    """
+
+    frequency: float
+    growth_rate: float
+    errors: ModeErrors | None = None
+
+
+@dataclass(frozen=True)
+class PartErrors:
+    """Errors of the period of a part (s) and of its precession (rad)."""
+
+    period: float | None
+    precession: float | None
 
 
 @dataclass(frozen=True)
@@ -28,8 +64,9 @@ class PartModel:
         Time after which it repeats (s), up to a turn about the vertical by `precession`.
     precession : float or None
         That angle (rad).
-    modes : tuple of (float, float)
-        Angular frequency (rad/s) and growth rate (1/s) of every mode of a linear part.
+    modes : tuple of SmallMotion
+        Of a linear part.
+    errors : PartErrors or None
     """
 
     name: str
@@ -38,7 +75,8 @@ class PartModel:
     coordinates: tuple[str, ...]
     period: float | None = None
     precession: float | None = None
-    modes: tuple[tuple[float, float], ...] = ()
+    modes: tuple[SmallMotion, ...] = ()
+    errors: PartErrors | None = None
 
 
 @dataclass(frozen=True)
@@ -73,6 +111,14 @@ class SceneModel:
 
 
 @dataclass(frozen=True)
+class AccelerationErrors:
+    """Errors of accelerations, of a vector its length: linear (m/s^2) and angular (rad/s^2)."""
+
+    linear: float | None
+    angular: float | None
+
+
+@dataclass(frozen=True)
 class BodyAcceleration:
     """Accelerations of a body at the start.
 
@@ -86,6 +132,7 @@ class BodyAcceleration:
 
     linear: tuple[float, ...]
     angular: float | tuple[float, ...] | None = None
+    errors: AccelerationErrors | None = None
 
 
 @dataclass(frozen=True)
@@ -100,12 +147,24 @@ class ForceAnswer:
     determined : bool
     shared_with : tuple of str
         Connections that share what is not determined.
+    error : float or None
+        Of the value.
     """
 
     value: float | None
     unit: str
     determined: bool
     shared_with: tuple[str, ...] = ()
+    error: float | None = None
+
+
+@dataclass(frozen=True)
+class EnergyErrors:
+    """Errors of energies (J)."""
+
+    kinetic: float | None
+    potential: float | None
+    total: float | None
 
 
 @dataclass(frozen=True)
@@ -123,6 +182,7 @@ class Energy:
     potential: float
     total: float
     conserved: bool
+    errors: EnergyErrors | None = None
 
 
 @dataclass(frozen=True)
@@ -191,8 +251,7 @@ class Equilibrium:
         In the plane, of bodies whose direction matters.
     stable : bool or None
         Whether small deviations stay small; None where the linear motion does not decide.
-    modes : tuple of (float, float)
-        Angular frequency and growth rate of the small motions.
+    modes : tuple of SmallMotion
     residual : float
         Largest force left over, relative to the forces of the scene.
     """
@@ -200,7 +259,7 @@ class Equilibrium:
     positions: Mapping[str, tuple[float, ...]]
     angles: Mapping[str, float]
     stable: bool | None
-    modes: tuple[tuple[float, float], ...]
+    modes: tuple[SmallMotion, ...]
     residual: float
 
 
@@ -216,6 +275,8 @@ class MotionPhase:
         Coordinates that remain.
     states : mapping of str to str
         By contact, stop or string: open, closed, stick, slide, slide back.
+    errors : mapping of str to float or None
+        Of the start and the end (s).
     """
 
     start: Seconds
@@ -225,6 +286,7 @@ class MotionPhase:
     degrees_of_freedom: int
     coordinates: int
     states: Mapping[str, str]
+    errors: Mapping[str, Annotated[float | None, Unit("s")]]
 
 
 @dataclass(frozen=True)
@@ -241,6 +303,8 @@ class SceneProblem:
         What is possible.
     decided_by : str
         Which further assumption would decide it.
+    error : float
+        Of the time (s).
     """
 
     code: Code
@@ -249,6 +313,7 @@ class SceneProblem:
     connections: tuple[str, ...]
     candidates: tuple[Mapping[str, str], ...]
     decided_by: str
+    error: Seconds
 
 
 @dataclass(frozen=True)
@@ -299,6 +364,7 @@ class SceneSolution:
     energy: Energy | None
     trajectory: Trajectory | None
     period: float | None
+    period_error: float | None
     equilibria: tuple[Equilibrium, ...] | None
     events: tuple[MotionEvent, ...]
     ended: MotionEvent | None

@@ -19,7 +19,15 @@ from core.multibody.motion.modelling import modelled
 from core.multibody.parts.joined_answer import answered_by_parts
 from core.multibody.phases.phase_answer import THRESHOLDS, answer_in_phases
 from core.multibody.phases.phases import one_sided
-from core.multibody.start import accelerations_of, at_rest, energy_of, forces_of_start, noticed_of, scene_model
+from core.multibody.start import (
+    accelerations_of,
+    at_rest,
+    energy_of,
+    error_in_doubles,
+    forces_of_start,
+    noticed_of,
+    scene_model,
+)
 from core.multibody.statics.equilibria import equilibria_of
 from core.multibody.statics.thresholds import RestOf, range_of_rest
 from core.multibody.table.chains import has_chain
@@ -161,6 +169,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneSolution:
         energy_of(found.described) if "energy" in outputs else None,
         trajectory,
         None if single is None else float(single),
+        None if single is None else error_in_doubles(single),
         equilibria_of(found.described) if "equilibria" in outputs else None,
         tuple(events),
         next((event for event in events if event.time >= 0.0), None),

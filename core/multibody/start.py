@@ -2,11 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import hypot, inf, nextafter
+from typing import Any, NamedTuple, Protocol
 
+from core.balls import distance_bound
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
-from core.multibody.answer import BodyAcceleration, Energy, ForceAnswer, PartModel, SceneModel
+from core.multibody.answer import (
+    AccelerationErrors,
+    BodyAcceleration,
+    Energy,
+    EnergyErrors,
+    ForceAnswer,
+    ModeErrors,
+    PartErrors,
+    PartModel,
+    SceneModel,
+    SmallMotion,
+)
 from core.multibody.equations.dynamics import ForceAtStart, Multipliers, kinetic, potential
 from core.multibody.motion.modelling import Modelled
 from core.multibody.motion.modes import Modes
@@ -23,6 +36,26 @@ class _Named(Protocol):
     def why(self) -> str: ...
 
 
+def in_doubles(ball: Ball) -> float:
+    """Return a number of the start as a double; what cannot be told from zero is zero."""
+    return 0.0 if is_zero(ball) else float(ball)
+
+
+def error_in_doubles(ball: Ball) -> float | None:
+    """Return a bound of the error of the double that `in_doubles` returns; None beyond the range of doubles."""
+    return distance_bound(ball, in_doubles(ball))
+
+
+class NumberKind(NamedTuple):
+    """How numbers of the start are written: each, and the bound of its error, None where digits are proven."""
+
+    value: Callable[[Ball], Any]
+    error: Callable[[Ball], float | None] | None
+
+
+DOUBLES = NumberKind(in_doubles, error_in_doubles)
+
+
 def name_of_parts(parts: Sequence[_Named]) -> tuple[str, str]:
     """Return the name of a scene's model and why it suffices, from those of its parts."""
     if not parts:
@@ -37,11 +70,11 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
     table = found.described.measures.table
     apart = []
     for piece, (_, motion) in zip(found.pieces, found.whole.parts, strict=True):
-        modes: tuple[tuple[float, float], ...] = ()
+        modes: tuple[SmallMotion, ...] = ()
         if isinstance(motion, Modes):
-            modes = tuple((float(mode.frequency), float(mode.growth)) for mode in motion.modes)
+            modes = tuple(small_motion(mode.frequency, mode.growth) for mode in motion.modes)
         period = motion.period
-        winding = motion.winding if isinstance(motion, (Periodic, Steady, Shifted)) and motion.winding else None
+        turned = motion if isinstance(motion, (Periodic, Steady, Shifted)) and motion.winding else None
         apart.append(
             PartModel(
                 motion.name,
@@ -49,8 +82,12 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
                 piece.freedom,
                 tuple(piece.table.names),
                 None if period is None else float(period),
-                winding,
+                None if turned is None else turned.winding,
                 modes,
+                PartErrors(
+                    None if period is None else error_in_doubles(period),
+                    None if turned is None else turned.winding_error,
+                ),
             )
         )
     name, why = name_of_parts(apart)
@@ -72,23 +109,25 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
     )
 
 
-def in_doubles(ball: Ball) -> float:
-    """Return a number of the start as a double; what cannot be told from zero is zero."""
-    return 0.0 if is_zero(ball) else float(ball)
+def small_motion(frequency: Ball, growth: Ball) -> SmallMotion:
+    """Return a mode in doubles."""
+    errors = ModeErrors(error_in_doubles(frequency), error_in_doubles(growth))
+    return SmallMotion(in_doubles(frequency), in_doubles(growth), errors)
 
 
 def accelerations_of(
-    found: Described, full: Sequence[Ball], number: Callable[[Ball], Any] = in_doubles
+    found: Described, full: Sequence[Ball], numbers: NumberKind = DOUBLES
 ) -> Mapping[str, BodyAcceleration]:
     """Return the accelerations of every body, in a kind of number."""
     table, answer = found.measures.table, {}
     for name, frame in found.measures.coordinates.frames.items():
-        angular: float | tuple[float, ...] | None = None
+        linear = [full[i] for i in frame.position]
+        angular: list[Ball] | None = None
         if frame.turn is not None:
-            angular = number(full[frame.turn])
+            angular = [full[frame.turn]]
         elif frame.direction is not None:
             c, s = frame.direction
-            angular = number(table.q[c] * full[s] - table.q[s] * full[c])
+            angular = [table.q[c] * full[s] - table.q[s] * full[c]]
         elif frame.axes is not None:
             # Half the sum of e x e'' is the rate of the angular velocity in space.
             space = [ZERO] * 3
@@ -96,39 +135,60 @@ def accelerations_of(
                 for i in range(3):
                     j, k = axis[(i + 1) % 3], axis[(i + 2) % 3]
                     space[i] = space[i] + (table.q[j] * full[k] - table.q[k] * full[j]) / 2
-            angular = tuple(
-                number(sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO)) for axis in frame.axes
-            )
+            angular = [sum((x * table.q[j] for x, j in zip(space, axis, strict=True)), ZERO) for axis in frame.axes]
         elif frame.turns is not None and frame.start_axes is not None:
-            angular = tuple(
-                number(sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO))
-                for axis in frame.start_axes
+            angular = [
+                sum((full[j] * x for j, x in zip(frame.turns, axis, strict=True)), ZERO) for axis in frame.start_axes
+            ]
+        shown = None if angular is None else tuple(map(numbers.value, angular))
+        errors = None
+        if numbers.error is not None:
+            errors = AccelerationErrors(
+                _length(map(numbers.error, linear)),
+                None if angular is None else _length(map(numbers.error, angular)),
             )
-        answer[name] = BodyAcceleration(tuple(number(full[i]) for i in frame.position), angular)
+        in_plane = frame.turn is not None or frame.direction is not None
+        answer[name] = BodyAcceleration(
+            tuple(map(numbers.value, linear)), shown[0] if in_plane and shown else shown, errors
+        )
     return answer
 
 
+def _length(errors: Iterable[float | None]) -> float | None:
+    """Return the length of the errors of a vector, None where one is not known."""
+    known = list(errors)
+    if None in known:
+        return None
+    length = hypot(*(x for x in known if x is not None))
+    # Of one component it is that error.
+    return length if len(known) == 1 else nextafter(length, inf) if length > 0.0 else 0.0
+
+
 def forces_of_start(
-    found: Described, forces: Sequence[ForceAtStart], number: Callable[[Ball], Any] = in_doubles
+    found: Described, forces: Sequence[ForceAtStart], numbers: NumberKind = DOUBLES
 ) -> Mapping[str, ForceAnswer]:
     """Return the forces of every connection, in a kind of number."""
     return {
         force.name: ForceAnswer(
-            None if value.value is None else number(value.value),
+            None if value.value is None else numbers.value(value.value),
             force.unit,
             value.value is not None,
             value.shared_with,
+            None if value.value is None or numbers.error is None else numbers.error(value.value),
         )
         for force, value in zip(found.measures.forces, forces, strict=True)
     }
 
 
-def energy_of(found: Described, number: Callable[[Ball], Any] = in_doubles) -> Energy:
+def energy_of(found: Described, numbers: NumberKind = DOUBLES) -> Energy:
     """Return the energies at the start, in a kind of number."""
     measures = found.measures
     spin = sum((frame.spin_energy for frame in measures.coordinates.frames.values()), ZERO)
     moving, resting = kinetic(measures.table) + spin, potential(measures.table) + measures.potential
-    return Energy(number(moving), number(resting), number(moving + resting), measures.conservative)
+    each = moving, resting, moving + resting
+    errors = None if numbers.error is None else EnergyErrors(*map(numbers.error, each))
+    kinetic_energy, potential_energy, total = map(numbers.value, each)
+    return Energy(kinetic_energy, potential_energy, total, measures.conservative, errors)
 
 
 def at_rest(found: Modelled) -> list[str]:

@@ -135,6 +135,17 @@ class Work:
 
 
 @dataclass(frozen=True)
+class ImpactErrors:
+    """Errors of an impact: of every impulse (N s, of a stop N m s) and of the energy loss (J).
+
+    None where contacts could share the impact otherwise.
+    """
+
+    impulses: Mapping[str, float | None] = field(default_factory=dict)
+    energy_loss: float | None = 0.0
+
+
+@dataclass(frozen=True)
 class MotionEvent:
     """Something that happens in a motion.
 
@@ -153,6 +164,8 @@ class MotionEvent:
         Of an impact: "normal" and "friction" (N s).
     energy_loss : float
         Of an impact, by this connection (J); of several at one time they add up to what is lost.
+    errors : ImpactErrors
+        Of impulses and energy loss.
     """
 
     kind: str
@@ -161,6 +174,7 @@ class MotionEvent:
     error: float
     impulses: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     energy_loss: float = 0.0
+    errors: ImpactErrors = field(default_factory=ImpactErrors)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,13 @@ from core.multibody.answer import MotionPhase, RestRange, SceneExtremes
 from core.multibody.undecided import Code
 from core.quantities import Unit
 from core.systems.trajectory import Work
-from service.schemas import Envelope, Joules, N, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
+from service.schemas import Envelope, Errors, Joules, N, PerSecond, Radians, RadiansPerSecond, Ratio, Seconds, View
 
 Metres = Annotated[list[float], Unit("m"), Field(min_length=2, max_length=3)]
 How = Literal["closed form", "measured against pairs", "measured against closed form"]
 """How errors of described scenes are known."""
 OwnUnit = Unit("as in the field unit")
+PROVEN = "Bounds of the errors, by the names of the fields; left out where every digit is proven."
 UNDECIDED_PATH = "/v1/undecided"
 """Where the kinds of what is undecided are published."""
 
@@ -25,6 +26,7 @@ class SmallMotion(View, Generic[N]):
 
     frequency: RadiansPerSecond[N]
     growth_rate: PerSecond[N]
+    errors: Errors | None = Field(default=None, description=PROVEN)
 
 
 class ScenePart(View, Generic[N]):
@@ -37,6 +39,7 @@ class ScenePart(View, Generic[N]):
     period: Seconds[N] | None = Field(description="Until it repeats, up to a turn about the vertical.")
     precession: Radians[N] | None = Field(description="That turn in a period.")
     modes: list[SmallMotion[N]] = Field(description="Of a linear part.")
+    errors: Errors | None = Field(default=None, description=PROVEN)
 
 
 class DescribedModel(View, Generic[N]):
@@ -60,6 +63,7 @@ class BodyAccelerations(View, Generic[N]):
     angular: Annotated[N | list[N | None] | None, Unit("rad s^-2")] = Field(
         description="A number in the plane, in body axes in space; null for particles and tops."
     )
+    errors: Errors | None = Field(default=None, description=PROVEN)
 
 
 class ConnectionForce(View, Generic[N]):
@@ -69,6 +73,10 @@ class ConnectionForce(View, Generic[N]):
     unit: str
     determined: bool = Field(description="Whether the scene determines it.")
     shared_with: list[str] = Field(description="Connections that share what is not determined.")
+    error: Annotated[float, OwnUnit] | None = Field(
+        default=None,
+        description="Bound of the error of the value, null where that is; left out where digits are proven.",
+    )
 
 
 class StartEnergy(View, Generic[N]):
@@ -81,6 +89,7 @@ class StartEnergy(View, Generic[N]):
         description="Whether nothing works on the scene: no damper, motor or torque in space, and until the last time "
         "no friction and no impact that costs energy."
     )
+    errors: Errors | None = Field(default=None, description=PROVEN)
 
 
 class SceneColumn(View):
@@ -104,6 +113,13 @@ class DescribedTrajectory(View):
     columns: dict[str, SceneColumn]
 
 
+class ImpactErrors(View):
+    """Bounds of the errors of an impact; null where contacts could share it otherwise."""
+
+    impulses: dict[str, Annotated[float, Unit("N s")] | None] = Field(description="By the names of the impulses.")
+    energy_loss: Joules[float] | None
+
+
 class EndEvent(View):
     """Something that ends a phase of a motion, or the motion."""
 
@@ -121,6 +137,7 @@ class EndEvent(View):
         description="Of an impact, by this connection: impulse times mean rate. Those of one time add up to what is "
         "lost; one of them may be negative."
     )
+    errors: ImpactErrors = Field(description="Of impulses and energy loss; that of the time is in error.")
 
 
 class SceneProblem(View):
@@ -133,6 +150,7 @@ class SceneProblem(View):
     connections: list[str] = Field(description="Between which it is undecided.")
     candidates: list[dict[str, str]] = Field(description="What is possible.")
     decided_by: str = Field(description="Which further assumption would decide it.")
+    error: Seconds[float] = Field(description="Of the time.")
 
 
 class SceneOccurrence(View):
@@ -194,6 +212,7 @@ class DescribedSceneAnswer(AtStart[float]):
     period: Seconds[float] | None = Field(
         description="Of the motion; null where nothing moves, several parts move, or it is not known to repeat."
     )
+    errors: Errors = Field(description="Bound of the error of the period; null where that is.")
     ended: str | None = Field(
         description="horizon, or the kind of the event that ended the motion; null without times."
     )

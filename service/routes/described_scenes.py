@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from core.errors import BudgetExceeded
-from core.multibody.answer import RestRange, SceneModel
+from core.multibody.answer import RestRange, SceneModel, SmallMotion
 from core.multibody.language.scene import check_size
 from core.multibody.motion.generic_equation import weight_of
 from core.multibody.solve import OUTPUTS, solve_scene
@@ -102,7 +102,7 @@ def solved(question: DescribedSceneRequest, budget: Budget) -> Answer:
             answer[name] = _in_range(start, name, answer["warnings"])
     if motion is not None and question.method is not None:
         answer |= {"method": motion.method, "work": motion.work}
-    answer["period"] = found.period
+    answer |= {"period": found.period, "errors": {"period": found.period_error}}
     answer["ended"] = None if motion is None else motion.ended
     answer["events"] = [fields_of(event) for event in found.events]
     if found.phases is not None:
@@ -137,8 +137,8 @@ def model_fields(model: SceneModel) -> dict[str, Any]:
     return fields_of(model) | {"apart": [fields_of(part) | {"modes": _modes(part.modes)} for part in model.apart]}
 
 
-def _modes(modes: Sequence[tuple[Any, Any]]) -> list[dict[str, Any]]:
-    return [{"frequency": frequency, "growth_rate": growth} for frequency, growth in modes]
+def _modes(modes: Sequence[SmallMotion]) -> list[dict[str, Any]]:
+    return [mode._asdict() for mode in modes]
 
 
 def _in_range(value: Any, name: str, warnings: list[Notice]) -> Any:

@@ -1486,6 +1486,7 @@ class DescribedSceneAnswer(TypedDict):
     method: NotRequired[str | None]
     work: NotRequired[Work | None]
     period: float | None
+    errors: dict[str, float | None]
     ended: str | None
     events: list[EndEvent]
     phases: NotRequired[list[MotionPhase] | None]
@@ -1522,6 +1523,7 @@ class ScenePart(TypedDict):
     period: float | None
     precession: float | None
     modes: list[SmallMotion]
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class SmallMotion(TypedDict):
@@ -1529,6 +1531,7 @@ class SmallMotion(TypedDict):
 
     frequency: float
     growth_rate: float
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class BodyAccelerations(TypedDict):
@@ -1536,6 +1539,7 @@ class BodyAccelerations(TypedDict):
 
     linear: list[float | None]
     angular: float | list[float | None] | None
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class ConnectionForce(TypedDict):
@@ -1545,6 +1549,7 @@ class ConnectionForce(TypedDict):
     unit: str
     determined: bool
     shared_with: list[str]
+    error: NotRequired[float | None]
 
 
 class StartEnergy(TypedDict):
@@ -1554,6 +1559,7 @@ class StartEnergy(TypedDict):
     potential: float | None
     total: float | None
     conserved: bool
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class EndEvent(TypedDict):
@@ -1565,6 +1571,14 @@ class EndEvent(TypedDict):
     error: float
     impulses: dict[str, float]
     energy_loss: float
+    errors: ImpactErrors
+
+
+class ImpactErrors(TypedDict):
+    """Of impulses and energy loss; that of the time is in error."""
+
+    impulses: dict[str, float | None]
+    energy_loss: float | None
 
 
 class MotionPhase(TypedDict):
@@ -1577,6 +1591,7 @@ class MotionPhase(TypedDict):
     degrees_of_freedom: int
     coordinates: int
     states: dict[str, str]
+    errors: dict[str, float | None]
 
 
 class SceneProblem(TypedDict):
@@ -1603,6 +1618,7 @@ class SceneProblem(TypedDict):
     connections: list[str]
     candidates: list[dict[str, str]]
     decided_by: str
+    error: float
 
 
 class DescribedTrajectory(TypedDict):
@@ -2251,6 +2267,7 @@ class CertifiedScenePart(TypedDict):
     period: str | None
     precession: str | None
     modes: list[CertifiedSmallMotion]
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedSmallMotion(TypedDict):
@@ -2258,6 +2275,7 @@ class CertifiedSmallMotion(TypedDict):
 
     frequency: str
     growth_rate: str
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedBodyAccelerations(TypedDict):
@@ -2265,6 +2283,7 @@ class CertifiedBodyAccelerations(TypedDict):
 
     linear: list[str | None]
     angular: str | list[str | None] | None
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedConnectionForce(TypedDict):
@@ -2274,6 +2293,7 @@ class CertifiedConnectionForce(TypedDict):
     unit: str
     determined: bool
     shared_with: list[str]
+    error: NotRequired[float | None]
 
 
 class CertifiedStartEnergy(TypedDict):
@@ -2283,6 +2303,7 @@ class CertifiedStartEnergy(TypedDict):
     potential: str | None
     total: str | None
     conserved: bool
+    errors: NotRequired[dict[str, float | None] | None]
 
 
 class CertifiedMotion(TypedDict):

@@ -32,6 +32,7 @@ from core.multibody.contacts.impulses import LIMIT, RatesByLine, alike, impulses
 from core.multibody.contacts.slip_directions import along_slip
 from core.multibody.equations.dynamics import kinetic
 from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.measures import COMPONENTS
 from core.multibody.table.table import Table
 
 _MOST_IN_TURN = 400
@@ -69,6 +70,17 @@ class Impact:
     changes: dict[int, list[Ball]]
     together: bool = False
     shared: set[int] = field(default_factory=set)
+
+    def components(self, i: int) -> dict[str, Ball]:
+        """Return the impulse of a measure by its names: along the gap, and of friction in the plane or along axes."""
+        one, (push, rub, beside) = self.unilateral[i], self.impulses[i]
+        found = {"normal": push}
+        if one.tangents is not None:
+            for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
+                found[f"friction.{axis}"] = rub * x + beside * y
+        elif one.slip is not None:
+            found["friction"] = rub
+        return found
 
 
 @dataclass(frozen=True)

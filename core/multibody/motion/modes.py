@@ -44,7 +44,7 @@ class Mode:
     Attributes
     ----------
     frequency : ball
-        Angular frequency (rad/s), zero where nothing oscillates.
+        Angular frequency (rad/s), a ball with zero where nothing oscillates.
     growth : ball
         Growth rate (1/s), negative where it decays.
     """
@@ -137,18 +137,17 @@ class Modes:
                     return ()
         found = []
         for root in roots:
-            real = ZERO if is_zero(root.real) else root.real
-            imaginary = ZERO if is_zero(root.imag) else root.imag
-            if imaginary < 0 or (imaginary == 0 and real == 0):
+            swings, grows = not is_zero(root.imag), not is_zero(root.real)
+            if (swings and root.imag < 0) or not (swings or grows):
                 continue
-            found.append(Mode(imaginary, real))
-        return tuple(sorted(found, key=lambda mode: (float(mode.frequency), float(mode.growth))))
+            found.append((float(root.imag) if swings else 0.0, float(root.real), Mode(root.imag, root.real)))
+        return tuple(mode for *_, mode in sorted(found, key=lambda entry: entry[:2]))
 
     @property
     def period(self) -> Ball | None:
         """The period, where a single undamped mode is all that moves."""
         modes = self.modes
-        if len(modes) == 1 and modes[0].growth == 0 and modes[0].frequency > 0 and self._bounded:
+        if len(modes) == 1 and is_zero(modes[0].growth) and modes[0].frequency > 0 and self._bounded:
             return 2 * arb.pi() / modes[0].frequency
         return None
 

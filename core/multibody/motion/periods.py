@@ -52,8 +52,8 @@ class Periodic:
         Period in the units of the arrays, as a pair.
     turned : ball or None
         Angle alpha by which a period turns the motion about the vertical.
-    winding : float
-        The same angle with its full turns.
+    winding, winding_error : float
+        The same angle with its full turns, and its error (rad).
     """
 
     table: Table
@@ -65,6 +65,7 @@ class Periodic:
     uncertainty: tuple[float, float]
     turned: Ball = None
     winding: float = 0.0
+    winding_error: float = 0.0
     name: str = "one period"
     why: str = "one degree of freedom in a potential: left to itself, the motion repeats"
     how: str = "measured against pairs"
@@ -72,8 +73,8 @@ class Periodic:
 
     @property
     def period(self) -> Ball | None:
-        """The period in seconds."""
-        return (arb(self.length[0]) + arb(self.length[1])) * arb(2) ** self.units.time
+        """The period in seconds, as wide as two runs differ in it."""
+        return (arb(self.length[0], self.uncertainty[0]) + arb(self.length[1])) * arb(2) ** self.units.time
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states: the time within the period, the step in which it lies, and its series in pairs."""

@@ -44,6 +44,11 @@ class Steady:
         """Angle of a period."""
         return math.copysign(2 * math.pi, float(self.rate))
 
+    @property
+    def winding_error(self) -> float:
+        """Error of that angle: the rounding of a whole turn."""
+        return math.ulp(2 * math.pi)
+
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the start, turned."""
         q, v = np.zeros((len(times), 3, 2)), np.zeros((len(times), 3, 2))
@@ -91,6 +96,11 @@ class Shifted:
     def winding(self) -> float:
         """Angle of precession in a period (rad)."""
         return self.motion.winding
+
+    @property
+    def winding_error(self) -> float:
+        """Error of that angle (rad)."""
+        return self.motion.winding_error
 
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states of the motion about its own vertical, moved back."""
@@ -157,12 +167,16 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
     late = abs((time[0] - other_time[0]) + (time[1] - other_time[1])) + 2.0**-100 * time[0]
     off = size * 2.0**-96 + max(distance(last.q, other_last.q, range(3)), distance(last.v, other_last.v, range(3)))
     turned = _angle((first.q, first.v), (last.q, last.v))
+    apart = abs(turned - _angle((other.q, other.v), (other_last.q, other_last.v)))
     motion = Periodic(table, units, run, time, False, np.zeros((3, 2)), (late, 4.0 * off), turned)
     motion.why = "the motion is symmetric about the vertical: its height repeats, and each period turns it further"
     winding = _unwrapped(motion, float(turned))
     if winding is None:
         return None
     motion.winding = winding
+    # As of the state, what the two runs differ by; and the rounding of the angle and of its full turns.
+    reach = math.hypot(*first.q[:2, 0], *first.v[:2, 0])
+    motion.winding_error = float(apart.upper()) + 4.0 * off / reach + 2.0 * math.ulp(winding)
     return Shifted(motion, centre) if shifted else motion
 
 

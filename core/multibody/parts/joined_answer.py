@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from core.multibody.answer import Energy, Equilibrium, SceneSolution
+from core.multibody.answer import Energy, EnergyErrors, Equilibrium, SceneSolution
 from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
 from core.multibody.parts.common_span import answers_in_common
@@ -62,7 +62,7 @@ def answered_by_parts(
         _together([solution.forces for solution in solutions]),
         _energy([solution.energy for solution in solutions]),
         trajectory,
-        period_of(solutions),
+        *period_of(solutions),
         _equilibria(scene, request, answered),
         tuple(events),
         ending[0].ended if ending else None,
@@ -96,4 +96,23 @@ def _energy(parts: Sequence[Energy | None]) -> Energy | None:
     kinetic, potential, total = (
         math.fsum(getattr(energy, name) for energy in own) for name in ("kinetic", "potential", "total")
     )
-    return Energy(kinetic, potential, total, all(energy.conserved for energy in own))
+    errors = [energy.errors for energy in own if energy.errors is not None]
+    return Energy(
+        kinetic,
+        potential,
+        total,
+        all(energy.conserved for energy in own),
+        EnergyErrors(
+            _error_of_sum(kinetic, [one.kinetic for one in errors]),
+            _error_of_sum(potential, [one.potential for one in errors]),
+            _error_of_sum(total, [one.total for one in errors]),
+        ),
+    )
+
+
+def _error_of_sum(total: float, errors: Sequence[float | None]) -> float | None:
+    """Return the error of a sum that is rounded once, None where that of a term is not known."""
+    known = [error for error in errors if error is not None]
+    if len(known) < len(errors):
+        return None
+    return math.nextafter(math.fsum([*known, 0.5 * math.ulp(total)]), math.inf) if any(known) or total else 0.0

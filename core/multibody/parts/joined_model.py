@@ -47,10 +47,10 @@ def joined_model(models: Sequence[SceneModel]) -> SceneModel:
     )
 
 
-def period_of(solutions: Sequence[SceneSolution]) -> float | None:
-    """Return the period of a scene of which one part moves, None where several do."""
+def period_of(solutions: Sequence[SceneSolution]) -> tuple[float | None, float | None]:
+    """Return the period of a scene of which one part moves, and its error; None where several do."""
     moving = [solution for solution in solutions if _moves(solution)]
-    return moving[0].period if len(moving) == 1 else None
+    return (moving[0].period, moving[0].period_error) if len(moving) == 1 else (None, None)
 
 
 def _moves(solution: SceneSolution) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import zip_longest
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from core.multibody.language.scene import Scene
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phased_system import PhasedSystem
 from core.multibody.phases.phases import motion_in_phases
+from core.multibody.phases.tracks import late
 from core.multibody.start import (
     accelerations_of,
     at_rest,
@@ -65,11 +67,15 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneSolution:
         trajectory,
         None,
         None,
+        None,
         tuple(motion.events),
         motion.ended,
         occurrences,
         extremes,
-        phases=tuple(_phase_in_answer(phase, motion) for phase in motion.phases),
+        phases=tuple(
+            _phase_in_answer(phase, following, motion)
+            for phase, following in zip_longest(motion.phases, motion.phases[1:])
+        ),
         problem=_problem(motion),
     )
 
@@ -133,7 +139,7 @@ def _conserved(motion: PhaseMotion) -> bool:
     )
 
 
-def _phase_in_answer(phase: Phase, motion: PhaseMotion) -> MotionPhase:
+def _phase_in_answer(phase: Phase, following: Phase | None, motion: PhaseMotion) -> MotionPhase:
     model = phase.models[0]
     name, why = name_of_parts([part for _, part in model.whole.parts])
     if phase.bounces is not None:
@@ -141,6 +147,11 @@ def _phase_in_answer(phase: Phase, motion: PhaseMotion) -> MotionPhase:
         why = "every bounce is the one before it on a smaller scale: their sums are geometric"
     elif not model.whole.parts:
         why = "the connections and contacts hold everything where it is"
+    end_error = None
+    if phase.end is not None and following is not None:
+        end_error = late(following.tracks)
+    elif phase.end is not None and motion.ended is not None:
+        end_error = motion.ended.error
     return MotionPhase(
         nearest(phase.start),
         None if phase.end is None else nearest(phase.end),
@@ -149,6 +160,7 @@ def _phase_in_answer(phase: Phase, motion: PhaseMotion) -> MotionPhase:
         sum(piece.freedom for piece in model.pieces),
         len(model.whole.reduced.table.names),
         {one.name: state.value for one, state in zip(motion.unilateral, phase.states, strict=True)},
+        {"start": late(phase.tracks), "end": end_error},
     )
 
 
@@ -164,4 +176,5 @@ def _problem(motion: PhaseMotion) -> SceneProblem | None:
         problem.contacts,
         tuple(problem.candidates),
         problem.decided_by,
+        motion.ended.error,
     )

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from flint import arb
 
-from core.balls import precision
+from core.balls import distance_bound, precision
 from core.errors import AccuracyUnreachable, InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import ZERO, evaluated, is_zero
 from core.multibody.contacts.complementarity import Decided, decided
@@ -36,8 +36,7 @@ from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import turns
 from core.multibody.table.connection_effects import Unilateral
 from core.multibody.table.description import Described, described
-from core.multibody.table.measures import COMPONENTS
-from core.systems.trajectory import MotionEvent
+from core.systems.trajectory import ImpactErrors, MotionEvent
 
 MOST_EVENTS = 500
 """Events that one question may have: what bounces elastically never ends."""
@@ -218,13 +217,8 @@ class _Run:
         """Add the events of an impact, each with the energy that its connection takes."""
         self.bounced = {hit[0]: self.bounced.get(hit[0], 0) + 1} if len(hit) == 1 else {}
         for i in sorted(outcome.impulses, key=lambda i: (i not in hit, i)):
-            one, (push, rub, beside) = outcome.unilateral[i], outcome.impulses[i]
-            impulses = {"normal": nearest(push)}
-            if one.tangents is not None:
-                for axis, x, y in zip(COMPONENTS, *one.tangents, strict=True):
-                    impulses[f"friction.{axis}"] = nearest(rub * x + beside * y)
-            elif one.slip is not None:
-                impulses["friction"] = nearest(rub)
+            one, balls = outcome.unilateral[i], outcome.components(i)
+            impulses = {name: nearest(ball) for name, ball in balls.items()}
             time, late = nearest(self.tracks.time), self.tracks.late()
             work = outcome.works[i]
             loss, known = nearest(ZERO - work), None if i in outcome.shared else work
@@ -235,7 +229,11 @@ class _Run:
                     remedy="choose units in which the numbers are moderate",
                 )
             self.motion.impacts.append((len(self.motion.phases), one.name, known))
-            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss))
+            errors = ImpactErrors(
+                {name: None if known is None else distance_bound(x, impulses[name]) for name, x in balls.items()},
+                None if known is None else distance_bound(-work, loss),
+            )
+            self.motion.events.append(MotionEvent(one.closes, one.name, time, late, impulses, loss, errors))
 
     def _decide(self) -> Problem | None:
         """Find the states of what touches, and what changes by them."""

@@ -38,6 +38,15 @@ class Track:
         return Track(arb(self.time.mid()), [arb(x.mid()) for x in self.q], [arb(x.mid()) for x in self.v])
 
 
+def late(each: Sequence[Track]) -> float:
+    """Return what the time of one track or two is wrong by."""
+    time = each[0].time
+    error = float(time.rad()) + 2.0**-53 * abs(float(time))
+    if len(each) > 1:
+        error += SAFETY_FACTOR * abs(float(time - each[1].time)) + FLOOR * abs(float(time))
+    return error
+
+
 class Tracks:
     """The present state on one track or two, and the sizes by which its errors are measured.
 
@@ -129,11 +138,7 @@ class Tracks:
 
     def late(self) -> float:
         """Return what the present time is wrong by."""
-        time = self.time
-        error = float(time.rad()) + 2.0**-53 * abs(float(time))
-        if not self.exact:
-            error += SAFETY_FACTOR * abs(float(time - self.each[1].time)) + FLOOR * abs(float(time))
-        return error
+        return late(self.each)
 
     def width(self) -> float:
         """Return the largest width of the balls of the first track, relative to the scales."""

@@ -21,7 +21,7 @@ from core.certified.decimals import decimal, floor_below, place_of
 from core.certified.exact_inputs import enclosed
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
-from core.multibody.answer import Energy, PartModel, SceneModel
+from core.multibody.answer import Energy, PartModel, SceneModel, SmallMotion
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.motion.attitudes import angular_velocity, dot, quaternion
@@ -31,7 +31,7 @@ from core.multibody.motion.motion import Motion, Rest
 from core.multibody.motion.uniform import Uniform
 from core.multibody.phases.phases import one_sided
 from core.multibody.proven.proven_series import ProvenSeries, ProvenStep, Vector
-from core.multibody.start import accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
+from core.multibody.start import NumberKind, accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
 from core.multibody.table.frames import Frame
 from core.multibody.trajectory.events import first_event
 from core.notices import Notice
@@ -127,14 +127,15 @@ class _Proof:
 
     def answer(self, times: Sequence[Fraction], outputs: Sequence[str]) -> ProvenAnswer:
         found = self.found
+        numbers = NumberKind(self._number, None)
         with precision(max(BITS, ctx.prec)):
             multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
             forces = forces_at_start(found.described.measures, multipliers)
             model = scene_model(found, noticed_of(found, forces, multipliers), multipliers.rank)
             model = _in_numerals(model, found, self._number)
-            accelerations = accelerations_of(found.described, found.whole.acceleration, self._number)
-            at_start = forces_of_start(found.described, forces, self._number)
-            energy = energy_of(found.described, self._number)
+            accelerations = accelerations_of(found.described, found.whole.acceleration, numbers)
+            at_start = forces_of_start(found.described, forces, numbers)
+            energy = energy_of(found.described, numbers)
         rows, columns, ended = None, None, None
         warnings: tuple[Notice, ...] = ()
         if times:
@@ -287,10 +288,10 @@ def _in_numerals(model: SceneModel, found: Modelled, number: Callable[[Ball], An
     """Return the model with the modes of linear parts as numerals, and without figures that are found in pairs."""
     apart = []
     for part, (_, motion) in zip(model.apart, found.whole.parts, strict=True):
-        modes: tuple[tuple[Any, Any], ...] = ()
+        modes: tuple[SmallMotion, ...] = ()
         period = None
         if isinstance(motion, Modes):
-            modes = tuple((number(mode.frequency), number(mode.growth)) for mode in motion.modes)
+            modes = tuple(SmallMotion(number(mode.frequency), number(mode.growth)) for mode in motion.modes)
             period = None if motion.period is None else number(motion.period)
         apart.append(PartModel(part.name, part.why, part.degrees_of_freedom, part.coordinates, period, None, modes))
     return SceneModel(**{**vars(model), "apart": tuple(apart)})

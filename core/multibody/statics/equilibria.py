@@ -12,7 +12,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import AccuracyUnreachable, NotApplicable
-from core.multibody.answer import Equilibrium
+from core.multibody.answer import Equilibrium, SmallMotion
 from core.multibody.equations.dynamics import accelerations
 from core.multibody.equations.packed import packed, state, two_to, units_of
 from core.multibody.reduction.passes import reduced
@@ -74,8 +74,8 @@ def _described(
     except np.linalg.LinAlgError as fault:
         raise _out_of_range("the masses differ by more than doubles can resolve") from fault
     rate = two_to(-time)
-    shown = tuple((float(w * rate), float(g * rate)) for w, g in modes)
-    if not np.isfinite(shown).all():
+    shown = tuple(SmallMotion(float(w * rate), float(g * rate)) for w, g in modes)
+    if not np.isfinite([mode[:2] for mode in shown]).all():
         raise _out_of_range("the search for equilibria leaves the range of doubles")
     residual = float(np.abs(left).max(initial=0.0) / terms) if terms else 0.0
     return Equilibrium(*resting.shown(q), stable, shown, residual)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -79,7 +79,7 @@ def answer_certified_scene(question: CertifiedSceneRequest, budget: Budget) -> A
     times = () if question.times is None else instants(question.times)
     found = proven_answer(question.scene(), digits, times, question.outputs)
     answer: Answer = {
-        "model": model_fields(found.model),
+        "model": _proven(model_fields(found.model)),
         "accuracy": accuracy(digits),
         "ended": found.ended,
         "warnings": found.warnings,
@@ -87,9 +87,9 @@ def answer_certified_scene(question: CertifiedSceneRequest, budget: Budget) -> A
     for name in ("accelerations", "forces"):
         figures = getattr(found, name)
         if figures is not None:
-            answer[name] = {key: fields_of(one) for key, one in figures.items()}
+            answer[name] = {key: _proven(fields_of(one)) for key, one in figures.items()}
     if found.energy is not None:
-        answer["energy"] = fields_of(found.energy)
+        answer["energy"] = _proven(fields_of(found.energy))
     if found.columns is not None and found.rows is not None:
         answer["trajectory"] = {
             "time": times_written([times[row] for row in found.rows], digits),
@@ -97,6 +97,13 @@ def answer_certified_scene(question: CertifiedSceneRequest, budget: Budget) -> A
             "columns": {name: fields_of(column) for name, column in found.columns.items()},
         }
     return answer
+
+
+def _proven(fields: Any) -> Any:
+    """Return fields without those of errors, at any depth: every digit is proven."""
+    if isinstance(fields, dict):
+        return {name: _proven(value) for name, value in fields.items() if name not in ("error", "errors")}
+    return [_proven(entry) for entry in fields] if isinstance(fields, list) else fields
 
 
 def _samples(question: CertifiedSceneRequest, budget: Budget) -> int:

@@ -127,7 +127,7 @@ def test_a_spring_beside_a_free_fall_has_its_mode() -> None:
     }
     answer = solve_scene(read(scene), [0.02])
     k, g, (part,) = mpmath.mpf(6000), mpmath.mpf("9.81"), answer.model.apart
-    assert part.modes == ((pytest.approx(math.sqrt(14000), rel=1e-15), 0.0),)
+    assert [mode[:2] for mode in part.modes] == [(pytest.approx(math.sqrt(14000), rel=1e-15), 0.0)]
     mean = 4 * g / (7 * k)
     first = mpmath.acos((-2 * g / k - mean) / (mpmath.mpf("0.1") - mean)) / mpmath.sqrt(7 * k / 3)
     slack = answer.events[0]
@@ -153,7 +153,7 @@ def test_a_hundred_masses_on_springs_swing_as_their_closed_form_says() -> None:
         ],
     }
     answer = solve_scene(read(scene), [7.0])
-    frequencies = [frequency for frequency, _ in answer.model.apart[0].modes]
+    frequencies = [mode.frequency for mode in answer.model.apart[0].modes]
     with mpmath.workdps(30):
         half = mpmath.pi / (2 * count + 1)
         assert frequencies == [
@@ -177,7 +177,7 @@ def test_a_hundred_masses_on_springs_swing_as_their_closed_form_says() -> None:
 def test_critical_damping_lists_its_double_root(stiffness: str) -> None:
     (part,) = solve_scene(read(oscillator(f"2*sqrt({stiffness})", stiffness)), [1.0]).model.apart
     root = -math.sqrt(float(Fraction(stiffness)))
-    assert np.array(part.modes) == pytest.approx(np.array([(0.0, root), (0.0, root)]), rel=1e-15)
+    assert np.array([mode[:2] for mode in part.modes]) == pytest.approx(np.array([(0.0, root), (0.0, root)]), rel=1e-15)
 
 
 def test_a_double_root_stands_beside_others() -> None:
@@ -194,4 +194,4 @@ def test_a_double_root_stands_beside_others() -> None:
     decay = slow / math.sqrt(fast)
     swings = (math.sqrt(slow - decay**2), -decay)
     expected = np.array([(0.0, -math.sqrt(fast)), (0.0, -math.sqrt(fast)), swings])
-    assert np.array(part.modes) == pytest.approx(expected, rel=1e-14)
+    assert np.array([mode[:2] for mode in part.modes]) == pytest.approx(expected, rel=1e-14)

@@ -192,7 +192,7 @@ def test_a_chain_in_balance_rests_and_its_equilibrium_is_unstable():
     assert force(answer, "c.normal") == pytest.approx(3 * 9.81, rel=1e-15)
     (equilibrium,) = answer.equilibria
     assert equilibrium.stable is False
-    assert equilibrium.modes[0] == (0.0, pytest.approx(np.sqrt(9.81 / 3), rel=1e-12))
+    assert equilibrium.modes[0][:2] == (0.0, pytest.approx(np.sqrt(9.81 / 3), rel=1e-12))
 
 
 def test_equilibria_in_which_the_chain_would_have_lifted_off_or_run_out_are_none():
@@ -205,7 +205,8 @@ def test_a_spring_at_an_end_makes_the_chain_swing():
     scene["connections"].append(spring)
     answer = solve_scene(read(scene), [0.5])
     assert answer.model.name == "modes"
-    assert answer.model.apart[0].modes == ((pytest.approx(np.sqrt((40 - 9.81) / 4), rel=1e-14), 0.0),)
+    (mode,) = answer.model.apart[0].modes
+    assert mode[:2] == (pytest.approx(np.sqrt((40 - 9.81) / 4), rel=1e-14), 0.0)
 
 
 def test_a_rod_on_a_chain_swings_while_it_slides():
