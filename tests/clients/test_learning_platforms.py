@@ -271,10 +271,67 @@ def coderunner(tmp_path: Path, bundle: Path, program: str) -> Any:
     shutil.copy(PLATFORMS / "polhode_results.py", tmp_path)
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=100,
-        env=without_service() | {"PYTHONPATH": str(tmp_path)},
+        env=without_service() | {"PYTHONPATH": str(tmp_path), "TMPDIR": str(tmp_path)},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+    assert not list(tmp_path.glob("*/bundle")), "the answer keys are left for the next program"
     return json.loads(done.stdout)
+
+
+DETACHED = """
+import os, time
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        open("detached", "w").write(str(os.getpid()))
+        {attack}
+    os._exit(0)
+os.wait()
+while not os.path.exists("detached"):
+    time.sleep(0.01)
+answers = ["1 s", "2 rad/s"]
+"""
+"""A program that leaves a process behind, in a session of its own."""
+
+REWRITES = """
+        import glob, json, tempfile
+        until = time.time() + 20
+        while time.time() < until:
+            for key in glob.glob(f"{tempfile.gettempdir()}/*/bundle/keys/*.json"):
+                figures = {tuple(f["path"]): f["reference"]["value"] for f in json.load(open(key))["figures"]}
+                right = [f"{figures['period',]!r} s", f"{figures['body_rate',]!r} rad/s"]
+                open("answers.json", "w").write(json.dumps(right))
+"""
+
+
+@pytest.mark.parametrize("attack", [REWRITES, "time.sleep(60)", "import signal; signal.pause()"])
+def test_what_a_program_leaves_behind_ends_before_the_keys_are_unpacked(
+    tmp_path: Path, bundle: Path, attack: str
+) -> None:
+    found = coderunner(tmp_path, bundle, DETACHED.replace("{attack}", attack))
+    assert found["fraction"] == 0.0
+    process = int((tmp_path / "detached").read_text())
+    assert not Path(f"/proc/{process}").exists()
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "os.mkfifo('answers.json')",
+        "open('right', 'w').write('[6.2806, 1]'); os.symlink('right', 'answers.json')",
+        "os.mkdir('answers.json')",
+    ],
+)
+def test_answers_are_read_from_a_file_alone(tmp_path: Path, bundle: Path, made: str) -> None:
+    assert coderunner(tmp_path, bundle, f"import os\n{made}\nos._exit(0)")["fraction"] == 0.0
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read the memory of every process")
+def test_a_program_cannot_read_the_keys_in_memory(tmp_path: Path, bundle: Path) -> None:
+    reading = "import os\nopen(f'/proc/{os.getppid()}/mem', 'rb')\nanswers = [6.2806, 1]"
+    found = coderunner(tmp_path, bundle, reading)
+    assert found["fraction"] == 0.0
+    assert "PermissionError" in found["prologuehtml"]
 
 
 @pytest.mark.parametrize(
