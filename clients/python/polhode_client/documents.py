@@ -600,6 +600,7 @@ class PrecessionAnswer(TypedDict):
     precession_per_period: float | None
     mean_precession_rate: float | None
     absent: dict[str, str]
+    errors: dict[str, float | Floats | None]
     measured: NotRequired[MeasuredPeriod | None]
 
 

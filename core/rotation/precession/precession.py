@@ -39,22 +39,35 @@ from core.rotation.closed_form.circulation import (
     PERIODIC,
     SEPARATRIX,
     STEADY,
-    UNDECIDED,
     UNREACHABLE,
-    exact_difference,
     too_near_the_separatrix,
 )
 from core.rotation.closed_form.principal_frame import Resolved
 from core.rotation.equal_moments import NEARLY_EQUAL, equal_within_rounding
 from core.rotation.free_rotation import FreeRotation
 from core.rotation.precession import missing_reasons
-from core.rotation.precession.figures import OUT_OF_RANGE, UNRESOLVED, precession_figures
+from core.rotation.precession.figure_errors import axis_error, figure_errors, found_figures
+from core.rotation.precession.figures import OUT_OF_RANGE, UNRESOLVED
 from core.rotation.precession.middle_axis import middle_axis_tilt
 from core.rotation.stability.classification import unstable_axis, unstable_spin
 from core.rotation.torque_free import inherited_notices
 
 Regime = Literal["rest", "steady", "periodic", "separatrix"]
 Absent = Mapping[str, str]
+Errors = Mapping[str, float | tuple[float, float] | None]
+
+FIGURES = (
+    "body_rate",
+    "space_rate",
+    "period",
+    "flip_interval",
+    "axis_to_angular_momentum",
+    "axis_to_angular_velocity",
+    "angular_momentum_to_angular_velocity",
+    "precession_per_period",
+    "mean_precession_rate",
+)
+NO_ERRORS: Errors = dict.fromkeys(("axis", "middle_axis_tilt", *FIGURES))
 
 
 class Precession(NamedTuple):
@@ -95,6 +108,9 @@ class Precession(NamedTuple):
         Angle by which the axis turns about the angular momentum in a period, not reduced by whole turns (rad).
     mean_precession_rate : float or None
         That angle over the period; on the separatrix the limit that the rate tends to (rad/s).
+    errors : mapping of str to float, pair of floats, or None
+        Bounds of the errors of axis (the length of the difference), rates, times and angles, each under its name and in
+        its unit; None where the field is.
     absent : mapping of str to str
         Why a field is None.
     warnings : tuple of Notice
@@ -115,21 +131,11 @@ class Precession(NamedTuple):
     order_of_directions: str | None = None
     precession_per_period: float | None = None
     mean_precession_rate: float | None = None
+    errors: Errors = NO_ERRORS
     absent: Absent = MappingProxyType({})
     warnings: tuple[Notice, ...] = ()
 
 
-FIGURES = (
-    "body_rate",
-    "space_rate",
-    "period",
-    "flip_interval",
-    "axis_to_angular_momentum",
-    "axis_to_angular_velocity",
-    "angular_momentum_to_angular_velocity",
-    "precession_per_period",
-    "mean_precession_rate",
-)
 OF_SYMMETRIC_BODIES = (
     "body_rate",
     "space_rate",
@@ -171,10 +177,7 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
         return Precession(symmetry, "steady", absent=_SPHERE.copy(), warnings=warnings)
     k = _SYMMETRY_AXIS[symmetry] if symmetry != "spherical" else _AXIS_NEAR_A_SPHERE[inertia.apart]
     resolved = Resolved.of(inertia, np.array((x, y, z)))
-    parts = inertia.moments, inertia.moments_tail, inertia.axes, *resolved.numbers
-    regime, beyond, apart, axis, figures = precession_figures(k, *parts, False, 0.0, 0.0, 0)
-    if regime == UNDECIDED:
-        regime, beyond, apart, axis, figures = precession_figures(k, *parts, True, *exact_difference(resolved))
+    regime, beyond, apart, axis, figures = found_figures(k, inertia, resolved)
     if regime == UNREACHABLE:
         raise too_near_the_separatrix()
     if symmetry == "spherical" or beyond:
@@ -208,12 +211,18 @@ def precession(body: MassProperties, angular_velocity: Floats | tuple[float, flo
     body_rate, space_rate, period, flip, to_momentum, to_velocity, between, turned, mean = [
         figure if isfinite(figure) else None for figure in figures
     ]
+    *known, least, largest = figure_errors(k, inertia, resolved, figures, tilt)
+    errors: dict[str, float | tuple[float, float] | None] = {
+        "axis": axis_error(inertia, axis),
+        "middle_axis_tilt": (least, largest) if tilt is not None and isfinite(tilt.least) else None,
+        **{name: x if isfinite(figure) else None for name, figure, x in zip(FIGURES, figures, known, strict=True)},
+    }
     pointing: Floats = np.array(axis)
     pointing.setflags(write=False)
     return Precession(
         symmetry, report.regime, pointing, body_rate, space_rate, period, flip,
         tilt.range if tilt is not None and isfinite(tilt.least) else None, tilt is not None and tilt.tumbles,
-        to_momentum, to_velocity, between, report.order, turned, mean, absent, warnings,
+        to_momentum, to_velocity, between, report.order, turned, mean, errors, absent, warnings,
     )  # fmt: skip
 
 

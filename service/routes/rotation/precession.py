@@ -75,6 +75,10 @@ class PrecessionFigures(Envelope, Generic[N]):
 class PrecessionAnswer(PrecessionFigures[float]):
     """Rates and angles; null where the motion has no such thing."""
 
+    errors: dict[str, Annotated[float | list[float] | None, Unit("as in the field of that name")]] = Field(
+        description="Bounds of the errors of axis, rates, times and angles, by the names of the fields: of rounding, "
+        "also that of derived moments. Of the axis the length of the difference; null where the figure is."
+    )
     measured: MeasuredPeriod | None = Field(default=None, description="The period by an integrator, if requested.")
 
 
