@@ -61,6 +61,7 @@ MULTIBODY_LAYERS = (
     {"equations"},
     {"reduction"},
     {"contacts", "motion"},
+    {"search"},
     {"trajectory", "statics", "start"},
     {"phases"},
     {"parts"},
@@ -253,16 +254,17 @@ TESTED_IN |= {
         "contacts/test_certificates": "contacts/admissible_forces",
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
-            "phases/crossings phases/phase phases/phase_ends phases/phases "
-            "phases/slow_bounces phases/taylor_crossings phases/tracks phases/watches start "
+            "phases/crossings phases/phase phases/phases "
+            "phases/slow_bounces phases/tracks phases/watches start "
             "table/contact_places"
         ),
         "table/test_contact_geometry_in_space": (
-            "contacts/shares_in_space contacts/slip_directions phases/turning_slip"
+            "contacts/shares_in_space contacts/slip_directions phases/turning_pieces phases/turning_slip"
         ),
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",
         "motion/test_free_body": "motion/turning_body",
         "trajectory/test_nearest": "motion/attitudes",
+        "search/test_first_zero": "search/curves search/location search/pieces search/taylor",
         "phases/test_sums_in_phases": "phases/stretches",
         "parts/test_joined_answer": (
             "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"

@@ -81,7 +81,7 @@ def _between(p: Sequence[Ball], low: Ball, high: Ball) -> Ball:
     """Return the only root between two times: bisected, in doubles where those see it, then by Newton's method."""
     about = _in_doubles(p, float(low), float(high))
     if about is not None:
-        root = _sharpened(p, arb(about))
+        root = sharpened(p, arb(about))
         if root > low and root < high and float(root.rad()) <= _SHARP * float(root):
             return root
     a, b, rising = arb(low.mid()), arb(high.mid()), value(p, high) > 0
@@ -92,7 +92,7 @@ def _between(p: Sequence[Ball], low: Ball, high: Ball) -> Ball:
             b = middle
         else:
             a = middle
-    return _sharpened(p, arb(((a + b) / 2).mid()))
+    return sharpened(p, arb(((a + b) / 2).mid()))
 
 
 def _in_doubles(p: Sequence[Ball], low: float, high: float) -> float | None:
@@ -117,7 +117,7 @@ def _in_doubles(p: Sequence[Ball], low: float, high: float) -> float | None:
     return 0.5 * (low + high)
 
 
-def _sharpened(p: Sequence[Ball], root: Ball) -> Ball:
+def sharpened(p: Sequence[Ball], root: Ball) -> Ball:
     """Return a root as a ball, by Newton's method from a start that is near enough."""
     derivative = slope(p)
     for _ in range(_ROUNDS):

@@ -12,7 +12,7 @@ from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import Ball, Poly
+from core.multibody.algebra.polynomials import Ball, LinearForm, Poly
 from core.multibody.algebra.rank import independent
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
 from core.multibody.motion.motion import EvaluatedInDoubles, Motion
@@ -78,7 +78,8 @@ class Whole:
         return slopes, offsets
 
     @cached_property
-    def _arrays(self) -> tuple[Packed, Units, list[int]]:
+    def arrays(self) -> tuple[Packed, Units, list[int]]:
+        """The table as described for compiled code, its units, and the rows that it holds."""
         table, chosen = self.measures.table, self.independent_rows
         units = units_of(table, self.acceleration)
         return packed(table, chosen, units), units, chosen
@@ -201,7 +202,7 @@ class Whole:
         AccuracyUnreachable
             At a place where the connections lose their rank.
         """
-        _, units, chosen = self._arrays
+        _, units, chosen = self.arrays
         found = self._solved(q, v)[1]
         total = np.zeros((len(q), len(self.measures.table.rows)))
         for k, r in enumerate(chosen):
@@ -210,7 +211,7 @@ class Whole:
 
     def largest_multipliers(self, multipliers: Floats) -> Floats:
         """Return the largest of multipliers of shape (t, rows), in the units of the kernels, as one of each row."""
-        units = self._arrays[1]
+        units = self.arrays[1]
         powers = np.array([units.multiplier(row) for row in range(multipliers.shape[1])], dtype=np.int64)
         largest = np.max(np.ldexp(np.max(np.abs(multipliers), axis=0, initial=0.0), -powers), initial=0.0)
         found: Floats = np.ldexp(largest, powers)
@@ -218,13 +219,13 @@ class Whole:
 
     def accelerations(self, q: Floats, v: Floats) -> Floats:
         """Return the acceleration of every coordinate at states, shape (t, n); it raises as `multipliers` does."""
-        units = self._arrays[1]
+        units = self.arrays[1]
         up = np.array([two_to(e - 2 * units.time) for e in units.lengths])
         found: Floats = self._solved(q, v)[0][..., 0] * up
         return found
 
     def _solved(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:
-        arrays, units, chosen = self._arrays
+        arrays, units, chosen = self.arrays
         down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
         acceleration, found = np.zeros_like(q), np.zeros((len(q), len(chosen), 2))
         done = multipliers_pairs(arrays, q * down, v * (down * two_to(units.time)), acceleration, found)
@@ -256,6 +257,16 @@ def values(poly: Poly, q: Floats) -> tuple[Floats, Floats]:
         for i in key:
             term = term * q[:, i, 0]
         total, size = total + term, size + np.abs(term)
+    return total, size
+
+
+def rates_along(line: LinearForm, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+    """Return a linear form in the rates at states, and how large its terms are."""
+    total, size = np.zeros(len(q)), np.zeros(len(q))
+    for j, poly in line.items():
+        factor, factor_size = values(poly, q)
+        total = total + factor * v[:, j, 0]
+        size = size + factor_size * np.abs(v[:, j, 0])
     return total, size
 
 

@@ -3,28 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
+
+import math
 
 import numpy as np
+
+from flint import arb
 
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import Ball
 from core.multibody.contacts.contact_states import State, phase_table
 from core.multibody.contacts.projection import project
-from core.multibody.equations.expansion import expansion
+from core.multibody.equations.packed import two_to
+from core.multibody.equations.polynomial_roots import sharpened
+from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.periods import Periodic
+from core.multibody.motion.vertical_symmetry import Shifted
 from core.multibody.motion.whole import Whole
-from core.multibody.phases.crossings import Crossing, first_in_closed_form, uniform_motion
-from core.multibody.phases.grazing import Graze, grazed
+from core.multibody.phases.crossings import Crossing, first_in_closed_form, state_of, uniform_motion
 from core.multibody.phases.phase import Phase
-from core.multibody.phases.sampled_crossings import KNOWN, Sampled
-from core.multibody.phases.taylor_crossings import located
+from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.phases.watches import Watch, watches
+from core.multibody.search.first_zero import FirstZero, Found
+from core.multibody.search.location import NotLocated, located
+from core.multibody.search.pieces import Expanded, ExpandedWhole
 from core.multibody.table.description import Described
-from core.multibody.table.table import Row, Table
+from core.multibody.table.table import Row
 
-_BEYOND = 1.001
-"""How far beyond the end of a phase, as a share of it, a gap is looked at that may only just have closed."""
+_PAST = 1.0 + 2.0**-20
+"""How far beyond a period is searched, so that what touches zero at its start and so at its end is seen to do so."""
+
+
+class SingularPlace(Exception):
+    """The connections lose their hold at a time of the phase."""
+
+    def __init__(self, time: float) -> None:
+        super().__init__(time)
+        self.time = time
+
+
+@dataclass(frozen=True)
+class Graze:
+    """A gap that turns back at zero, as far as it is known.
+
+    Attributes
+    ----------
+    time : ball
+        Since the start of the phase: as wide as the gap stays below what is known of it.
+    watch : Watch
+    """
+
+    time: Ball
+    watch: Watch
 
 
 class Undecided(Exception):
@@ -51,43 +83,22 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
         If it is not known whether a gap closes before that.
     """
     watched = watches(phase.unilateral, phase.states, phase.tables[0])
-    found = _crossings(base, phase, watched, left, noticed)
-    ends = float(left) if not found else min(float(left), _BEYOND * float(found[0].time))
-    graze = grazed(phase, watched, ends)
-    if graze is None or (found and graze.watch != found[0].watch and not graze.time < found[0].time):
-        return found
-    if not graze.closes:
-        raise Undecided(graze)
-    return found if found and found[0].time < graze.time else _located(phase, graze.watch, float(graze.time))
-
-
-def _crossings(
-    base: Described, phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]
-) -> list[Crossing]:
-    lengths = any(limit.length is not None for limit in base.measures.limits)
-    if phase.uniform and not lengths:
+    if phase.uniform and len(phase.tracks) == 1:
         return _in_closed_form(phase, watched, left, noticed)
     if phase.turning:
         return _while_turning(base, phase, watched, float(left))
-    return _sampled(phase, watched, float(left))
+    return _searched(phase, watched, float(left))
 
 
 def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]) -> list[Crossing]:
-    motions = [uniform_motion(table.table, model) for table, model in zip(phase.tables, phase.models, strict=True)]
-    first, grazes = first_in_closed_form(motions[0], watched, left)
+    """Return the end of a phase whose state is exact and whose accelerations are constant."""
+    first, grazes = first_in_closed_form(uniform_motion(phase.tables[0].table, phase.models[0]), watched, left)
     noticed.extend(
         f"{w.one.name} touches at rest at {float(phase.start + t):.6g} s, and nothing comes of it"
         for w, t in grazes
         if w.what == "gap"
     )
-    if first is None:
-        return []
-    found = [first]
-    for motion in motions[1:]:
-        # The other track may come there later than the first, even after the time that is left; or only just not.
-        other, _ = first_in_closed_form(motion, [w for w in watched if w == first.watch], 2 * left)
-        found.append(first if other is None else other)
-    return found
+    return [] if first is None else [first]
 
 
 def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
@@ -101,7 +112,7 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
         runs.append(motion.run(kind, left))
     ended = [run.ended for run in runs]
     reach = left if ended[0] is None else min(left, float(runs[0].starts[-1]))
-    found = _sampled(phase, others, reach)
+    found = _searched(phase, others, reach)
     if found or ended[0] is None or runs[0].starts[-1] > left:
         return found
     number = next(i for i, one in enumerate(phase.unilateral) if one.name == (ended[0] or Row("", None, {})).name)
@@ -116,53 +127,94 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
     return crossings
 
 
-def _sampled(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
-    tables, wholes = [one.table for one in phase.tables], [model.whole for model in phase.models]
-    hit = Sampled(tables[0], wholes[0], watched, tables[-1]).first(left)
-    if hit is None:
+def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
+    """Return the first crossing of a phase on both of its tracks, none where nothing ends it."""
+    motions, period = _motions(phase), _repeats(phase.models[0].whole)
+    search = FirstZero(motions, [watch.along for watch in watched], [watch.what == "gap" for watch in watched])
+    last = left if period is None else min(left, period)
+    reach, singular = min(last, _first_reach(phase)), None
+    while True:
+        singular = _singular(phase, reach)
+        one = search.until(reach if singular is None else singular)
+        if one is not None or singular is not None or reach >= last:
+            break
+        reach = min(last, 2.0 * reach)
+    if one is None:
+        if singular is not None:
+            raise SingularPlace(singular)
         return []
-    time, watch = hit
-    first = _before(tables[0], wholes[0], watched, located(tables[0], wholes[0], watch, time, "fine"))
-    watch = first.watch
-    if not first.time > 0 or not first.time.is_finite():
+    watch = watched[one.index]
+    if one.width > 0.0:
+        raise Undecided(Graze(arb(one.time, one.width), watch))
+    try:
+        crossings = _located(phase, motions, watch, one, left)
+    except NotLocated:
         since = float(phase.start)
         raise AccuracyUnreachable(
             None,
             1.0,
-            f'the event of "{watch.one.name}" {time:.6g} s after {since:.17g} s cannot be located',
+            f'the event of "{watch.one.name}" {one.time:.6g} s after {since:.17g} s cannot be located',
             path=("times",),
             remedy=f"ask for earlier times than {since:.6g} s only",
-        )
-    if first.time > left:
-        return []
-    return [first, located(tables[-1], wholes[-1], watch, float(first.time), "check")]
+        ) from None
+    return [] if crossings[0].time > left else crossings
 
 
-def _before(table: Table, whole: Whole, watched: Sequence[Watch], found: Crossing) -> Crossing:
-    """Return a crossing, or that of something else that is negative there already.
-
-    About when something changes its sign is known less well than events may follow one another.
-    """
-    while found.time > 0 and found.time.is_finite():
-        others = [watch for watch in watched if watch is not found.watch]
-        if not others:
-            break
-        curves, noise = (x[:, 0] for x in Sampled(table, whole, others).curves(np.array([float(found.time)])))
-        near = [k for k in range(len(others)) if curves[k] < noise[k]]
-        if not near:
-            break
-        motion = expansion(replace(table, q=found.q, v=found.v), 2)
-        lost = [others[k] for k in near if others[k].series(motion)[0] < -float(noise[k]) * KNOWN]
-        crossings = [located(table, whole, watch, float(found.time), "fine") for watch in lost]
-        crossings = [one for one in crossings if one.time > 0 and one.time < found.time]
-        if not crossings:
-            break
-        found = min(crossings, key=lambda one: float(one.time))
-    return found
+def _located(
+    phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Found, left: float
+) -> list[Crossing]:
+    """Return a crossing on both tracks, or by both runs."""
+    if not phase.uniform:
+        states = [located(motion, watch.along, found.time, found.rest, left) for motion in motions]
+        crossings = [Crossing(one.time, watch, one.q, one.v) for one in states]
+        return crossings if len(crossings) > 1 else crossings * 2
+    # Bounces in turn grow shorter than pairs resolve: where accelerations are constant, balls know the state.
+    crossings = []
+    for table, model in zip(phase.tables, phase.models, strict=True):
+        motion = uniform_motion(table.table, model)
+        time = sharpened(watch.series(motion), arb(found.time) + arb(found.rest))
+        if not time.is_finite():
+            raise NotLocated
+        crossings.append(Crossing(time, watch, *state_of(motion, time)))
+    return crossings
 
 
-def _located(phase: Phase, watch: Watch, time: float) -> list[Crossing]:
-    """Return the crossing next to a time, by both runs."""
-    first = located(phase.tables[0].table, phase.models[0].whole, watch, time, "fine")
-    table, whole = phase.tables[-1].table, phase.models[-1].whole
-    return [first, located(table, whole, watch, float(first.time), "check")]
+def _motions(phase: Phase) -> list[Expanded]:
+    """Return the motion on both tracks, or by both of its runs; only one where it is known in closed form."""
+    first, last = phase.models[0].whole, phase.models[-1].whole
+    if phase.turning:
+        return [ExpandedInBalls(first, "fine"), ExpandedInBalls(last, "check")]
+    if first is last and all(motion.how == "closed form" for _, motion in first.parts):
+        return [ExpandedWhole(first)]
+    return [ExpandedWhole(first, "fine"), ExpandedWhole(last, "check")]
+
+
+def _first_reach(phase: Phase) -> float:
+    """Return how far a search goes at first: series that are followed beyond an event are in vain."""
+    scales = [motion.units.time for _, motion in phase.models[0].whole.parts if isinstance(motion, Numerical)]
+    return 2.0 * two_to(max(scales)) if scales else math.inf
+
+
+def _singular(phase: Phase, end: float) -> float | None:
+    """Return the time of a singular place before a time of a phase, None without one."""
+    found = []
+    runs = {(id(model.whole), kind): model.whole for model, kind in zip([phase.models[0], phase.models[-1]], ("fine", "check"), strict=True)}
+    for (_, kind), whole in runs.items():
+        for _, motion in whole.parts:
+            if not isinstance(motion, Numerical):
+                continue
+            run = motion.run(kind, end * two_to(-motion.units.time))
+            if run.singular and kind == "fine":
+                found.append(run.end * two_to(motion.units.time))
+    return min(found, default=None)
+
+
+def _repeats(whole: Whole) -> float | None:
+    """Return the time after which nothing new happens in a motion, None where it does not repeat itself."""
+    moving = [motion for _, motion in whole.parts if motion.name != "rest"]
+    period = moving[0].period if len(moving) == 1 else None
+    inner = moving[0].motion if len(moving) == 1 and isinstance(moving[0], Shifted) else moving[0] if moving else None
+    # It may turn about the vertical with each period, or something may only wind on.
+    if period is None or (isinstance(inner, Periodic) and (inner.winding != 0.0 or bool(np.any(inner.shift)))):
+        return None
+    return _PAST * float(period)

@@ -28,9 +28,8 @@ from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.motion.numerical import SINGULAR_TIME_ERROR
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
-from core.multibody.phases.phase_ends import Undecided, crossings_of
+from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
-from core.multibody.phases.sampled_crossings import SingularPlace
 from core.multibody.phases.slow_bounces import SLOW, rate_share, slowness
 from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import turns

@@ -19,8 +19,8 @@ from core.errors import NotApplicable
 from core.multibody.contacts.contact_states import force_names
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equations.packed import pair
+from core.multibody.motion.whole import rates_along
 from core.multibody.phases.phase import Phase, PhaseMotion
-from core.multibody.phases.sampled_crossings import rates_along
 from core.multibody.phases.stretches import Stretch
 from core.multibody.start import energy_of
 from core.multibody.table.connection_effects import Unilateral, WorkTerm

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from core.multibody.algebra.polynomials import ONE, constant
+from core.multibody.algebra.polynomials import ONE
 from core.multibody.contacts.admissible_forces import AdmissibleForce, admissible
 from core.multibody.contacts.contact_states import PhaseTable, State
 from core.multibody.equations.expansion import Expansion, Series
-from core.multibody.table.connection_effects import Force, Unilateral
+from core.multibody.search.curves import Curve
+from core.multibody.search.pieces import Pieces
+from core.multibody.table.connection_effects import Unilateral
 
 
 @dataclass(frozen=True)
@@ -32,17 +34,6 @@ class Watch:
     sense: int = 1
     admissible: AdmissibleForce | None = None
 
-    @property
-    def force(self) -> Force | None:
-        """What has to be positive, for "push" and "grip"."""
-        return None if self.admissible is None else self.admissible.force
-
-    @property
-    def rubs(self) -> tuple[Force, ...]:
-        """Two components of friction in space, whose root of squares may not be above the force."""
-        rows = () if self.admissible is None else self.admissible.rubs
-        return tuple(Force("", "N", [(row, constant(ONE))]) for row in rows)
-
     def series(self, motion: Expansion) -> Series:
         """Return it along a motion."""
         if self.what == "gap":
@@ -51,6 +42,23 @@ class Watch:
             return [self.sense * x for x in motion.of_rates(self.one.slip or {})]
         assert self.admissible is not None
         return self.admissible.series(motion)
+
+    def along(self, pieces: Pieces) -> Curve:
+        """Return it along a motion in pieces."""
+        if self.what == "gap":
+            return pieces.of(self.one.gap)
+        if self.what == "slip":
+            return pieces.nothing().plus(self.sense * ONE, pieces.of_rates(self.one.slip or {}))
+        assert self.admissible is not None
+        total = pieces.nothing()
+        for row, factor in self.admissible.terms.items():
+            total = total.plus(factor, pieces.multiplier(row))
+        if not self.admissible.rubs:
+            return total
+        square = total.times(total)
+        for row in self.admissible.rubs:
+            square = square.plus(-ONE, pieces.multiplier(row).times(pieces.multiplier(row)))
+        return square
 
 
 def watches(unilateral: Sequence[Unilateral], states: Sequence[State], phase: PhaseTable) -> list[Watch]:

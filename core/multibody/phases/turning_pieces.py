@@ -1,0 +1,58 @@
+"""Pieces of a motion while friction turns with the slip: its series are formed in balls."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
+from core.multibody.equations.expansion import expansion
+from core.multibody.equations.packed import GROUPS, pair, two_to
+from core.multibody.motion.series import step_size
+from core.multibody.motion.whole import Whole
+from core.multibody.search.pieces import COEFFICIENTS, Pieces
+from core.multibody.search.taylor import ORDER, TOLERANCE
+
+
+@dataclass(frozen=True)
+class ExpandedInBalls:
+    """The motion of a whole scene, from its states in pairs.
+
+    Attributes
+    ----------
+    whole : Whole
+    kind : {"fine", "check"}
+    """
+
+    whole: Whole
+    kind: str
+
+    def __call__(self, times: Floats, reach: Floats) -> Pieces:
+        """Return the pieces."""
+        table = self.whole.measures.table
+        group = np.array([GROUPS[unit] for unit in table.units], dtype=np.int64)
+        n, rows = len(table.names), len(table.rows)
+        lengths = np.zeros(len(times))
+        places, multipliers = np.zeros((len(times), n, ORDER + 1, 2)), np.zeros((len(times), rows, COEFFICIENTS, 2))
+        sizes, others = np.zeros(places.shape[:-1]), np.zeros(multipliers.shape[:-1])
+        q, v = self.whole.in_pairs(times, self.kind)
+        for s in range(len(times)):
+            state = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
+            now = replace(table, **dict(zip("qv", state, strict=True)))
+            motion = expansion(now, ORDER)
+            step = step_size(np.array([[float(x) for x in series] for series in motion.places]), group, TOLERANCE)
+            exponent = math.ceil(math.log2(reach[s]))
+            if step < reach[s]:
+                exponent = math.floor(math.log2(step))
+            lengths[s] = two_to(exponent)
+            for i, series in enumerate(motion.places):
+                places[s, i] = [pair(x, k * exponent) for k, x in enumerate(series)]
+            for i, series in enumerate(motion.multipliers):
+                multipliers[s, i] = [pair(x, k * exponent) for k, x in enumerate(series)]
+            for i in range(n):
+                sizes[s, i] = np.max(np.abs(places[s, group == group[i], :, 0]), axis=0)
+            others[s] = np.max(np.abs(multipliers[s, :, :, 0]), axis=0, initial=0.0)
+        return Pieces(lengths, places, sizes, multipliers, others)

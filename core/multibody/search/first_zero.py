@@ -1,0 +1,344 @@
+"""The first time at which one of several quantities falls below zero, or comes so near that this is not known.
+
+The motion is followed by pieces, and every quantity is a polynomial on each with a band of error: the difference of two
+computations of the motion, rounding, and the powers left out. Where the latter leave a sign open the motion is expanded
+anew close by.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.arrays import Floats, Integers
+from core.errors import AccuracyUnreachable, BudgetExceeded
+from core.multibody.search.bernstein import MOST_SEGMENTS, Sign, decided_each, zero_between
+from core.multibody.search.curves import Curve
+from core.multibody.search.pieces import Expanded, Pieces
+
+Quantity = Callable[[Pieces], Curve]
+"""What is watched, along a motion."""
+
+SAFETY_FACTOR = 16.0
+"""The difference of two computations, times this, is what a state is taken to be wrong by."""
+FLOOR = 2.0**-96
+"""Share of its terms that a quantity is wrong by at least: a thousand roundings of pairs."""
+MOST_PIECES = 60_000
+"""Pieces that one search may take."""
+_AT_ONCE = 256
+"""Pieces that are expanded at once at most: twice as many each time, as what follows an event is expanded in vain."""
+_CLOSER = 2.0**-4
+"""Share of a piece in which it is expanded anew: what is left out then is 2^-84 of what it was."""
+_BELOW = (int(Sign.FALLING), int(Sign.NEGATIVE))
+_NEGATIVE, _UNDECIDED, _POSITIVE = int(Sign.NEGATIVE), int(Sign.UNDECIDED), int(Sign.POSITIVE)
+_FALLING, _RISING, _OPEN = int(Sign.FALLING), int(Sign.RISING), int(Sign.OPEN)
+_LEFT_OUT = 2.0
+"""Sum of what is left out, as a multiple of the last coefficients: they fall by two or more."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Where a quantity falls below zero.
+
+    Attributes
+    ----------
+    index : int
+        Of the quantity.
+    time, rest : float
+        A pair, to about 2^-50 of a piece.
+    width : float
+        Half the length of the interval in which it is not known on which side of zero it is; zero where it is certain
+        to fall below.
+    """
+
+    index: int
+    time: float
+    rest: float
+    width: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Signs:
+    """What is known of one quantity on some pieces: its curve, and the segments of each piece."""
+
+    curves: Floats
+    counts: Integers
+    ends: Floats
+    signs: Integers
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """Pieces that are expanded at once, and what every quantity does on them.
+
+    Attributes
+    ----------
+    lengths : ndarray, shape (p,)
+    plain : ndarray of bool, shape (p,)
+        Where everything is above zero.
+    of : dict of int to _Signs
+        By the number of the quantity.
+    """
+
+    lengths: Floats
+    plain: np.ndarray
+    of: dict[int, _Signs]
+
+
+@dataclass
+class _Interval:
+    """Part of the time that is still to be searched, and, once expanded, its piece."""
+
+    start: float
+    reach: float
+    batch: _Batch | None = None
+    number: int = 0
+
+
+@dataclass
+class _Watched:
+    """A quantity, and what is known of it so far.
+
+    Attributes
+    ----------
+    above : bool
+        Whether it has been above zero.
+    since : float or None
+        From when on it has been undecided.
+    """
+
+    quantity: Quantity
+    jumps: bool
+    index: int
+    above: bool = True
+    since: float | None = None
+
+
+class FirstZero:
+    """A search from time zero on.
+
+    Parameters
+    ----------
+    motions : sequence of Expanded
+        One computation of the motion, or two whose difference is its error.
+    quantities : sequence of callable
+    jumps : sequence of bool
+        Of which quantities it matters whether they only touch zero: what follows is another motion then, and not the
+        same to within its error.
+    way : float
+        -1 for the time before zero.
+    """
+
+    def __init__(
+        self, motions: Sequence[Expanded], quantities: Sequence[Quantity], jumps: Sequence[bool], way: float = 1.0
+    ) -> None:
+        self.motions, self.way = motions, way
+        self.watched = [_Watched(*both, i) for i, both in enumerate(zip(quantities, jumps, strict=True))]
+        self._left: list[_Interval] = []
+        self._reached = 0.0
+        self._last = 0.0
+        self._count, self._at_once = 0, 1
+
+    def until(self, end: float) -> Found | None:
+        """Return the first zero up to a time, or where it is first not known whether there is one.
+
+        A search that found nothing goes on from the time until which it went.
+
+        Raises
+        ------
+        BudgetExceeded
+            Where more pieces would be needed than one search may take.
+        AccuracyUnreachable
+            Where the motion leaves the range of doubles.
+        """
+        self._left = [_Interval(self._reached, end - self._reached)]
+        self._reached = end
+        while self._left and self.watched:
+            if self._left[-1].batch is None:
+                self._expand()
+            found = self._searched(self._left.pop())
+            if found is not None:
+                return found
+        return None
+
+    def _expand(self) -> None:
+        """Expand the next intervals, those that are longer than pieces have been in parts."""
+        ahead: list[_Interval] = []
+        # What is zero at the start is divided out of the first piece alone.
+        most = 1 if self._left[-1].start == 0.0 else self._at_once
+        while self._left and len(ahead) < most and self._left[-1].batch is None:
+            one = self._left.pop()
+            longest = self._last if self._last > 0.0 else one.reach
+            while len(ahead) < most and one.reach > longest:
+                following = _later(one.start, longest)
+                if not following > one.start:
+                    break
+                ahead.append(_Interval(one.start, longest))
+                one = _Interval(following, one.reach - (following - one.start))
+            if len(ahead) < most:
+                ahead.append(one)
+            else:
+                self._left.append(one)
+        self._count += len(ahead)
+        if self._count > MOST_PIECES:
+            needed = self._count * self._reached / max(ahead[-1].start, self._reached * 2.0**-60)
+            what = "pieces of the motion that are searched"
+            raise BudgetExceeded(what, needed, MOST_PIECES, path=("times",), remedy="ask for a shorter time")
+        self._at_once = min(2 * self._at_once, _AT_ONCE)
+        batch = self._batch([one.start for one in ahead], [one.reach for one in ahead])
+        for number, one in enumerate(ahead):
+            one.batch, one.number = batch, number
+        self._last = float(batch.lengths[-1])
+        self._left.extend(reversed(ahead))
+
+    def _batch(self, starts: Sequence[float], reach: Sequence[float]) -> _Batch:
+        """Return pieces, and what every quantity does on them."""
+        times, until = np.array(starts), np.array(reach)
+        pieces = [motion(self.way * times, self.way * until) for motion in self.motions]
+        lengths = np.abs(pieces[0].lengths)
+        share = np.minimum(until / lengths, 1.0)
+        plain, of = np.ones(len(times), dtype=bool), {}
+        remaining = []
+        for watch in self.watched:
+            values, band, left_out = _with_band(watch.quantity, pieces)
+            if not (np.isfinite(values).all() and np.isfinite(band).all()):
+                raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))
+            power = values.shape[1]
+            if starts[0] == 0.0:
+                values, band, power = self._divided(watch, values, band)
+                if not power:
+                    continue
+            remaining.append(watch)
+            counts = np.empty(len(times), dtype=np.int64)
+            ends, signs = np.empty((len(times), MOST_SEGMENTS)), np.empty((len(times), MOST_SEGMENTS), dtype=np.int64)
+            decided_each(values, band, left_out, power, share, watch.above, counts, ends, signs)
+            plain &= (counts == 1) & (signs[:, 0] == Sign.POSITIVE)
+            of[watch.index] = _Signs(values, counts, ends, signs)
+        self.watched = remaining
+        return _Batch(lengths, plain, of)
+
+    def _divided(self, watch: _Watched, values: Floats, band: Floats) -> tuple[Floats, Floats, int]:
+        """Return the only piece of a quantity at time zero, with what is zero there, as far as is known, divided out.
+
+        The power of the first coefficient that is left out follows them; it is zero for what vanishes throughout.
+        """
+        assert len(values) == 1
+        known = np.abs(values[0, :, 0]) > band[0]
+        if not known.any():
+            return values, band, 0
+        zeros, count = int(np.argmax(known)), values.shape[1]
+        shifted, errors = np.zeros_like(values), np.zeros_like(band)
+        shifted[:, : count - zeros], errors[:, : count - zeros] = values[:, zeros:], band[:, zeros:]
+        watch.above = bool(shifted[0, 0, 0] > 0.0)
+        return shifted, errors, count - zeros
+
+    def _searched(self, one: _Interval) -> Found | None:
+        """Return what is found in an interval; what remains of it is left for later."""
+        batch, number = one.batch, one.number
+        assert batch is not None
+        length = float(batch.lengths[number])
+        share = min(one.reach / length, 1.0)
+        if batch.plain[number] and all(watch.above and watch.since is None for watch in self.watched):
+            self._leave(one, length, 2.0)
+            return None
+        open_from = 2.0
+        for watch in self.watched:
+            own = batch.of[watch.index]
+            start = 0.0
+            for end, sign in _segments(own, number):
+                if sign == _OPEN:
+                    open_from = min(open_from, start)
+                if sign == _OPEN or (watch.above and sign in _BELOW):
+                    break
+                start = end
+        until = min(open_from, share)
+        found = [self._scanned(one, watch, until) for watch in self.watched]
+        hits = [hit for hit in found if hit is not None]
+        if hits:
+            return min(hits, key=lambda hit: (abs(hit.time), self.way * hit.rest))
+        self._leave(one, length, open_from)
+        return None
+
+    def _leave(self, one: _Interval, length: float, open_from: float) -> None:
+        """Put back what is still to be searched of an interval."""
+        end = one.start + one.reach
+        if open_from < min(one.reach / length, 1.0):
+            start = _later(one.start, open_from * length)
+            closer = _CLOSER * length
+            following = _later(start, closer)
+            if start < following < end:
+                self._left.append(_Interval(following, end - following))
+            # Where there is no double between two times the rest follows from the same start.
+            self._left.append(_Interval(start, closer))
+        elif one.reach > length:
+            start = _later(one.start, length)
+            if start < end:
+                self._left.append(_Interval(start, end - start))
+
+    def _scanned(self, one: _Interval, watch: _Watched, until: float) -> Found | None:
+        """Return where a quantity falls below zero in the first part of an interval, or comes too near."""
+        assert one.batch is not None
+        own, length = one.batch.of[watch.index], float(one.batch.lengths[one.number])
+        start = 0.0
+        for end, sign in _segments(own, one.number):
+            if start >= until:
+                break
+            here = one.start + start * length
+            if sign == _UNDECIDED:
+                watch.since = here if watch.since is None else watch.since
+            elif watch.since is not None:
+                since, watch.since = watch.since, None
+                if watch.above:
+                    middle, width = 0.5 * (since + here), 0.5 * (here - since)
+                    if sign in (_NEGATIVE, _RISING):
+                        return Found(watch.index, self.way * middle, 0.0)
+                    if watch.jumps:
+                        return Found(watch.index, self.way * middle, 0.0, max(width, 2.0**-52 * middle))
+            if watch.above and sign == _FALLING:
+                share, tail = zero_between(own.curves[one.number], start, min(end, 1.0))
+                return self._at(one.start, length, watch, share, tail)
+            if watch.above and sign == _NEGATIVE:
+                return self._at(one.start, length, watch, start, 0.0)
+            if sign == _POSITIVE:
+                watch.above = True
+            start = end
+        return None
+
+    def _at(self, start: float, length: float, watch: _Watched, share: float, tail: float) -> Found:
+        moved = share * length
+        time = start + moved
+        rounded = moved - (time - start) if start >= moved else start - (time - moved)
+        return Found(watch.index, self.way * time, self.way * (rounded + tail * length))
+
+
+def _segments(own: _Signs, number: int) -> list[tuple[float, int]]:
+    """Return the ends and signs of the segments of a piece."""
+    count = own.counts[number]
+    return list(zip(own.ends[number, :count].tolist(), own.signs[number, :count].tolist(), strict=True))
+
+
+def _with_band(quantity: Quantity, pieces: Sequence[Pieces]) -> tuple[Floats, Floats, Floats]:
+    """Return the coefficients of a quantity on some pieces, their errors, and what is left out.
+
+    The errors are rounding, and the difference of two computations of the motion.
+    """
+    own = quantity(pieces[0])
+    band = FLOOR * own.sizes
+    for other in pieces[1:]:
+        curve = quantity(other).values
+        # Both in powers of the same time.
+        ratio = (pieces[0].lengths / other.lengths)[:, None] ** np.arange(curve.shape[1])
+        apart = (own.values[..., 0] - ratio * curve[..., 0]) + (own.values[..., 1] - ratio * curve[..., 1])
+        band = band + SAFETY_FACTOR * np.abs(apart)
+    return own.values, band, _LEFT_OUT * np.max(own.sizes[:, -3:], axis=1)
+
+
+def _later(start: float, more: float) -> float:
+    """Return a sum, rounded towards its first term: no time is passed over."""
+    total = start + more
+    part = total - start
+    rounded = (start - (total - part)) + (more - part)
+    return math.nextafter(total, start) if rounded < 0.0 else total

@@ -1,0 +1,99 @@
+"""A zero to the last digits of pairs: Newton's method on the motion expanded about the nearest double."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
+from core.double_double import dd_add, dd_div_d, dd_mul_d
+from core.multibody.algebra.polynomials import Ball
+from core.multibody.search.bernstein import horner, slope_at
+from core.multibody.search.curves import Curve
+from core.multibody.search.pieces import Expanded, Pieces
+
+_ROUNDS = 12
+"""Expansions: from one double near a zero to the next; a zero that is a double away is reached in two."""
+_NEWTON = 60
+"""Rounds on one expansion: they halve the distance to a double zero only."""
+_NEAR = 2.0**-6
+"""Share of a piece within which its polynomials are right to pairs: the powers left out are 2^-126 of what they were."""
+_SETTLED = 2.0**-104
+
+
+class NotLocated(Exception):
+    """No zero is near a time."""
+
+
+class Located:
+    """The state at a zero.
+
+    Attributes
+    ----------
+    time : ball
+    q, v : list of ball
+    """
+
+    def __init__(self, time: Ball, q: list[Ball], v: list[Ball]) -> None:
+        self.time, self.q, self.v = time, q, v
+
+
+def located(motion: Expanded, quantity: Callable[[Pieces], Curve], time: float, rest: float, reach: float) -> Located:
+    """Return the zero of a quantity next to a pair of time.
+
+    Parameters
+    ----------
+    reach : float
+        Longest time (s) that is of interest.
+
+    Raises
+    ------
+    NotLocated
+        If Newton's method does not settle.
+    """
+    for _ in range(_ROUNDS):
+        pieces = motion(np.array([time]), np.array([reach]))
+        length = float(pieces.lengths[0])
+        curve = quantity(pieces).values[0]
+        th, tl = _newton(curve, rest / length)
+        if not math.isfinite(th):
+            break
+        if abs(th) <= _NEAR or abs(th * length) <= 2.0**-50 * abs(time):
+            return _state(pieces, time, th, tl)
+        moved = time + th * length
+        time, rest = (moved if moved > 0.0 else 0.5 * time), 0.0
+    raise NotLocated
+
+
+def _newton(curve: Floats, share: float) -> tuple[float, float]:
+    th, tl = share, 0.0
+    size = float(np.max(np.abs(curve[:, 0])))
+    for _ in range(_NEWTON):
+        slope = slope_at(curve, th)
+        vh, vl = horner(curve, th, tl)
+        if slope == 0.0 or abs(vh) <= _SETTLED * 2.0**-10 * size:
+            break
+        dh, dl = dd_div_d(vh, vl, -slope)
+        # What is far away is approached from the next expansion.
+        dh, dl = (dh, dl) if abs(dh) < 1.0 else (math.copysign(1.0, dh), 0.0)
+        th, tl = dd_add(th, tl, dh, dl)
+        if abs(dh) <= _SETTLED * max(abs(th), 2.0**-1000) or abs(th) > 1.0:
+            break
+    return th, tl
+
+
+def _state(pieces: Pieces, time: float, th: float, tl: float) -> Located:
+    """Return the state at a share of a piece that begins at a time."""
+    q, v = [], []
+    for i in range(pieces.places.shape[1]):
+        q.append(_ball(*horner(np.ascontiguousarray(pieces.places[0, i]), th, tl)))
+        v.append(_ball(*horner(pieces.rate(i).values[0], th, tl)))
+    high, low = dd_mul_d(th, tl, float(pieces.lengths[0]))
+    return Located(arb(time) + arb(high) + arb(low), q, v)
+
+
+def _ball(high: float, low: float) -> Ball:
+    return arb(high) + arb(low)

@@ -1,0 +1,174 @@
+"""A motion as Taylor polynomials of coordinates, rates and multipliers on consecutive intervals of time.
+
+The state at the start of an interval is the motion's own, whatever its model: closed forms know it at any time, series
+from their steps. So the polynomials of a later interval are as right as those of the first one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from core.arrays import Floats, Integers
+from core.errors import AccuracyUnreachable
+from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly
+from core.multibody.equations.packed import two_to
+from core.multibody.motion.whole import Whole
+from core.multibody.search.curves import Curve, differentiate
+from core.multibody.search.taylor import ORDER, expand
+from core.multibody.table.connection_effects import Force
+
+COEFFICIENTS = ORDER - 1
+"""Of every curve: multipliers have two powers less than coordinates."""
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """A motion on some intervals.
+
+    Attributes
+    ----------
+    lengths : ndarray, shape (p,)
+        In seconds, negative where time runs backwards; powers of two.
+    places, multipliers : ndarrays, shape (p, n, order + 1, 2) and (p, rows, order - 1, 2)
+        Coefficients of powers of time as a share of the length.
+    place_sizes, multiplier_sizes : ndarrays, shape (p, n, order + 1) and (p, rows, order - 1)
+        Of the terms that these consist of.
+    """
+
+    lengths: Floats
+    places: Floats
+    place_sizes: Floats
+    multipliers: Floats
+    multiplier_sizes: Floats
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Intervals, and coefficients of a curve."""
+        return len(self.lengths), COEFFICIENTS
+
+    def place(self, i: int) -> Curve:
+        """Return a coordinate."""
+        return Curve(
+            np.ascontiguousarray(self.places[:, i, :COEFFICIENTS]),
+            np.ascontiguousarray(self.place_sizes[:, i, :COEFFICIENTS]),
+        )
+
+    def rate(self, i: int) -> Curve:
+        """Return its rate."""
+        values = np.empty((*self.shape, 2))
+        differentiate(np.ascontiguousarray(self.places[:, i]), self.lengths, values)
+        powers = np.arange(1.0, COEFFICIENTS + 1.0)
+        sizes = powers * self.place_sizes[:, i, 1 : COEFFICIENTS + 1] / np.abs(self.lengths)[:, None]
+        return Curve(values, sizes)
+
+    def multiplier(self, row: int) -> Curve:
+        """Return the multiplier of a row."""
+        return Curve(
+            np.ascontiguousarray(self.multipliers[:, row]), np.ascontiguousarray(self.multiplier_sizes[:, row])
+        )
+
+    def nothing(self) -> Curve:
+        """Return zero."""
+        return Curve.constant(ZERO, self.shape)
+
+    def of(self, poly: Poly) -> Curve:
+        """Return a polynomial of the coordinates."""
+        total = self.nothing()
+        for key, factor in poly.items():
+            if not key:
+                total = total.plus(factor, Curve.constant(ZERO + 1, self.shape))
+            else:
+                term = self.place(key[0])
+                for i in key[1:]:
+                    term = term.times(self.place(i))
+                total = total.plus(factor, term)
+        return total
+
+    def of_rates(self, line: LinearForm) -> Curve:
+        """Return a linear form in the rates."""
+        total = self.nothing()
+        for j, poly in line.items():
+            total = total.plus(ZERO + 1, self.of(poly).times(self.rate(j)))
+        return total
+
+    def force(self, force: Force) -> Curve:
+        """Return a force."""
+        total = self.of(force.of_state)
+        for j, factor in force.of_rates.items():
+            total = total.plus(factor, self.rate(j))
+        for j, factor in force.of_squares.items():
+            rate = self.rate(j)
+            total = total.plus(factor, rate.times(rate))
+        for row, poly in force.terms:
+            total = total.plus(ZERO + 1, self.of(poly).times(self.multiplier(row)))
+        return total
+
+
+class Expanded(Protocol):
+    """A motion that is expanded about any of its times."""
+
+    def __call__(self, times: Floats, reach: Floats) -> Pieces:
+        """Return pieces that begin at times of shape (p,) and are as long as their polynomials hold, or reach."""
+
+
+@dataclass(frozen=True)
+class ExpandedWhole:
+    """The motion of a whole scene, from its states in pairs.
+
+    Attributes
+    ----------
+    whole : Whole
+    kind : {"fine", "check"}
+        Which of the runs of a motion without a closed form.
+    """
+
+    whole: Whole
+    kind: str = "fine"
+
+    def __call__(self, times: Floats, reach: Floats) -> Pieces:
+        """Return the pieces.
+
+        Raises
+        ------
+        AccuracyUnreachable
+            At a place where the connections lose their rank.
+        """
+        arrays, units, chosen = self.whole.arrays
+        q, v = self.whole.in_pairs(times, self.kind)
+        down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
+        way = np.sign(reach)
+        n, rows = q.shape[1], len(self.whole.measures.table.rows)
+        exponents = np.zeros(len(times), dtype=np.int64)
+        series = np.zeros((len(times), n + len(chosen), ORDER + 1, 2))
+        sizes = np.zeros(series.shape[:-1])
+        # Backwards in time the rates are the opposite.
+        rates = v * (down * two_to(units.time))
+        done = expand(arrays, q * down, rates, _covering(reach, units.time), exponents, series, sizes)
+        if done < len(times):
+            raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
+        signs = np.where(way[:, None] < 0.0, (-1.0) ** np.arange(ORDER + 1), 1.0)
+        series *= signs[:, None, :, None]
+        up = np.array([two_to(e) for e in units.lengths])
+        multipliers = np.zeros((len(times), rows, COEFFICIENTS, 2))
+        multiplier_sizes = np.zeros((len(times), rows, COEFFICIENTS))
+        for k, row in enumerate(chosen):
+            factor = two_to(units.multiplier(row))
+            multipliers[:, row] = series[:, n + k, :COEFFICIENTS] * factor
+            multiplier_sizes[:, row] = sizes[:, n + k, :COEFFICIENTS] * factor
+        return Pieces(
+            way * np.ldexp(1.0, exponents + units.time),
+            series[:, :n] * up[None, :, None, None],
+            sizes[:, :n] * up[None, :, None],
+            multipliers,
+            multiplier_sizes,
+        )
+
+
+def _covering(reach: Sequence[float] | Floats, time: int) -> Integers:
+    """Return the exponents of the least powers of two, in units of time, that are at least as large as some times."""
+    mantissas, exponents = np.frexp(np.abs(reach))
+    return (exponents - (mantissas == 0.5) - time).astype(np.int64)

@@ -1,0 +1,100 @@
+"""The Taylor series of a table's motion about many states at once, in pairs of doubles: the kernel.
+
+It forms the coefficients as the steps of `motion.series_pairs` do, multipliers included, and says over which time their
+last ones are small. Steps follow one another; these states are known otherwise, and no error grows from one to the next.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from core.arrays import Floats, Integers
+from core.compiled import kernel
+from core.double_double import dd_mul_d
+from core.multibody.equations.packed import Packed
+from core.multibody.equations.saddle import FAILED, inverted_pairs, saddle_space
+from core.multibody.motion.products import products_of, started
+from core.multibody.motion.series import step_size
+from core.multibody.motion.series_pairs import coefficients_pairs, entries_of_lines_pairs
+
+ORDER = 22
+"""Highest power of the coordinates; multipliers have two less."""
+TOLERANCE = 2.0**-50
+"""Share of the motion that the last powers are over a piece: a third of the radius of convergence."""
+
+
+@kernel()
+def expand(
+    table: Packed, q: Floats, v: Floats, longest: Integers, exponents: Integers, series: Floats, sizes: Floats
+) -> int:
+    """Fill in the series about some states; return how many were done before one where the connections lose their rank.
+
+    Parameters
+    ----------
+    q, v : (t, n, 2)
+    longest : (t,)
+        Exponents of two of the longest times that are of interest.
+    exponents : (t,)
+        Filled with those of the lengths of the pieces, at most these.
+    series : (t, n + m, order + 1, 2)
+        Filled with coefficients of powers of time as a share of the length; multipliers have two less.
+    sizes : (t, n + m, order + 1)
+        Filled with the largest coefficient of the same group and power, to which rounding is in proportion.
+    """
+    n, m = table.load.shape[0], table.rate.shape[0]
+    order = series.shape[2] - 1
+    lines = np.empty((table.lines.shape[0], 2))
+    space, products = saddle_space(table, 2), products_of(table, order, 2)
+    path, size = products.path, products.right.shape[1]
+    own = np.empty((n, order + 1))
+    for s in range(q.shape[0]):
+        entries_of_lines_pairs(table, q[s], lines)
+        if inverted_pairs(table, lines, space) == FAILED:
+            return s
+        for i in range(n):
+            path[0, i], path[1, i] = q[s, i, 0], q[s, i, 1]
+            path[0, size + i], path[1, size + i] = v[s, i, 0], v[s, i, 1]
+        started(table, products)
+        coefficients_pairs(table, space, products, order - 1)
+        for i in range(n):
+            for k in range(order + 1):
+                own[i, k] = path[0, k * size + i]
+        step = step_size(own, table.group, TOLERANCE)
+        if not step > 0.0:
+            return s
+        exponent = longest[s]
+        if step < math.ldexp(1.0, min(exponent, 1000)):
+            exponent = int(math.floor(math.log2(step)))
+        exponents[s] = exponent
+        for k in range(order + 1):
+            # The powers of what does not change are zero, whatever the length.
+            factor = math.ldexp(1.0, max(min(exponent * k, 1000), -1000))
+            for i in range(n):
+                high, low = path[0, k * size + i], path[1, k * size + i]
+                series[s, i, k, 0] = high * factor if high != 0.0 else 0.0
+                series[s, i, k, 1] = low * factor if high != 0.0 else 0.0
+            largest = 0.0
+            for r in range(m):
+                high, low = 0.0, 0.0
+                if k <= order - 2:
+                    at = (k + 2) * size + n + r
+                    high, low = dd_mul_d(path[0, at], path[1, at], (k + 1.0) * (k + 2.0))
+                    # What presses together with others has their rounding, and that of the masses they move.
+                    largest = max(largest, abs(high))
+                series[s, n + r, k, 0] = high * factor if high != 0.0 else 0.0
+                series[s, n + r, k, 1] = low * factor if high != 0.0 else 0.0
+            if k <= order - 2:
+                for i in range(n):
+                    largest = max(largest, (k + 1.0) * (k + 2.0) * abs(path[0, (k + 2) * size + i]))
+            for r in range(m):
+                sizes[s, n + r, k] = largest * factor if largest > 0.0 else 0.0
+        for k in range(order + 1):
+            for i in range(n):
+                most = 0.0
+                for j in range(n):
+                    if table.group[j] == table.group[i]:
+                        most = max(most, abs(series[s, j, k, 0]))
+                sizes[s, i, k] = most
+    return q.shape[0]
