@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import math
-
 import numpy as np
-
 from flint import arb
 
 from core.errors import AccuracyUnreachable
@@ -160,9 +158,7 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
     return [] if crossings[0].time > left else crossings
 
 
-def _located(
-    phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Found, left: float
-) -> list[Crossing]:
+def _located(phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Found, left: float) -> list[Crossing]:
     """Return a crossing on both tracks, or by both runs."""
     if not phase.uniform:
         states = [located(motion, watch.along, found.time, found.rest, left) for motion in motions]
@@ -198,7 +194,10 @@ def _first_reach(phase: Phase) -> float:
 def _singular(phase: Phase, end: float) -> float | None:
     """Return the time of a singular place before a time of a phase, None without one."""
     found = []
-    runs = {(id(model.whole), kind): model.whole for model, kind in zip([phase.models[0], phase.models[-1]], ("fine", "check"), strict=True)}
+    runs = {
+        (id(model.whole), kind): model.whole
+        for model, kind in zip([phase.models[0], phase.models[-1]], ("fine", "check"), strict=True)
+    }
     for (_, kind), whole in runs.items():
         for _, motion in whole.parts:
             if not isinstance(motion, Numerical):

@@ -40,9 +40,8 @@ class ExpandedInBalls:
         sizes, others = np.zeros(places.shape[:-1]), np.zeros(multipliers.shape[:-1])
         q, v = self.whole.in_pairs(times, self.kind)
         for s in range(len(times)):
-            state = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
-            now = replace(table, **dict(zip("qv", state, strict=True)))
-            motion = expansion(now, ORDER)
+            places_now, rates_now = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
+            motion = expansion(replace(table, q=places_now, v=rates_now), ORDER)
             step = step_size(np.array([[float(x) for x in series] for series in motion.places]), group, TOLERANCE)
             exponent = math.ceil(math.log2(reach[s]))
             if step < reach[s]:

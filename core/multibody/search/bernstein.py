@@ -76,7 +76,7 @@ def _above(coefficients: Floats, band: Floats, left_out: float) -> bool:
     lowest = found[0]
     for j in range(1, last + 1):
         lowest = min(lowest, found[j])
-    return lowest > known + _FILTER * size
+    return bool(lowest > known + _FILTER * size)
 
 
 @kernel()

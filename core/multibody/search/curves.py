@@ -17,7 +17,6 @@ from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair
 
 
-
 @dataclass(frozen=True)
 class Curve:
     """A quantity on consecutive pieces.
@@ -90,7 +89,7 @@ def _add_multiple(total: Floats, factor_high: float, factor_low: float, more: Fl
 
 @kernel()
 def differentiate(places: Floats, lengths: Floats, found: Floats) -> None:
-    """Fill in the derivatives of polynomials of shape (p, order + 2, 2), times being shares of lengths of shape (p,)."""
+    """Fill in the derivatives of polynomials of shape (p, order + 2, 2); times are shares of lengths of shape (p,)."""
     for p in range(places.shape[0]):
         for k in range(found.shape[1]):
             sh, sl = dd_mul_d(places[p, k + 1, 0], places[p, k + 1, 1], k + 1.0)

@@ -145,7 +145,8 @@ class FirstZero:
     def until(self, end: float) -> Found | None:
         """Return the first zero up to a time, or where it is first not known whether there is one.
 
-        A search that found nothing goes on from the time until which it went.
+        A search that found nothing goes on from the time until which it went. What is found may be beyond the end, by
+        less than a piece.
 
         Raises
         ------

@@ -20,7 +20,7 @@ _ROUNDS = 12
 _NEWTON = 60
 """Rounds on one expansion: they halve the distance to a double zero only."""
 _NEAR = 2.0**-6
-"""Share of a piece within which its polynomials are right to pairs: the powers left out are 2^-126 of what they were."""
+"""Share of a piece within which its polynomials are right to pairs: what is left out is 2^-126 of what it was."""
 _SETTLED = 2.0**-104
 
 

@@ -171,4 +171,5 @@ class ExpandedWhole:
 def _covering(reach: Sequence[float] | Floats, time: int) -> Integers:
     """Return the exponents of the least powers of two, in units of time, that are at least as large as some times."""
     mantissas, exponents = np.frexp(np.abs(reach))
-    return (exponents - (mantissas == 0.5) - time).astype(np.int64)
+    found: Integers = (exponents - (mantissas == 0.5) - time).astype(np.int64)
+    return found

@@ -1,7 +1,7 @@
 """The Taylor series of a table's motion about many states at once, in pairs of doubles: the kernel.
 
 It forms the coefficients as the steps of `motion.series_pairs` do, multipliers included, and says over which time their
-last ones are small. Steps follow one another; these states are known otherwise, and no error grows from one to the next.
+last ones are small. The states are known otherwise than by steps, and no error grows from one to the next.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def expand(
             return s
         exponent = longest[s]
         if step < math.ldexp(1.0, min(exponent, 1000)):
-            exponent = int(math.floor(math.log2(step)))
+            exponent = math.floor(math.log2(step))
         exponents[s] = exponent
         for k in range(order + 1):
             # The powers of what does not change are zero, whatever the length.
@@ -97,4 +97,4 @@ def expand(
                     if table.group[j] == table.group[i]:
                         most = max(most, abs(series[s, j, k, 0]))
                 sizes[s, i, k] = most
-    return q.shape[0]
+    return len(q)

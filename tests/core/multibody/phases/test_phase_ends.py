@@ -1,4 +1,4 @@
-"""Contacts that are only just reached or missed, told as undecided or decided however narrowly; motions that nearly repeat."""
+"""Contacts that are only just reached or missed, told as undecided or decided; motions that nearly repeat."""
 
 from __future__ import annotations
 

@@ -118,7 +118,12 @@ def test_a_touch_within_the_band_is_undecided_and_a_deeper_one_a_fall() -> None:
     band = np.zeros(ORDER + 1)
     band[0] = 1e-20
     touch = np.zeros((ORDER + 1, 2))
-    for depth, expected in ((0.5e-20, Sign.UNDECIDED), (-0.5e-20, Sign.UNDECIDED), (2e-19, Sign.FALLING), (-2e-19, None)):
+    for depth, expected in (
+        (0.5e-20, Sign.UNDECIDED),
+        (-0.5e-20, Sign.UNDECIDED),
+        (2e-19, Sign.FALLING),
+        (-2e-19, None),
+    ):
         touch[:3, 0], touch[0, 1] = (0.25, -1.0, 1.0), -depth
         signs = [sign for *_, sign in segments(touch, band)]
         assert signs[0] is Sign.POSITIVE
