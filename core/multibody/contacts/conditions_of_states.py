@@ -55,10 +55,11 @@ class Situation:
 def lasts(at: Situation, group: Sequence[int], settled: Sequence[State], balance: Balance) -> bool:
     """Return whether every condition of states holds just after the start."""
     signs = [0 if is_zero(x) else 1 if x > 0 else -1 for x in conditions_of(at, group, balance)]
-    if min(signs) < 0:
+    least = min(signs, default=1)
+    if least < 0:
         return False
     shared_in_space = bool(balance.shares) and sticks_in_space(at.unilateral, group, balance.states)
-    if min(signs) > 0 or shared_in_space or balance.moves:
+    if least > 0 or shared_in_space or balance.moves:
         return True
     states = list(settled)
     for i, state in zip(group, balance.states, strict=True):

@@ -147,12 +147,11 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
         times.append((size - pull) // 2)
     lengths = [{"1": 0, "rad": 0, "m": size, "1/m": -size, "s": 0}[unit] for unit in table.units]
     masses = [e + lengths[i] + lengths[j] for (i, j), x in table.mass.items() if (e := exponent(x)) is not None]
-    stiff = _most(
-        [e + lengths[i] + lengths[j] for (i, j), x in table.stiffness.items() if (e := exponent(x)) is not None]
-    )
-    if masses and stiff is not None:
-        # Beside an equilibrium neither rates nor accelerations tell how fast springs swing.
-        times.append((max(masses) - stiff) // 2)
+    works = [e + lengths[i] + lengths[j] for (i, j), x in table.stiffness.items() if (e := exponent(x)) is not None]
+    works += [e + lengths[i] for i, x in table.load.items() if (e := exponent(x)) is not None]
+    if masses and works:
+        # Beside an equilibrium neither rates nor accelerations tell how fast springs swing and loads pull.
+        times.append((max(masses) - max(works)) // 2)
     time = min(times, default=0)
     lengths = [time if unit == "s" else length for unit, length in zip(table.units, lengths, strict=True)]
     rows = []

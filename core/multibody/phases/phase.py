@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from core.multibody.algebra.polynomials import ZERO, Ball
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.contacts.complementarity import Decided
 from core.multibody.contacts.contact_start import ContactStart
 from core.multibody.contacts.contact_states import PhaseTable, Problem, State, forces_of, phase_table
 from core.multibody.contacts.projection import project
-from core.multibody.motion.modelling import Modelled, Piece, models_of
+from core.multibody.motion.modelling import Modelled, models_of
 from core.multibody.motion.motion import Motion
 from core.multibody.motion.numerical import Numerical
 from core.multibody.phases.accumulation import Accumulation
@@ -161,7 +161,7 @@ def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactS
     for (indices, motion), piece in zip(found.whole.parts, found.pieces, strict=True):
         own = motion
         if isinstance(motion, Numerical):
-            own = Numerical.of(piece.table, _pulls(piece), piece.chosen, motion.why)
+            own = Numerical.of(piece.table, piece.acceleration, piece.chosen, motion.why)
             own.lost_to_doubles = True
         parts.append((indices, own))
     return replace(found, whole=replace(found.whole, parts=parts))
@@ -170,13 +170,3 @@ def _model(base: Described, decided: Decided, phase: PhaseTable, start: ContactS
 def _apart(now: Ball, known: Ball) -> float:
     """Return how far a number is at most from what is known of it."""
     return abs(float((now - known).mid())) + float(known.rad())
-
-
-def _pulls(piece: Piece) -> list[Ball]:
-    """Return how fast a part may come to move: beside an equilibrium its accelerations say nothing of that."""
-    found = []
-    for i, x in enumerate(piece.acceleration):
-        load, mass = piece.table.load.get(i), piece.table.mass.get((i, i))
-        free: Ball = ZERO if load is None or mass is None else abs(load / mass)
-        found.append(free if float(free) > abs(float(x)) else x)
-    return found

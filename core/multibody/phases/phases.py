@@ -31,6 +31,7 @@ from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
 from core.multibody.phases.slow_bounces import SLOW, rate_share, slowness
+from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import turns
 from core.multibody.table.connection_effects import Unilateral
@@ -241,6 +242,7 @@ class _Run:
         found = decided(table, self.unilateral, self.touching, q, v)
         if isinstance(found, Problem):
             return found
+        require_pressed_in_plane(self.base, found)
         now = phase_table(table, found.unilateral, found.states, q, v)
         self.turning = turns(now.table, [one.name for one in found.unilateral], LOOKED)
         for one in found.unilateral:

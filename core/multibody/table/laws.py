@@ -134,6 +134,7 @@ def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -
                     remedy="describe the scene in space",
                 )
             _outward(measures, frame.position, across, at, square)
+        measures.pressed_by = None if is_zero(rate) else across
         return
     if measures.dimension == 3 and connection.about != "vertical":
         raise InvalidParameter((*path, "about"), 'be "vertical" in space')

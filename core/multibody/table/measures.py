@@ -60,6 +60,8 @@ class Measures:
         self.fall: Poly = {}
         self.momenta: dict[str, tuple[StateFunction, StateFunction]] = {}
         self.conservative = True
+        # The horizontal direction of a plane that spins about its vertical: rates along it press across the plane.
+        self.pressed_by: list[Ball] | None = None
         self._lengths: dict[Any, int] = {}
         self._inverses: dict[int, int] = {}
 

@@ -247,3 +247,96 @@ def test_sliding_on_three_legs_of_different_roughness_is_not_determined() -> Non
     alike = solve_scene(read(scene), [0.1])
     assert alike.problem is None
     assert linear(alike, "bar") == (pytest.approx(-0.981, rel=1e-15), 0.0)
+
+
+@pytest.mark.parametrize("rate", [3, -0.5])
+@pytest.mark.parametrize(("friction", "mass"), [(0.3, 2), (1.2, 0.1)])
+def test_a_driven_wheel_takes_along_what_rests_on_it(rate: float, friction: float, mass: float) -> None:
+    """A wheel on a vertical track above it turns with alpha = mu m g R/I until their rims agree."""
+    wheel = {"inertia": 0.25, "radius": 0.5}
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {
+            "driven": {**wheel, "mass": 1, "at": [0, 0], "angular_velocity": rate},
+            "taken": {**wheel, "mass": mass, "at": [0, 1]},
+        },
+        "connections": [
+            {"kind": "pin", "a": "driven", "b": [0, 0]},
+            {"kind": "motor", "name": "motor", "a": "driven", "rate": rate},
+            {"kind": "track", "name": "track", "place": "taken", "on": {"at": [0, 0], "slope": {"degrees": 90}}},
+            {"kind": "contact", "name": "rims", "a": "driven", "b": "taken", "friction": friction},
+        ],
+    }
+    push = 10 * mass
+    alpha = friction * push * 0.5 / 0.25
+    rolls = abs(rate) / alpha
+    answer = solve_scene(read(scene), [0.5 * rolls, 1.5 * rolls], ("trajectory", "forces", "forces-in-time"))
+    assert kinds(answer) == [("roll", "rims")]
+    assert answer.events[0].time == pytest.approx(rolls, rel=1e-12)
+    taken = column(answer, "taken.angular_velocity").values
+    assert taken == pytest.approx([-0.5 * rate, -rate], rel=1e-12)
+    side = 1 if rate > 0 else -1
+    assert force(answer, "motor.torque") == pytest.approx(side * friction * push * 0.5, rel=1e-12)
+    assert column(answer, "motor.torque").values[1] == pytest.approx(0, abs=1e-12)
+
+
+def test_a_wheel_against_what_a_track_holds_as_well_is_undetermined() -> None:
+    """Between track and wheel nothing says how much each bears, and friction depends on it."""
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {
+            "driven": {"mass": 1, "inertia": 0.1, "radius": 0.5, "at": [0, 0], "angular_velocity": 3},
+            "block": {"mass": 2, "at": [0, 0.5]},
+        },
+        "connections": [
+            {"kind": "pin", "a": "driven", "b": [0, 0]},
+            {"kind": "motor", "a": "driven", "rate": 3},
+            {"kind": "track", "place": "block", "on": {"at": [0, 0.5]}},
+            {"kind": "contact", "name": "rim", "a": "driven", "b": "block", "friction": 0.3},
+        ],
+    }
+    problem = solve_scene(read(scene), [1.0]).problem
+    assert problem is not None
+    assert (problem.code, problem.connections) == ("undetermined-friction", ("rim",))
+
+
+@pytest.mark.parametrize("turn", ["acos(3/5)", "acos(5/13)", "-acos(8/17)", "1"])
+@pytest.mark.parametrize("cosine", ["3/5", "5/13", "8/17", "0.3"])
+@pytest.mark.parametrize("frictions", [(0.05, 0.02), (0.2, 0.4), (None, 0.3)])
+def test_a_ladder_turned_with_its_gravity_moves_alike(turn: str, cosine: str, frictions: tuple[Any, Any]) -> None:
+    def ladder(turn: str) -> dict[str, Any]:
+        faces = [("floor", "foot", "t"), ("wall", "head", "t + pi/2")]
+        return {
+            "let": {
+                "t": turn,
+                "c": cosine,
+                "s": "sqrt(1 - c^2)",
+                "x": "-c/2",
+                "y": "s/2",
+                "u": "cos(t)",
+                "v": "sin(t)",
+            },
+            "gravity": ["10*v", "-10*u"],
+            "bodies": {
+                "l": {
+                    "mass": 1,
+                    "inertia": "1/12",
+                    "at": ["x*u - y*v", "x*v + y*u"],
+                    "angle": "acos(c) + t",
+                    "places": {"foot": [-0.5, 0], "head": [0.5, 0]},
+                }
+            },
+            "connections": [
+                {"kind": "contact", "name": name, "place": f"l.{place}", "on": {"at": [0, 0], "slope": slope}}
+                | ({} if friction is None else {"friction": friction})
+                for (name, place, slope), friction in zip(faces, frictions, strict=True)
+            ],
+        }
+
+    level, turned = (solve_scene(read(ladder(t)), [0.25]) for t in ("0", turn))
+    assert kinds(turned) == kinds(level)
+    assert states(turned) == states(level)
+    angle = {"acos(3/5)": math.acos(0.6), "acos(5/13)": math.acos(5 / 13), "1": 1.0}.get(turn, -math.acos(8 / 17))
+    x, y = column(level, "l.position").values[0]
+    expected = [x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)]
+    assert column(turned, "l.position").values[0] == pytest.approx(expected, abs=1e-13)

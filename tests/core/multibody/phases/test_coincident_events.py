@@ -142,3 +142,51 @@ def test_a_string_becomes_taut_when_the_bounces_of_its_weight_end(trial: int) ->
     late = 0.1 * speed / 10
     lifted = column(answer, "a.position")
     assert abs(lifted.values[0, 1] - (2 - height + after * late - gain * late**2 / 2)) <= lifted.error + 1e-12
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        {},
+        {"kind": "gravitation", "a": "a", "b": "b", "constant": 1},
+        {"kind": "inverse-square", "a": "a", "b": "b", "strength": -1000},
+        {"kind": "damper", "a": "a", "b": "b", "coefficient": 7},
+    ],
+)
+@pytest.mark.parametrize(("speed", "radius"), [(2.0, 1.0), (1.0, 3.0)])
+def test_stones_leave_equal_humps_at_once_with_a_rod_between_them(
+    between: dict[str, Any], speed: float, radius: float
+) -> None:
+    """cos = (2 + v^2/(g r))/3; nothing along the rod has a part in that, nor in the flight that follows."""
+    scene: dict[str, Any] = {
+        "gravity": [0, -10],
+        "bodies": {name: {"mass": 1, "at": [x, radius], "velocity": [speed, 0]} for name, x in (("a", 0), ("b", 5))},
+        "connections": [
+            {"kind": "rod", "a": "a", "b": "b"},
+            *(
+                {"kind": "contact", "name": f"hump-{name}", "place": name, "on": {"at": [x, 0], "radius": radius}}
+                for name, x in (("a", 0), ("b", 5))
+            ),
+            *([between] if between else []),
+        ],
+    }
+    with mpmath.workdps(30):
+        last = mpmath.acos((2 + mpmath.mpf(speed) ** 2 / (10 * radius)) / 3)
+
+        def rate_at(angle: Any) -> Any:
+            return mpmath.sqrt(speed**2 / radius**2 + 20 / radius * (1 - mpmath.cos(angle)))
+
+        lifted, rate = mpmath.quad(lambda angle: 1 / rate_at(angle), [0, last]), rate_at(last)
+        late = mpmath.mpf("0.125")
+        place = (
+            radius * mpmath.sin(last) + radius * rate * mpmath.cos(last) * late,
+            radius * mpmath.cos(last) - radius * rate * mpmath.sin(last) * late - 5 * late**2,
+        )
+    answer = solve_scene(read(scene), [float(lifted + late)])
+    assert answer.problem is None
+    assert kinds(answer) == [("lift-off", "hump-a"), ("lift-off", "hump-b")]
+    for event in answer.events:
+        assert event.time == pytest.approx(float(lifted), rel=1e-14)
+    for name, x in (("a", 0), ("b", 5)):
+        own = column(answer, f"{name}.position")
+        assert own.values[0] == pytest.approx([x + float(place[0]), float(place[1])], abs=own.error + 1e-14)

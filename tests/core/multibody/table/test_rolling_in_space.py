@@ -1,10 +1,12 @@
 from __future__ import annotations
 
 import copy
+from typing import Any
 
 import numpy as np
 import pytest
 
+from core.bodies import Ball, Cylinder, Disc, Ellipsoid, SphericalShell, Torus
 from core.errors import InvalidParameter
 from core.multibody.solve import solve_scene
 from tests.core.multibody.worked_examples import column, force, read
@@ -146,3 +148,39 @@ def test_what_rolls_may_be_driven_by_a_torque_whatever_its_moments(moments: list
     turned = 3 / (moments[1] + 0.25)
     assert answer.accelerations["b"].angular == pytest.approx((0, turned, 0), abs=1e-15)
     assert answer.accelerations["b"].linear == pytest.approx((turned / 2, 0, 0), abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        Disc(mass=1, radius=0.1),
+        # With these moments, which are equal to 1e-4, it was a ball.
+        Cylinder(mass=1, radius=0.1, height=0.1732),
+        Torus(mass=1, ring_radius=0.1, tube_radius=0.02),
+        Ellipsoid(mass=1, semi_axes=(0.1, 0.1, 0.11)),
+    ],
+    ids=lambda body: body.kind,
+)
+@pytest.mark.parametrize("kind", ["rolling", "contact"])
+def test_a_coin_is_no_ball(body: Any, kind: str) -> None:
+    scene = {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"coin": {"body": body, "radius": 0.1, "at": [0, 0, 0.1], "velocity": [1, 0, 0]}},
+        "connections": [{"kind": kind, "place": "coin", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}],
+    }
+    with pytest.raises(InvalidParameter, match="is a ball") as refused:
+        solve_scene(read(scene), [1.0])
+    assert refused.value.path == ("bodies", "coin", "radius")
+    assert "places" in (refused.value.remedy or "")
+
+
+@pytest.mark.parametrize(
+    "body", [Ball(mass=1, radius=0.1), SphericalShell(mass=1, outer_radius=0.1, inner_radius=0.05)]
+)
+def test_bodies_that_are_round_roll(body: Any) -> None:
+    scene = {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"ball": {"body": body, "radius": 0.1, "at": [0, 0, 0.1], "velocity": [1, 0, 0]}},
+        "connections": [{"kind": "rolling", "place": "ball", "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}}],
+    }
+    assert column(solve_scene(read(scene), [2.0]), "ball.position").values[0] == pytest.approx([2, 0, 0.1])
