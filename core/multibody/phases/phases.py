@@ -30,7 +30,7 @@ from core.multibody.motion.numerical import SINGULAR_TIME_ERROR
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
-from core.multibody.phases.slow_bounces import SLOW, rate_share, slowness
+from core.multibody.phases.slow_bounces import NEAR, SLOW, rate_share, slowness
 from core.multibody.phases.spun_friction import require_pressed_in_plane
 from core.multibody.phases.tracks import FLOOR, Track, Tracks
 from core.multibody.phases.turning_slip import turns
@@ -159,7 +159,7 @@ class _Run:
             if not hit:
                 return True
             unilateral, settling = self.unilateral, list[int]()
-            for limit in (SLOW, SMALL):
+            for limit in (SLOW, NEAR):
                 share = slowness(self.unilateral, hit, self.motion.events, tracks, limit)
                 if share > 0.0:
                     unilateral, settling = self._settling(share, limit)

@@ -19,7 +19,6 @@ from tests.core.multibody.contact_judge import (
     solved,
     told_apart,
 )
-from tests.core.multibody.table.test_contact_geometry import states
 from tests.core.multibody.worked_examples import read
 
 ENDS = {"horizon", "simultaneous-impacts", "several-motions", "no-motion", "energy-gain", "no-progress"}
@@ -72,15 +71,18 @@ def test_impacts_in_turn_are_told_apart_down_to_a_millionth(seed: int) -> None:
     assert min(told_apart(answer), told_apart(other)) < END
 
 
-def test_bounces_below_what_is_known_of_the_state_come_to_rest() -> None:
-    """Two corners of a box bounce in turn until one is 1e-15 off the floor, known to 1e-12: it may not sink in."""
+def test_a_bounce_below_what_is_known_of_the_state_is_not_passed_over() -> None:
+    """Two corners of a box bounce in turn until one is 1e-15 off the floor, known to 1e-12: it sank in by 1 mm.
+
+    Which comes first is undecided from there on; the rows before are answered.
+    """
     scene = any_scene(1968)
-    assert judged(scene) == "horizon"
-    answer = solve_scene(read(scene), np.linspace(0.0, 2.0, 41), OUTPUTS, 1e-6)
+    assert judged(scene) == "simultaneous-impacts"
+    answer = solve_scene(read(scene), np.linspace(0.0, 2.0, 41), OUTPUTS, 1e-9)
     require_physical(answer, scene)
-    assert answer.trajectory is not None
-    assert 1e-9 < answer.trajectory.accuracy.error <= 1e-6
-    assert states(answer)[-1] == {"a": "open", "b": "stick", "c": "stick", "d": "open"}
+    assert answer.problem is not None
+    assert answer.problem.connections == ("b", "c")
+    assert answer.problem.time == pytest.approx(0.834108, abs=1e-6)
 
 
 def test_the_judge_sees_a_shifted_event() -> None:
