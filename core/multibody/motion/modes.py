@@ -20,7 +20,7 @@ from flint import acb, acb_mat, arb, arb_mat, ctx
 from core.arrays import Floats
 from core.balls import precision
 from core.multibody.algebra.characteristic_roots import roots_but_zero
-from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, entry, is_zero
+from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degree, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
 from core.multibody.equations.packed import pair
 from core.multibody.motion.motion import States, check_sample_count
@@ -313,6 +313,8 @@ class Modes:
 
     def lowest(self, poly: Poly) -> float:
         """Return what an affine polynomial of the coordinates is never below, minus infinity without a bound."""
+        if degree(poly) > 1:
+            return -math.inf
         start = [*self.table.q, *self.table.v, ONE]
         with precision(_BITS):
             terms = self._terms(start)

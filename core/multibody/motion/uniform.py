@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from flint import arb_poly
 
 from core.arrays import Floats
 from core.compiled import kernel
@@ -53,17 +54,19 @@ class Uniform:
 
 
 def first_zero(length: Poly, table: Table, accelerations: Sequence[Ball], backwards: bool) -> Ball | None:
-    """Return the first time after the start, or before it, at which an affine polynomial is zero; None for never.
+    """Return the first time after the start, or before it, at which a polynomial is zero; None for never.
 
-    The coordinates move with constant accelerations `accelerations`, and the time is a root of a quadratic in balls.
+    The coordinates move with constant accelerations `accelerations`, and the polynomial in them is one of degree two in
+    the time, as that of a length is: of a product, one factor is a direction that stays.
     """
-    c: Ball = length.get((), ZERO)
-    b = a = ZERO
+    path = arb_poly([0])
     for key, x in length.items():
-        if key:
-            c = c + x * table.q[key[0]]
-            b = b + x * table.v[key[0]]
-            a = a + x * accelerations[key[0]] / 2
+        term = arb_poly([x])
+        for i in key:
+            term *= arb_poly([table.q[i], table.v[i], accelerations[i] / 2])
+        path += term
+    assert all(is_zero(x) for x in path.coeffs()[3:]), "a length in constant acceleration is quadratic in the time"
+    c, b, a = path[0], path[1], path[2]
     if is_zero(a):
         roots = [] if is_zero(b) else [-c / b]
     else:

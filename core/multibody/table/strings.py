@@ -270,6 +270,8 @@ def _tangent(measures: Measures, name: str, a: Knot, b: Knot, path: Path) -> lis
         (offset, constant(ONE)),
     )
     measures.hold(name, crossed)
+    # The straight part, which is at right angles to the radii at its ends: a weight that reaches its drum ends it.
+    measures.limits.append(Limit("singular", name, length=dot(d, [coordinate(first), coordinate(second)])))
     parts = [(coordinate(first), rate_of(d[0])), (coordinate(second), rate_of(d[1]))]
     if ka and a.turn is not None:
         parts.append((constant(ka * a.radius), rate_of(a.turn)))

@@ -179,3 +179,36 @@ def test_coordinates_that_only_rounding_moves_do_not_shorten_steps(cosine: str, 
     turned = (np.asarray(second.values)[:, :2] @ [1, 1j]) * back
     assert np.max(np.abs(turned - np.asarray(first.values)[:, :2] @ [1, 1j])) < 1e-14
     assert np.max(np.abs(np.asarray(second.values)[:, 2] - np.asarray(first.values)[:, 2])) < 1e-14
+
+
+@pytest.mark.parametrize("apart", [("5", "0"), ("4", "3"), ("-60/13", "25/13"), ("2*cos(1)", "2*sin(1)")])
+@pytest.mark.parametrize("between", ["gravitation", "damper"])
+def test_a_force_that_a_rod_balances_does_not_stop_what_only_rounding_turns(
+    apart: tuple[str, str], between: str
+) -> None:
+    """Two stones joined by a rod leave two equal humps at once, at two thirds of the height, and fall side by side."""
+    x, y = apart
+    bodies = {"a": {"mass": 1, "at": ["0.6", "0.8"]}, "b": {"mass": 1, "at": [f"0.6 + {x}", f"0.8 + {y}"]}}
+    force = {"gravitation": {"constant": 1}, "damper": {"coefficient": 2}}[between]
+    connections = [
+        {"kind": "contact", "place": "a", "on": {"at": [0, 0], "radius": 1}},
+        {"kind": "contact", "place": "b", "on": {"at": [x, y], "radius": 1}},
+        {"kind": "rod", "a": "a", "b": "b"},
+        {"kind": between, "a": "a", "b": "b", **force},
+    ]
+    answer = solve_scene(
+        read({"gravity": [0, -10], "bodies": bodies, "connections": connections}), [0.5], ("trajectory",)
+    )
+    assert [event.kind for event in answer.events] == ["lift-off", "lift-off"]
+    with mpmath.workdps(30):
+        leaves, start = mpmath.mpf(8) / 15, mpmath.acos(mpmath.mpf("0.8"))
+        # The angle from the top grows at sqrt(2 g (0.8 - cos)); its way is taken as s^2.
+        slide = mpmath.quad(
+            lambda s: 2 * s / mpmath.sqrt(40 * mpmath.sin(start + s * s / 2) * mpmath.sin(s * s / 2)),
+            [0, mpmath.sqrt(mpmath.acos(leaves) - start)],
+        )
+        speed, late = mpmath.sqrt(20 * (mpmath.mpf("0.8") - leaves)), mpmath.mpf("0.5") - slide
+        across, down = speed * leaves, speed * mpmath.sqrt(1 - leaves**2)
+        expected = [mpmath.sqrt(1 - leaves**2) + across * late, leaves - down * late - 5 * late**2]
+    place = column(answer, "a.position")
+    assert np.max(np.abs(np.asarray(place.values)[0] - [float(x) for x in expected])) <= place.error + 1e-15

@@ -1,0 +1,113 @@
+"""Straight parts of strings that come to their end, in closed form, whatever moves beside them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.multibody.answer import SceneSolution
+from core.multibody.proven.proven_answer import proven_answer
+from core.multibody.solve import solve_scene
+from tests.core.multibody.worked_examples import column, read
+
+G = 9.81
+
+
+def over_a_drum(light: float, heavy: float, way: float, tilt: tuple[str, str] = ("1", "0")) -> dict[str, Any]:
+    """Return Atwood's machine with a drum, its lighter mass `way` below the tangent point; all turned by an angle."""
+    c, s = tilt
+
+    def turned(x: str, y: str) -> list[str]:
+        return [f"({c})*({x}) - ({s})*({y})", f"({s})*({x}) + ({c})*({y})"]
+
+    return {
+        "gravity": turned("0", f"-{G}"),
+        "bodies": {
+            "a": {"mass": light, "at": turned("-0.1", f"-{way}")},
+            "b": {"mass": heavy, "at": turned("0.1", "-1")},
+            "wheel": {"mass": 0.5, "radius": 0.1, "inertia": 0.0025, "at": [0, 0]},
+        },
+        "connections": [
+            {"kind": "pin", "a": "wheel", "b": [0, 0]},
+            {
+                "kind": "string",
+                "name": "s",
+                "through": ["a", "wheel", "b"],
+                "sides": {"wheel": ["left", "right"]},
+            },
+        ],
+    }
+
+
+def reached(light: float, heavy: float, way: float) -> float:
+    """Return when the lighter mass is at its drum: a = (m_2 - m_1) g/(m_1 + m_2 + I/r^2)."""
+    return float(np.sqrt(2 * way / ((heavy - light) * G / (light + heavy + 0.25))))
+
+
+def ended(scene: dict[str, Any], end: float) -> SceneSolution:
+    answer = solve_scene(read(scene), np.linspace(0, end, 21), ("trajectory",))
+    assert answer.ended is not None
+    assert answer.ended.kind == "singular"
+    assert answer.trajectory is not None
+    assert np.max(answer.trajectory.time) <= answer.ended.time
+    return answer
+
+
+@pytest.mark.parametrize(
+    ("light", "heavy", "way", "tilt"),
+    [
+        (1, 2, 1, ("1", "0")),
+        (0.5, 3, 0.3, ("1", "0")),
+        (1, 1.01, 0.05, ("0.8", "0.6")),
+        (1, 2, 0.7, ("5/13", "-12/13")),
+    ],
+)
+def test_a_weight_that_reaches_its_drum_ends_the_motion(
+    light: float, heavy: float, way: float, tilt: tuple[str, str]
+) -> None:
+    # Sides are named as seen in space: a turned machine keeps those of the upright one for turns below 90 degrees.
+    scene = over_a_drum(light, heavy, way, tilt)
+    expected = reached(light, heavy, way)
+    answer = ended(scene, 1.5 * expected)
+    assert answer.ended is not None
+    assert answer.ended.time == pytest.approx(expected, rel=1e-14)
+    assert answer.ended.name == "s"
+
+
+@pytest.mark.parametrize("beside", ["spring", "pendulum"])
+def test_it_ends_the_motion_beside_everything(beside: str) -> None:
+    scene = over_a_drum(1, 2, 1)
+    expected = reached(1, 2, 1)
+    if beside == "spring":
+        # A spring of almost no stiffness makes the motion one of modes.
+        spring = {"kind": "spring", "a": "b", "b": [0.1, -1], "stiffness": 1e-9, "rest_length": 0}
+        scene["connections"].append(spring)
+    else:
+        scene["bodies"]["bob"] = {"mass": 1, "at": [5.6, -0.8]}
+        scene["connections"].append({"kind": "rod", "a": "bob", "b": [5, 0]})
+    answer = ended(scene, 1.5 * expected)
+    assert answer.ended is not None
+    assert answer.ended.time == pytest.approx(expected, rel=1e-8 if beside == "spring" else 1e-14)
+
+
+def test_proven_digits_end_there_too() -> None:
+    found = proven_answer(read(over_a_drum(1, 2, 1)), 16, [Fraction(4, 5), Fraction(9, 10)], ["trajectory"])
+    assert found.rows == [0]
+    assert found.ended == "singular"
+
+
+def test_a_yo_yo_thrown_up_reaches_the_end_of_its_string() -> None:
+    scene = {
+        "gravity": [0, -G],
+        "bodies": {"y": {"mass": 0.1, "radius": 0.01, "inertia": 4e-5, "at": [0.01, -0.5], "velocity": [0, 4]}},
+        "connections": [{"kind": "string", "name": "s", "through": [[0, 0], "y"], "sides": {"y": "left"}}],
+    }
+    answer = ended(scene, 1.0)
+    assert answer.ended is not None
+    fall = G / (1 + 4e-5 / (0.1 * 0.01**2))
+    time = (4 - np.sqrt(16 - 2 * fall * 0.5)) / fall
+    assert answer.ended.time == pytest.approx(time, rel=1e-13)
+    assert np.max(column(answer, "y.position").values[:, 1]) < 0.0
