@@ -24,6 +24,7 @@ from service.execution.request_handler import RequestHandler
 from service.execution.supervision import end_with_supervisor, remove_temporary_files
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
+from service.http.target import path_of_target
 from service.observability.logs import LOG, configure
 from service.observability.metrics import Metrics
 from service.openapi.document import ABOUT, openapi, serve_routes
@@ -89,7 +90,9 @@ class Service(FastAPI):
             submit=studies.submit,
             starting=lambda: self._starting,
         )
-        self._handlers, self._bodies = dispatcher.handlers, dispatcher.bodies
+        # Paths with parameters in braces are matched by FastAPI, which reads the parameters.
+        self._handlers = {route: handler for route, handler in dispatcher.handlers.items() if "{" not in route[1]}
+        self._bodies = dispatcher.bodies
         serve_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
         self._http = self._with_cors(self._known_or_not)
         self._openapi_text = b""
@@ -102,6 +105,9 @@ class Service(FastAPI):
         path: str = scope["path"]
         if root := scope.get("root_path"):
             path = path.removeprefix(root)
+        if not path.startswith("/"):
+            path = path_of_target(path)
+            scope = {**scope, "path": (root or "") + path, "raw_path": path.encode()}
         handler = self._handlers.get((scope["method"], path)) or super().__call__
         await handler(scope, receive, send)
 

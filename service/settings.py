@@ -123,11 +123,15 @@ class Settings(BaseSettings):
     max_studies: int = Field(
         default=100, ge=1, description="Unfinished studies of one key, or of all without keys (429)."
     )
+    max_address_studies: int = Field(
+        default=20, ge=1, description="Of these, where no keys are required, those of one network address (429)."
+    )
     max_study_members: int = Field(default=10_000_000, ge=1, description="Largest number of members of a study (422).")
     max_studies_bytes: int = Field(
         default=50_000_000_000,
         ge=0,
-        description="Bytes that the results of all studies may take together, those to be computed included (503).",
+        description="Bytes that requests and results of all studies may take together, results to be computed "
+        "included, and one client half of them (503).",
     )
     max_study_seconds: float = Field(
         default=1e6, gt=0, description="Largest predicted processor time of a study, in seconds (422)."

@@ -129,8 +129,7 @@ class Dispatcher:
         if answer is not None:
             self._metrics.cache_hits.inc()
         else:
-            client = context.address if context.key is None else context.key.name
-            sender = Sender(client, context.key, context.gone)
+            sender = Sender(context.client, context.key, context.gone)
             document = await self._executor.answer(route, body, npz, media, sender)
             if media == archive.MEDIA_TYPE:
                 await self._stream(document, _etag_of_answer(route, body, media), context, _NPZ)
@@ -153,8 +152,8 @@ class Dispatcher:
             raise Refusal("unsupported-media-type", "the request of a study is JSON: Content-Type: application/json")
         negotiated(context.headers.get(b"accept", b"*/*"), ("application/json",))
         body = await self.bodies.read(context.receive, context.headers)
-        client = context.address if context.key is None else context.key.name
-        plan = await self._executor.answer(route, body, False, None, Sender(client, context.key, context.gone))
+        sender = Sender(context.client, context.key, context.gone)
+        plan = await self._executor.answer(route, body, False, None, sender)
         assert self._submit is not None
         await self._submit(context, body, plan.whole())
 

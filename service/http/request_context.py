@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Iterable, Iterator, Sequence
+from ipaddress import IPv4Address, ip_address, ip_network
 from math import ceil
 from time import perf_counter
 
@@ -67,6 +68,11 @@ class RequestContext:
         """The client's network address; empty where the server does not say."""
         client = self.scope.get("client")
         return client[0] if client else ""
+
+    @property
+    def client(self) -> str:
+        """By whom a request is counted: the key's name, or the network from which it came."""
+        return network_of(self.address) if self.key is None else self.key.name
 
     async def gone(self) -> None:
         """Return when the client has closed the connection; the body must have been read."""
@@ -212,6 +218,21 @@ class RequestContext:
             own.append((b"connection", b"close"))
         self.started = True
         await self._send({"type": "http.response.start", "status": status, "headers": [*headers, *own]})
+
+
+def network_of(address: str) -> str:
+    """Return an IPv4 address, or the network of an IPv6 address, of which a client has all 2**64."""
+    if ":" not in address:
+        return address
+    try:
+        found = ip_address(address.partition("%")[0])
+    except ValueError:
+        return address
+    if isinstance(found, IPv4Address):
+        return str(found)
+    if found.ipv4_mapped is not None:
+        return str(found.ipv4_mapped)
+    return str(ip_network((int(found), 64), strict=False))
 
 
 def _by_name(headers: Sequence[Header]) -> dict[bytes, bytes]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -85,7 +86,12 @@ class ChunkFiles:
             with _storage_errors():
                 self._files.pipe_file(path, data)
             return
-        self._files.makedirs(self._folder(study), exist_ok=True)
+        folder = self._folder(study)
+        if not self._files.exists(folder):
+            self._files.makedirs(folder, exist_ok=True)
+            for made in (self._root, folder):
+                # Results are for who runs the service alone, whatever the file mode creation mask.
+                os.chmod(made, 0o700)
         part = path + ".part"
         try:
             self._files.pipe_file(part, data)

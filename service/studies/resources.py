@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections import Counter
+from collections.abc import AsyncIterator, Callable, Hashable, Iterator
 from typing import Any
 
 import orjson
@@ -25,7 +26,7 @@ from service.studies.chunk_files import CorruptedChunk
 from service.studies.figures import figure
 from service.studies.results import Results
 from service.studies.states import JSON_TYPE, REPRESENTATIONS, signed, state_of
-from service.studies.store import DISMISSED, SUCCESSFUL, Study, storage_unavailable
+from service.studies.store import DISMISSED, SUCCESSFUL, Owner, Quotas, Study, storage_unavailable
 from service.studies.supervisor import Supervisor
 
 MOST_LISTED = 200
@@ -44,6 +45,9 @@ EVENTS_EVERY = 0.25
 MOST_WATCHED = 200
 """Connections on which events are sent, in all; those of one study share the looks at it."""
 
+MOST_WATCHED_BY_ONE = 50
+"""Of them, those of one client."""
+
 
 class Studies:
     """The resources of studies in one server process."""
@@ -51,7 +55,7 @@ class Studies:
     def __init__(self, settings: Settings, supervisor: Supervisor, compute: Compute) -> None:
         self._settings, self._supervisor, self._compute = settings, supervisor, compute
         self._store = supervisor.store
-        self._watching = 0
+        self._watching = Counter[Hashable]()
         self._looks: dict[tuple[str, str], asyncio.Future[Study]] = {}
 
     def routes(self) -> tuple[ResourceRoute, ...]:
@@ -123,12 +127,11 @@ class Studies:
         await self._in_thread(self._supervisor.files)
         if context.key is not None:
             context.key.work(seconds)
+        limits = self._settings
+        most = Quotas(limits.max_studies, limits.max_address_studies, limits.max_studies_bytes)
+        owner = Owner(_owner(context), "" if context.key is not None else str(context.client))
         try:
-            identity = await run_in_daemon_thread(
-                lambda: self._store.create(
-                    _owner(context), body, known, self._settings.max_studies, self._settings.max_studies_bytes
-                )
-            )
+            identity = await run_in_daemon_thread(lambda: self._store.create(owner, body, known, most))
         except Refusal:
             if context.key is not None:
                 context.key.charge(-seconds)
@@ -222,13 +225,17 @@ class Studies:
         """Send the state of a study whenever it has changed, until it has ended."""
         study = await self._own(context)
         negotiated(context.headers.get(b"accept", b"*/*"), ("text/event-stream",))
-        if self._watching >= MOST_WATCHED:
-            raise Refusal("too-busy", f"{MOST_WATCHED} connections watch studies already", retry_after=5.0)
-        self._watching += 1
+        client = context.client
+        if self._watching.total() >= MOST_WATCHED or self._watching[client] >= MOST_WATCHED_BY_ONE:
+            detail = f"{self._watching.total()} connections watch studies, {self._watching[client]} of them yours"
+            raise Refusal("too-busy", detail, retry_after=5.0)
+        self._watching[client] += 1
         try:
             await context.events(self._changes(context, study))
         finally:
-            self._watching -= 1
+            self._watching[client] -= 1
+            if not self._watching[client]:
+                del self._watching[client]
 
     async def _changes(self, context: RequestContext, study: Study) -> AsyncIterator[bytes]:
         before = None

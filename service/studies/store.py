@@ -11,12 +11,13 @@ import os
 import secrets
 import sqlite3
 import time
+import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 from service.observability.logs import LOG
 from service.problems import Refusal
@@ -35,11 +36,21 @@ PLANNED = {"path", "count", "shape", "inputs", "figures", "together", "seconds",
 PATIENCE = 5.0
 """Seconds for which a process waits for another's writing."""
 
+LONGEST_LOG = 2**22
+"""Bytes to which the log beside the database is cut when it has been written into it."""
+
+SHARE_OF_ONE = 0.5
+"""Of the bytes of all studies, which those of one owner may take."""
+
+_COMPRESSED = b"\x78"
+"""First byte of a compressed request (RFC 1950); no JSON text begins with it."""
+
 _TABLES = """
 CREATE TABLE IF NOT EXISTS studies (
     id TEXT PRIMARY KEY, owner TEXT NOT NULL, request BLOB NOT NULL, plan TEXT NOT NULL, status TEXT NOT NULL,
     message TEXT NOT NULL, created REAL NOT NULL, started REAL, finished REAL, statistics TEXT,
-    done INTEGER NOT NULL DEFAULT 0, failed INTEGER NOT NULL DEFAULT 0, seconds REAL NOT NULL DEFAULT 0.0
+    done INTEGER NOT NULL DEFAULT 0, failed INTEGER NOT NULL DEFAULT 0, seconds REAL NOT NULL DEFAULT 0.0,
+    address TEXT NOT NULL DEFAULT ''
 );
 CREATE TABLE IF NOT EXISTS chunks (
     study TEXT NOT NULL, start INTEGER NOT NULL, stop INTEGER NOT NULL, failed INTEGER NOT NULL,
@@ -89,6 +100,21 @@ class Study:
     def unfinished(self) -> bool:
         """Whether there is something left to do."""
         return self.status in UNFINISHED
+
+
+class Owner(NamedTuple):
+    """Whose a study is: the name of a key, and the address that it came from where no keys are required."""
+
+    name: str
+    address: str = ""
+
+
+class Quotas(NamedTuple):
+    """Unfinished studies of one owner and of one address without keys; bytes of all studies together."""
+
+    studies: int
+    of_address: int
+    bytes: int
 
 
 _STUDY = """SELECT id, owner, plan, status, message, created, started, finished, done, failed, seconds FROM studies """
@@ -146,56 +172,53 @@ class Store:
         return reason_of(fault)
 
     def _opened(self) -> sqlite3.Connection:
-        self.folder.mkdir(parents=True, exist_ok=True)
+        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        # The files beside the database get the permissions that it has.
+        file = os.open(self.folder / DATABASE, os.O_RDWR | os.O_CREAT, 0o600)
+        try:
+            os.fchmod(file, 0o600)
+        finally:
+            os.close(file)
         # Used by one thread at a time.
         connection = sqlite3.connect(
             self.folder / DATABASE, timeout=PATIENCE, isolation_level=None, check_same_thread=False
         )
+        # What is removed is given back to the file system; this has to come before the tables.
+        connection.execute("PRAGMA auto_vacuum = FULL")
         connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute(f"PRAGMA journal_size_limit = {LONGEST_LOG}")
         connection.execute("PRAGMA synchronous = NORMAL")
         connection.executescript(_TABLES)
+        if "address" not in [row[1] for row in connection.execute("PRAGMA table_info(studies)")]:
+            # Databases of earlier versions.
+            connection.execute("ALTER TABLE studies ADD COLUMN address TEXT NOT NULL DEFAULT ''")
         return connection
 
-    def create(self, owner: str, request: bytes, plan: Mapping[str, Any], most: int, most_bytes: int) -> str:
+    def create(self, owner: Owner, request: bytes, plan: Mapping[str, Any], most: Quotas) -> str:
         """Record a study and return its id, which cannot be guessed.
-
-        Parameters
-        ----------
-        most : int
-            Unfinished studies that the owner may have.
-        most_bytes : int
-            Of the results of all studies together, with those that are still to be computed.
 
         Raises
         ------
         Refusal
-            429 beyond the first, 503 beyond the second.
+            429 for too many unfinished studies, 503 for too many bytes.
         """
         identity = secrets.token_urlsafe(18)
+        body = zlib.compress(request, 1)
+        # Of clients without keys, each has an address; with keys, a client may have many.
+        own = ("owner = ?", (owner.name,)) if owner.name else ("owner = ? AND address = ?", tuple(owner))
         with self._connected() as connection:
             connection.execute("BEGIN IMMEDIATE")
-            (open_,) = connection.execute(
-                "SELECT COUNT(*) FROM studies WHERE owner = ? AND status IN (?, ?)", (owner, *UNFINISHED)
-            ).fetchone()
-            if open_ >= most:
-                detail = f"{open_} studies are unfinished already, the limit max_studies"
-                raise Refusal("too-busy", detail, retry_after=10.0)
-            (taken,) = connection.execute(
-                "SELECT COALESCE(SUM(json_extract(plan, '$.bytes')), 0) FROM studies"
-                " WHERE status != ? AND json_valid(plan)",
-                (DISMISSED,),
-            ).fetchone()
-            if taken + plan["bytes"] > most_bytes:
-                raise Refusal(
-                    "storage-unavailable",
-                    f"the results of all studies may take {most_bytes} bytes, the limit max_studies_bytes, of which "
-                    f"{max(0, most_bytes - taken)} are free and {plan['bytes']} are needed: "
-                    "remove studies that are not needed any more, or ask for fewer members",
-                )
+            _require_few(connection, ("owner = ?", (owner.name,)), most.studies, "max_studies")
+            if not owner.name:
+                _require_few(connection, own, most.of_address, "max_address_studies")
+            needed = plan["bytes"] + len(body)
+            _require_room(connection, ("TRUE", ()), needed, most.bytes, "the limit max_studies_bytes")
+            share = int(SHARE_OF_ONE * most.bytes)
+            _require_room(connection, own, needed, share, "one client's share of max_studies_bytes")
             connection.execute(
-                "INSERT INTO studies (id, owner, request, plan, status, message, created)"
-                " VALUES (?, ?, ?, ?, ?, '', ?)",
-                (identity, owner, request, json.dumps(plan), ACCEPTED, time.time()),
+                "INSERT INTO studies (id, owner, address, request, plan, status, message, created)"
+                " VALUES (?, ?, ?, ?, ?, ?, '', ?)",
+                (identity, *owner, body, json.dumps(plan), ACCEPTED, time.time()),
             )
             connection.execute("COMMIT")
         return identity
@@ -213,7 +236,8 @@ class Store:
         """Return the request of a study as it was sent, which may have megabytes."""
         with self._connected() as connection:
             row = connection.execute("SELECT request FROM studies WHERE id = ?", (identity,)).fetchone()
-        return b"" if row is None else bytes(row[0])
+        sent = b"" if row is None else bytes(row[0])
+        return zlib.decompress(sent) if sent.startswith(_COMPRESSED) else sent
 
     def listed(self, owner: str, limit: int) -> list[Study]:
         """Return an owner's studies, the latest first."""
@@ -223,9 +247,9 @@ class Store:
         """Return every study that is not finished, the earliest first."""
         return self._where("WHERE status IN (?, ?) ORDER BY created, id", UNFINISHED)
 
-    def finished_before(self, moment: float) -> list[Study]:
-        """Return the studies that were finished before a moment (s since 1970)."""
-        return self._where("WHERE finished < ?", (moment,))
+    def finished_before(self, moment: float, dismissed: float) -> list[Study]:
+        """Return the studies that ended before a moment (s since 1970), or were dismissed before another."""
+        return self._where("WHERE finished < ? OR (status = ? AND finished < ?)", (moment, DISMISSED, dismissed))
 
     def _where(self, condition: str, values: tuple[Any, ...]) -> list[Study]:
         if not self.exists:
@@ -310,6 +334,38 @@ class Store:
     def _write(self, statement: str, values: tuple[Any, ...]) -> bool:
         with self._connected() as connection:
             return connection.execute(statement, values).rowcount > 0
+
+
+Condition = tuple[str, tuple[str, ...]]
+"""Which studies are counted: SQL and its values."""
+
+
+def _require_few(connection: sqlite3.Connection, which: Condition, most: int, limit: str) -> None:
+    """Refuse another study where so many are unfinished."""
+    condition, values = which
+    (unfinished,) = connection.execute(
+        f"SELECT COUNT(*) FROM studies WHERE {condition} AND status IN (?, ?)", (*values, *UNFINISHED)
+    ).fetchone()
+    if unfinished >= most:
+        detail = f"{unfinished} studies are unfinished already, the limit {limit}"
+        raise Refusal("too-busy", detail, retry_after=10.0)
+
+
+def _require_room(connection: sqlite3.Connection, which: Condition, needed: int, most: int, limit: str) -> None:
+    """Refuse a study that needs more bytes than are free, with the results that are still to be computed."""
+    condition, values = which
+    (taken,) = connection.execute(
+        "SELECT COALESCE(SUM(LENGTH(request) + COALESCE(LENGTH(statistics), 0)"
+        " + CASE WHEN status != ? AND json_valid(plan) THEN json_extract(plan, '$.bytes') ELSE 0 END), 0)"
+        f" FROM studies WHERE {condition}",
+        (DISMISSED, *values),
+    ).fetchone()
+    if taken + needed > most:
+        raise Refusal(
+            "storage-unavailable",
+            f"requests and results of studies may take {most} bytes, {limit}, of which {max(0, most - taken)} are free "
+            f"and {needed} are needed: remove studies that are not needed any more, or ask for fewer members",
+        )
 
 
 def _study(row: tuple[Any, ...]) -> Study | None:

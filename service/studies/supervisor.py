@@ -20,8 +20,11 @@ from service.studies.store import Store
 LOOK_EVERY = 1.0
 """Seconds."""
 
-CLEAN_EVERY = 600.0
+CLEAN_EVERY = 60.0
 """Seconds."""
+
+KEEP_DISMISSED = 120.0
+"""Seconds in which clients that watch a study learn that it was dismissed."""
 
 DAY = 86_400.0
 
@@ -92,7 +95,8 @@ class Supervisor:
 
     def clean(self) -> None:
         """Remove what was finished too long ago."""
-        for study in self.store.finished_before(time.time() - DAY * self._settings.studies_keep_days):
+        now, keep = time.time(), DAY * self._settings.studies_keep_days
+        for study in self.store.finished_before(now - keep, now - min(keep, KEEP_DISMISSED)):
             self.files().remove(study.id)
             self.store.remove(study.id)
 

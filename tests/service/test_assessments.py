@@ -95,6 +95,13 @@ async def verdict(question: Any, pointer: str, claim: Any, **more: Any) -> str:
     return str(result["tests"][0]["verdict"])
 
 
+@pytest.mark.parametrize("largest", [1e15, 1e17, 1e100])
+async def test_a_wrong_period_beside_a_moment_that_exceeds_the_others_is_judged(largest: float) -> None:
+    body = {"kind": "principal-moments", "moments": [1.0, 2.0, largest]}
+    question = {"path": "/v1/rotation/precession", "request": {"body": body, "angular_velocity": [0.0, 0.1, 1.0]}}
+    assert await verdict(question, "/period", {"value": 1e3, "unit": "s"}) == "incorrect"
+
+
 async def test_the_reference_is_the_answer_with_its_error_and_its_unit() -> None:
     answer = await graded(FLIP, {"/flip_interval": {"value": 2.45, "unit": "s"}})
     (reference,) = answer["reference"]

@@ -70,7 +70,8 @@ def _as_symmetric(figure: Figure) -> Iterator[Any]:
         return
     rates = figure.request["angular_velocity"]
     k = max(range(3), key=lambda i: abs(rates[i]))
-    mean = (sum(moments) - moments[k]) / 2.0
+    # The sum of all less the one is zero where that one is much larger than the others.
+    mean = sum(moment / 2.0 for i, moment in enumerate(moments) if i != k)
     rate = abs((moments[k] - mean) / mean * rates[k])
     if rate:
         yield 2.0 * pi / rate

@@ -203,6 +203,31 @@ async def test_unknown_paths_and_methods(client: httpx.AsyncClient) -> None:
         assert (response.status_code, response.headers["allow"]) == (405, allowed)
 
 
+@pytest.mark.parametrize(
+    ("target", "status"),
+    [("http://test/healthz", 200), ("HTTP://example.org:8000/healthz", 200), ("http://test", 200), ("*", 404)],
+)
+async def test_targets_in_absolute_form_lead_to_their_path(target: str, status: int) -> None:
+    sent = await respond_to(toy_service(), target)
+    assert sent[0]["status"] == status
+
+
+async def respond_to(app: Service, target: str) -> list[Any]:
+    """Return what an application sends as its response to GET, however its target is written."""
+    sent: list[Any] = []
+
+    async def receive() -> Any:
+        return {"type": "http.disconnect"}
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    scope = {"type": "http", "method": "GET", "path": target, "raw_path": target.encode(), "headers": [],
+             "query_string": b"", "http_version": "1.1", "root_path": ""}  # fmt: skip
+    await app(scope, receive, send)
+    return sent
+
+
 async def test_pages(client: httpx.AsyncClient) -> None:
     for path, kind in (
         ("/", "text/html"),

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from service.http.etag import JSON, Representation, etag_of
 from service.http.limits import ClientGone
-from service.http.request_context import SHORT, VARY, RequestContext
+from service.http.request_context import SHORT, VARY, RequestContext, network_of
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
 from service.problems import REGISTRY, Problem
@@ -325,3 +325,18 @@ async def test_logs_and_counts_agree(caplog: pytest.LogCaptureFixture) -> None:
     assert told == {"request_id": "mine", "operation": "ask_toy", "method": "POST", "status": 499}
     assert json.dumps(vars(record)["milliseconds"])
     assert wire.counted() == {"499": "1.0"}
+
+
+@pytest.mark.parametrize(
+    ("address", "network"),
+    [
+        ("192.0.2.7", "192.0.2.7"),
+        ("2001:db8:1:2:3:4:5:6", "2001:db8:1:2::/64"),
+        ("::ffff:192.0.2.7", "192.0.2.7"),
+        ("fe80::1%eth0", "fe80::/64"),
+        ("", ""),
+        ("not:an:address", "not:an:address"),
+    ],
+)
+def test_a_client_of_ipv6_is_its_network(address: str, network: str) -> None:
+    assert network_of(address) == network

@@ -21,7 +21,7 @@ from service.studies.chunk_files import ChunkFiles
 from service.studies.cluster import Cluster
 from service.studies.engine import Engine
 from service.studies.results import Results
-from service.studies.store import Store, Study
+from service.studies.store import Owner, Quotas, Store, Study
 from service.studies.task import opened
 from tests.service.studies.toy_table import TABLE
 from tests.service.toy_routes import GOOD
@@ -95,7 +95,7 @@ class Desk:
         inputs = [{"pointer": entry["pointer"], "unit": None, "levels": None} for entry in request["vary"]]
         plan = {"path": "/v1/toy", "count": count, "shape": [count], "inputs": inputs, "figures": figures}
         rest = {"together": False, "seconds": each * count, "bytes": 0}
-        return self.store.create("", body, plan | rest, 100, 0)
+        return self.store.create(Owner(""), body, plan | rest, Quotas(100, 100, 10**9))
 
     def work(self, until: Callable[[], Any] = lambda: False, most: float = 60.0) -> None:
         """Work until there is nothing to do, or something has come about."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import io
 import json
+import os
+import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -17,9 +19,11 @@ import pytest
 from service.app import Service
 from service.http.keys import new_key
 from service.observability.metrics import Metrics
+from service.problems import Refusal
 from service.settings import Settings
+from service.studies import resources
 from service.studies.folder import Ownership
-from service.studies.store import Store
+from service.studies.store import Owner, Quotas, Store
 from service.studies.supervisor import Supervisor
 from tests.service.conftest import INLINE, client_of
 from tests.service.observability.test_metrics import read
@@ -95,6 +99,13 @@ async def test_a_study_from_submission_to_results(desk_on: Desks, in_process: st
         assert found["statistics"]["failures"] == {"unphysical-inertia": 3}
         listed = (await client.get("/v1/studies")).json()["studies"]
         assert [entry["jobID"] for entry in listed] == [state["jobID"]]
+
+
+@pytest.mark.parametrize("place", ["/v1/studies/{study}", "/v1/studies/{study}/results", "/v1/studies/{study}/events"])
+async def test_a_path_as_it_is_documented_is_no_study(tmp_path: Path, place: str) -> None:
+    async with client_at(tmp_path) as client:
+        assert (await client.get(place)).status_code == 404
+        assert (await client.delete("/v1/studies/{study}")).status_code == 404
 
 
 async def test_results_page_by_page(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
@@ -346,10 +357,81 @@ async def test_unfinished_studies_are_limited(tmp_path: Path) -> None:
         await submitted(client)
 
 
+async def test_one_address_has_a_share_of_studies_and_of_event_streams(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with client_at(tmp_path, max_address_studies=1) as client:
+        place = await submitted(client)
+        refused = await client.post("/v1/studies", json=GRID)
+        assert refused.json()["code"] == "too-busy"
+        assert "max_address_studies" in refused.json()["detail"]
+        monkeypatch.setattr(resources, "MOST_WATCHED_BY_ONE", 1)
+        watching = asyncio.create_task(client.get(f"{place}/events"))
+        await asyncio.sleep(0.3)
+        assert (await client.get(f"{place}/events")).json()["code"] == "too-busy"
+        await client.delete(place)
+        assert "event: dismissed" in (await watching).text
+        assert "event: dismissed" in (await client.get(f"{place}/events")).text
+
+
+def test_one_client_has_half_of_the_bytes(tmp_path: Path) -> None:
+    store, plan, most = Store(tmp_path), {"count": 1, "bytes": 400}, Quotas(9, 9, 1000)
+    store.create(Owner("", "192.0.2.1"), b"{}", plan, most)
+    with pytest.raises(Refusal, match="one client's share"):
+        store.create(Owner("", "192.0.2.1"), b"{}", plan, most)
+    store.create(Owner("", "192.0.2.2"), b"{}", plan, most)
+    with pytest.raises(Refusal, match="the limit max_studies_bytes"):
+        store.create(Owner("another"), b"{}", plan, most)
+    store.close()
+
+
+def test_requests_are_stored_compressed_and_given_back_to_the_file_system(tmp_path: Path) -> None:
+    sent = b'{"vary": [' + b" " * 8_000_000 + b"]}"
+    store, most = Store(tmp_path), Quotas(100, 100, 10**9)
+    for _ in range(5):
+        identity = store.create(Owner(""), sent, {"count": 1, "bytes": 0}, most)
+        assert store.request(identity) == sent
+    assert sum(file.stat().st_size for file in tmp_path.iterdir()) < 1_000_000
+    noise = np.random.default_rng(3).bytes(2_000_000)
+    identity = store.create(Owner(""), noise, {"count": 1, "bytes": 0}, most)
+    with pytest.raises(Refusal, match="max_studies_bytes"):
+        store.create(Owner(""), noise, {"count": 1, "bytes": 0}, Quotas(100, 100, 3_000_000))
+    store.remove(identity)
+    store.close()
+    assert sum(file.stat().st_size for file in tmp_path.iterdir()) < 1_000_000
+
+
+async def test_what_is_stored_is_readable_by_its_owner_alone(desk_on: Desks, in_process: str, tmp_path: Path) -> None:
+    folder = tmp_path / "data"
+    before = os.umask(0)
+    try:
+        Store(folder).unfinished()
+        async with finished(desk_on, in_process, folder):
+            places = [*folder.glob("studies.sqlite*"), *(folder / "studies").iterdir(), folder / "studies"]
+            assert len(places) >= 3
+            assert {path.name: path.stat().st_mode & 0o077 for path in places if path.stat().st_mode & 0o077} == {}
+    finally:
+        os.umask(before)
+
+
+async def test_dismissed_studies_are_removed_within_minutes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    supervisor = Supervisor(Settings(data=str(tmp_path)), TABLE, Metrics())
+    async with client_at(tmp_path) as client:
+        kept, place = await submitted(client), await submitted(client)
+        await client.delete(place)
+        supervisor.clean()
+        assert (await client.get(place)).json()["status"] == "dismissed"
+        now = time.time()
+        monkeypatch.setattr(time, "time", lambda: now + 180.0)
+        supervisor.clean()
+        assert (await client.get(place)).status_code == 404
+        assert (await client.get(kept)).status_code == 200
+
+
 async def test_stored_bytes_are_limited_until_results_are_removed(
     desk_on: Desks, in_process: str, tmp_path: Path
 ) -> None:
-    async with client_at(tmp_path, max_studies_bytes=40_000) as client:
+    async with client_at(tmp_path, max_studies_bytes=80_000) as client:
         first = await submitted(client, UNIFORM)
         state = (await client.get(first)).json()
         await asyncio.to_thread(desk_on(in_process, tmp_path).work)
@@ -474,7 +556,7 @@ async def test_unfinished_studies_are_counted(desk_on: Desks, in_process: str, t
 
 def test_ids_are_long_and_random(tmp_path: Path) -> None:
     store = Store(tmp_path)
-    ids = {store.create("", b"{}", {"count": 1, "bytes": 0}, 100, 0) for _ in range(9)}
+    ids = {store.create(Owner(""), b"{}", {"count": 1, "bytes": 0}, Quotas(100, 100, 10**4)) for _ in range(9)}
     store.close()
     assert len(ids) == 9
     assert all(len(identity) == 24 for identity in ids)
