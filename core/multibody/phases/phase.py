@@ -103,6 +103,8 @@ class PhaseMotion:
     impacts : list of (int, str, ball or None)
         Work of every impulse: the number of the phase that begins with it, the measure, and the work (J), None where
         contacts could share it otherwise. A ball about zero is what bounces that are left out may take.
+    fastest : dict of str to float
+        The largest rates by their units, beside which a rate that is zero when it is sampled has its error.
     """
 
     base: Described
@@ -113,6 +115,7 @@ class PhaseMotion:
     problem: Problem | None = None
     ended: MotionEvent | None = None
     impacts: list[tuple[int, str, Ball | None]] = field(default_factory=list)
+    fastest: dict[str, float] = field(default_factory=dict)
 
 
 def phase_of(base: Described, found: Decided, turning: Sequence[str], tracks: Tracks, start: ContactStart) -> Phase:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -51,8 +51,8 @@ class PhasedSystem:
         times = question.times[rows]
         with np.errstate(over="ignore", invalid="ignore"):
             pieces, how = self._pieces(motion, times)
-            columns = _merged(pieces, len(times)) | self._sums(times, how)
-            require_reached(columns, question.accuracy, before=_reached_until(pieces, times, question.accuracy))
+            columns = _merged(pieces, len(times), motion.fastest) | self._sums(times, how)
+            require_reached(columns, question.accuracy, before=self._reached_until(pieces, times, question.accuracy))
             stated = Accuracy(question.accuracy, worst(columns), how)
             if question.input_uncertainty is not None and len(times):
                 end = float(np.max(question.times))
@@ -68,6 +68,15 @@ class PhasedSystem:
             rows=rows,
             events=motion.events,
         )
+
+    def _reached_until(
+        self, pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], times: Floats, accuracy: float
+    ) -> float | None:
+        """Return the first time of a phase before which an accuracy is reached, None if it is at none or at all."""
+        for k in range(len(pieces)):
+            if worst(_merged(pieces[: k + 1], len(times), self.motion.fastest)) > accuracy:
+                return float(times[pieces[k][0][0]]) if k else None
+        return None
 
     def _sums(self, times: Floats, how: How) -> dict[str, Column]:
         """Return the columns of what is summed up along the motion."""
@@ -121,7 +130,7 @@ class PhasedSystem:
         """Add what the uncertainty of the inputs does, or why that is not known."""
 
         def columns_of(other: PhaseMotion) -> dict[str, Column]:
-            return _merged(self._pieces(other, times)[0], len(times))
+            return _merged(self._pieces(other, times)[0], len(times), self.motion.fastest)
 
         own = {name: columns[name] for name in columns_of(self.motion)}
         if not own:
@@ -133,18 +142,13 @@ class PhasedSystem:
         return with_inherited(columns, stated, moved, uncertainty, why=_NO_HORIZON)
 
 
-def _reached_until(
-    pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], times: Floats, accuracy: float
-) -> float | None:
-    """Return the first of the times of a phase before which an accuracy is reached, None if it is at none or at all."""
-    for k in range(len(pieces)):
-        if worst(_merged(pieces[: k + 1], len(times))) > accuracy:
-            return float(times[pieces[k][0][0]]) if k else None
-    return None
+def _merged(
+    pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], count: int, fastest: Mapping[str, float]
+) -> dict[str, Column]:
+    """Return the columns of all phases in one; a force that one of them does not determine is left out.
 
-
-def _merged(pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], count: int) -> dict[str, Column]:
-    """Return the columns of all phases in one; a force that one of them does not determine is left out."""
+    Rates are measured by the largest of the motion, also where all samples are at rest.
+    """
     if not pieces:
         return {}
     names = [name for name in pieces[0][1] if all(name in own for _, own in pieces)]
@@ -155,5 +159,5 @@ def _merged(pieces: Sequence[tuple[np.ndarray, dict[str, Column]]], count: int) 
         for mine, own in pieces:
             values[mine] = own[name].values
         error = max(own[name].error for _, own in pieces)
-        found[name] = Column(values, first.unit, error, first.how)
+        found[name] = Column(values, first.unit, error, first.how, scale=fastest.get(first.unit))
     return found

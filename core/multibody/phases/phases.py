@@ -106,6 +106,7 @@ class _Run:
             # The description is not at fault: what is known of the state does not tell any more what holds it.
             explanation = "the error of the motion has grown as large as the motion, and what holds it cannot be told"
             self._stop(Problem("lost-event", explanation, (), decided_by="an answer up to an earlier time"))
+        self.motion.fastest = {"m/s": self.tracks.fastest("m"), "rad/s": self.tracks.fastest("rad")}
 
     def _follow(self) -> None:
         still, last = 0, -1.0

@@ -42,13 +42,14 @@ def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> flo
 def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
     """Return what the error of each column is relative to: the largest value among the columns of its unit.
 
-    What is zero by symmetry has no scale of its own. Angles that are zero within their error are measured against one
-    radian, and their rates against the largest speed over the largest distance.
+    That is a scale that is known already, or the largest sample. What is zero by symmetry has no scale of its own.
+    Angles that are zero within their error are measured against one radian, and their rates against the largest speed
+    over the largest distance.
     """
     largest: dict[str, float] = {}
     unknown: dict[str, float] = {}
     for column in columns.values():
-        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest)
+        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest, column.scale or 0.0)
         unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
     away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
     for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):

@@ -190,3 +190,38 @@ def test_stones_leave_equal_humps_at_once_with_a_rod_between_them(
     for name, x in (("a", 0), ("b", 5)):
         own = column(answer, f"{name}.position")
         assert own.values[0] == pytest.approx([x + float(place[0]), float(place[1])], abs=own.error + 1e-14)
+
+
+@pytest.mark.parametrize("restitution", [0, 0.5])
+@pytest.mark.parametrize(("heavy", "height"), [(1.0001, 0.2), (1.2, 0.5)])
+def test_weights_that_jerk_and_land_in_turn_come_to_rest(restitution: float, heavy: float, height: float) -> None:
+    """Each time the string jerks, speeds fall to r = m/(m + M): 2 v/g in flight, 2 r v/a until the next landing.
+
+    They are at rest at sqrt(2h/a) + 2v/(g (1 - r)) + 2 r v/(a (1 - r)), and every later time is answered.
+    """
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"a": {"mass": 1, "at": [-0.5, 2]}, "b": {"mass": heavy, "at": [0.5, 2]}},
+        "connections": [
+            {"kind": "string", "name": "s", "through": ["a", [-0.5, 3], [0.5, 3], "b"]},
+            {
+                "kind": "contact",
+                "name": "floor",
+                "place": "b",
+                "on": {"at": [0, f"2 - {height}"]},
+                "restitution": restitution,
+            },
+        ],
+    }
+    gain, ratio = 10 * (heavy - 1) / (heavy + 1), 1 / (heavy + 1)
+    speed = math.sqrt(2 * gain * height)
+    end = speed / gain + 2 * speed / (10 * (1 - ratio)) + 2 * ratio * speed / (gain * (1 - ratio))
+    answer = solve_scene(read(scene), [1.01 * end, 3 * end], accuracy=1e-8)
+    assert answer.problem is None
+    last = answer.events[-1]
+    assert abs(last.time - end) <= last.error + 1e-9 * end
+    for name, place in (("a", 2 + height), ("b", 2 - height)):
+        own, rate = column(answer, f"{name}.position"), column(answer, f"{name}.velocity")
+        assert np.abs(own.values[:, 1] - place).max() <= own.error
+        assert np.abs(rate.values).max() <= rate.error < 1e-8 * speed
+        assert rate.scale >= speed
