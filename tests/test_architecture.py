@@ -226,6 +226,7 @@ TESTED_IN = {
     "core/scenes/string_phases.py": "core/scenes/test_unwinding_shafts.py",
     "core/scenes/string_samples.py": "core/scenes/test_unwinding_shafts.py",
 }
+TESTED_IN["core/assessment/gradable.py"] = "core/assessment/test_grader.py"
 TESTED_IN["core/assessment/sample_findings.py"] = "core/assessment/test_samples.py"
 TESTED_IN |= {
     f"core/assessment/catalogue/{name}.py": "contracts/test_mistakes.py"

@@ -171,7 +171,7 @@ def _plain(value: Any) -> Any:
 
 
 class AnswerKey:
-    """A key that has been read; see `core.assessment.grader.Question`.
+    """A key that has been read; see `core.assessment.gradable.Question`.
 
     Parameters
     ----------

@@ -46,6 +46,9 @@ MEASURED = "measured"
 
 COLUMNS = ("angular_velocity", "attitude")
 
+IN_TIME = "-in-time"
+"""What outputs end with that are further columns of a trajectory."""
+
 ULP = 2.0**-52
 
 CONDITIONING, ROUNDING = 8.0, 2e-15
@@ -59,6 +62,7 @@ MOST_CERTIFIED = 20
 """Times of a request that is answered in proven digits, too."""
 
 CERTIFIED = "ball arithmetic"
+STATED = "bound that the answer states"
 BETWEEN_POINTS = "measured (curve through its points)"
 ESTIMATE = "estimate (conditioning)"
 UNKNOWN = "unknown"
@@ -130,13 +134,17 @@ class GradedQuestion:
             If the question is refused with these times.
         """
         request = self.request | {"times": times.tolist()}
-        if path[0] in self._source.outputs:
-            request["outputs"] = [path[0]]
-        answer = self._answered(request)
-        value = value_at(answer, path)
-        if not isinstance(value, np.ndarray) or len(value) != len(times):
-            return None
-        return self._stated(path, value, "samples", answer)
+        own = [output for output in request.get("outputs", ()) if isinstance(output, str)]
+        in_time = sorted(output for output in self._source.outputs if output.endswith(IN_TIME))
+        # Columns beside those of the question's own are only answered where they are requested.
+        for outputs in ([path[0], *own], [path[0], *in_time])[: 2 if in_time else 1]:
+            if path[0] in self._source.outputs:
+                request["outputs"] = [*dict.fromkeys(outputs)]
+            answer = self._answered(request)
+            value = value_at(answer, path)
+            if isinstance(value, np.ndarray) and len(value) == len(times):
+                return self._stated(path, value, "samples", answer)
+        return None
 
     def parameters(self, names: Mapping[str, Path] | None) -> dict[str, tuple[Path, float, str]]:
         """Return path, value and unit of the numbers of the request that formulas may name.
@@ -226,17 +234,17 @@ class GradedQuestion:
     def _made(self, path: Path) -> Reference | None:
         value = value_at(self.answer, path)
         if value is None:
-            return Reference(None, self._unit(path), "none") if is_null(self.answer, path) else None
-        return self._stated(path, value, form_of(path, value, self._unit(path)), self.answer)
+            return Reference(None, self._unit(path, self.answer), "none") if is_null(self.answer, path) else None
+        return self._stated(path, value, form_of(path, value, self._unit(path, self.answer)), self.answer)
 
-    def _unit(self, path: Path) -> str:
-        beside = value_at(self.answer, (*path[:-1], "unit")) if len(path) > 1 else None
+    def _unit(self, path: Path, answer: Mapping[str, Any]) -> str:
+        beside = value_at(answer, (*path[:-1], "unit")) if len(path) > 1 else None
         return beside if isinstance(beside, str) else self._source.unit_of_answer(path) or "1"
 
     def _stated(self, path: Path, value: Any, form: Form, answer: Mapping[str, Any]) -> Reference:
         if form == "choice":
             return Reference(value, form=form)
-        unit = self._unit(path)
+        unit = self._unit(path, answer)
         size = float(np.abs(value).max(initial=0.0))
         # Of a figure that is 0 the scale is that of others in its unit.
         scale = 1.0 if form in ("direction", "axes", "attitude") else size or self._scales.get(unit) or 1.0
@@ -250,8 +258,12 @@ class GradedQuestion:
             return self._sampled(bare, path[0], size, accuracy)
         axis = _body_axis(answer, path)
         inherited, bare = self._propagation.of(path, bare), replace(bare, body_axis=axis)
+        beside = _bound_beside(answer, path)
+        stated = None if beside is None else replace(bare, error=_distance_of(bare, beside), inherited=inherited)
         if accuracy is not None and self.subject != TRAJECTORY:
             how = inside(accuracy, "how")
+            if stated is not None:
+                return replace(stated, how=how if form == "samples" else STATED)
             return replace(bare, error=inside(accuracy, "error") * size, how=how, inherited=inherited)
         if form == "curve":
             return replace(bare, error=dense(value)[1], how=BETWEEN_POINTS, inherited=inherited)
@@ -263,6 +275,8 @@ class GradedQuestion:
         proven = self._proven(path, bare)
         if proven is not None:
             return replace(bare, error=proven, how=CERTIFIED, inherited=inherited)
+        if stated is not None:
+            return replace(stated, how=STATED)
         half = inherited if self._uncertainty is None else self._in_half_ulps.of(path, bare)
         return replace(bare, error=CONDITIONING * (half or 0.0) + ROUNDING * size, how=ESTIMATE, inherited=inherited)
 
@@ -303,6 +317,16 @@ class GradedQuestion:
             return replace(bare, error=ROUNDING * norm, how=OF_METHOD, inherited=inherited)
         scale = max(norm, bare.scale) if bare.form == "samples" else bare.scale
         return replace(bare, scale=scale, error=error * norm, how=accuracy["how"], inherited=inherited)
+
+
+def _bound_beside(answer: Mapping[str, Any], path: Path) -> float | Floats | None:
+    """Return the bound that an answer states of a figure: under `errors` by its name, or as `error` of the only one."""
+    names = [k for k, step in enumerate(path) if isinstance(step, str)]
+    outer, own = path[: names[-1]], path[names[-1] :]
+    bound = value_at(answer, (*outer, "errors", own[0]))
+    if bound is None and own[0] in ("value", "values"):
+        bound = value_at(answer, (*outer, "error"))
+    return bound if isinstance(bound, (float, np.ndarray)) else None
 
 
 def _distance_of(bare: Reference, bound: float | Floats) -> float:

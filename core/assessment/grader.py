@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,8 +15,18 @@ from core.assessment.compare import Judgement, Reference, compare, exchanged
 from core.assessment.comparisons import Comparison
 from core.assessment.figures import DESCRIBED, steps_of
 from core.assessment.formula_variations import Variation
+from core.assessment.formulas import Undefined, value_in_doubles
+from core.assessment.gradable import Question
 from core.assessment.judged_claims import FEEDBACK, JudgedClaim, JudgedSubmission, explained
-from core.assessment.judged_formulas import AT_ONE_PLACE, FORMULA, NOT_JUDGED, JudgedFormula, Varied, judge_formula
+from core.assessment.judged_formulas import (
+    AT_ONE_PLACE,
+    FORMULA,
+    NOT_JUDGED,
+    UNDEFINED,
+    JudgedFormula,
+    Varied,
+    judge_formula,
+)
 from core.assessment.mistakes import Figure, Mistake, WrongValues
 from core.assessment.sample_findings import Consistent, SampleErrors
 from core.assessment.typed_entry import Locale
@@ -28,7 +38,6 @@ from core.work import spend
 if TYPE_CHECKING:
     from core.assessment.method_search import MethodSearch
     from core.assessment.samples import ExactSamples
-    from core.rotation.torque_free import TorqueFree
 
 CLAIM = 4
 """Work (`core.work`) of judging a claim."""
@@ -46,39 +55,6 @@ MOST_NAMED = 10
 
 UNITLESS = ("1", "rad")
 """Units that may be left out."""
-
-
-class Question(Protocol):
-    """What is graded against: a question that is computed (`GradedQuestion`), or the answer key of one."""
-
-    @property
-    def subject(self) -> str:
-        """Last steps of the endpoint's path."""
-
-    @property
-    def request(self) -> Any:
-        """As it was sent."""
-
-    def evaluate(self, request: Any) -> Callable[[Path], Any]:
-        """Ask a changed question; the result finds the value at a path of its answer, None where there is none."""
-
-    def reference(self, path: Path) -> Reference | None:
-        """Return the reference at a path of the answer, None if nothing that can be compared stands there."""
-
-    def figures_in(self, path: Path) -> Sequence[str]:
-        """Return the fields of the object at a path of the answer that are figures, null ones last."""
-
-    def samples(self, path: Path, times: Floats) -> Reference | None:
-        """Return a column of samples at other times, None if the path leads to no column."""
-
-    def parameters(self, names: Mapping[str, Path] | None) -> Mapping[str, tuple[Path, float, str]]:
-        """Return path, value and unit of the numbers of the request that formulas may name."""
-
-    def variations(self, path: Path, parameters: Mapping[str, tuple[Path, float, str]]) -> Sequence[Varied]:
-        """Return the question's parameters and the figure at a path, and those of variations of it."""
-
-    def rotation(self) -> TorqueFree | None:
-        """Return the free rotation that the question is about; None where its samples cannot be analysed."""
 
 
 class Grader:
@@ -151,7 +127,14 @@ class Grader:
         reference = self._reference(pointer, path, claim.times)
         # A word that was typed may be either.
         if claim.formula is not None and not (claim.value is not None and reference.form == "choice"):
-            return self._formula(pointer, path, reference, claim, claim.formula)
+            formula = self._read(claim, claim.formula, reference)
+            # Without a name, and with the unit that the figure needs, it is a number.
+            if formula.names or (claim.unit is None and reference.unit not in UNITLESS):
+                return self._formula(pointer, path, reference, claim, formula)
+            try:
+                claim = replace(claim, value=value_in_doubles(formula, {}))
+            except Undefined:
+                return self._result(pointer, Judgement("incorrect"), reference, why=UNDEFINED)
         try:
             value = _converted(claim, reference)
         except InvalidParameter as fault:
@@ -180,35 +163,44 @@ class Grader:
             why += [] if found is None else [found.sentence]
         return self._result(pointer, judgement, reference, mistakes, " ".join(why), samples)
 
-    def _formula(self, pointer: str, path: Path, reference: Reference, claim: Claim, text: str) -> JudgedClaim:
+    def _read(self, claim: Claim, text: str, reference: Reference) -> Formula:
+        """Return the formula of a claim."""
         if reference.form not in ("number", "angle", "none"):
             raise InvalidParameter(claim.field, "be left out: the figure is no number")
         try:
-            formula = Formula.read(text, self._parameters)
+            return Formula.read(text, self._parameters)
         except InvalidParameter as fault:
             raise fault.inside(claim.field) from None
+
+    def _formula(self, pointer: str, path: Path, reference: Reference, claim: Claim, formula: Formula) -> JudgedClaim:
         if reference.form == "none":
             return self._result(pointer, Judgement("incorrect"), reference)
-        judged = self._agreeing(formula, path, reference)
+        try:
+            # Names stand for numbers in SI units, and without a unit so does the value.
+            times = 1.0 if claim.unit is None else factor(claim.unit, reference.unit)
+        except InvalidParameter as fault:
+            return self._result(pointer, Judgement("wrong-unit"), reference, why=f"The unit must {fault.rule}.")
+        judged = self._agreeing(formula, path, reference, times)
         mistakes: tuple[Mistake, ...] = ()
         if judged.value is not None and judged.judgement.verdict == "incorrect":
             mistakes = self._wrong_values(path, reference, None).matching(judged.value, FORMULA)
         said = not mistakes and (self._reveal or judged.why == NOT_JUDGED)
         return self._result(pointer, judged.judgement, reference, mistakes, judged.why if said else "")
 
-    def _agreeing(self, formula: Formula, path: Path, reference: Reference) -> JudgedFormula:
+    def _agreeing(self, formula: Formula, path: Path, reference: Reference, times: float) -> JudgedFormula:
         """Judge a formula at variations of the named numbers, or of those that may vary without `names`.
 
         The numbers of a described scene are mostly coordinates. Changed one by one they make another arrangement, with
         strings that are vertical no more: without `names`, masses vary, and what else the formula has.
         """
         if self._names is not None or self._question.subject != DESCRIBED:
-            found = self._judged(formula, path, reference, self._parameters)
+            found = self._judged(formula, path, reference, times, self._parameters)
         else:
             masses = {name: one for name, one in self._parameters.items() if one[0][-1] == "mass"}
             own = {name: self._parameters[name] for name in sorted(formula.names)}
-            found = self._judged(formula, path, reference, masses | own)
-            if found.why == AT_ONE_PLACE and self._judged(formula, path, reference, masses).judgement.correct:
+            found = self._judged(formula, path, reference, times, masses | own)
+            alone = found.why == AT_ONE_PLACE and self._judged(formula, path, reference, times, masses)
+            if alone and alone.judgement.correct:
                 # Either the lengths in it are wrong, or the scene with others is another one.
                 found = JudgedFormula(Judgement("not-gradable"), NOT_JUDGED)
         if found.why == NOT_JUDGED and pointer_of(path) not in self.formulas_left:
@@ -216,14 +208,19 @@ class Grader:
         return found
 
     def _judged(
-        self, formula: Formula, path: Path, reference: Reference, varied: Mapping[str, tuple[Path, float, str]]
+        self,
+        formula: Formula,
+        path: Path,
+        reference: Reference,
+        times: float,
+        varied: Mapping[str, tuple[Path, float, str]],
     ) -> JudgedFormula:
         place = path, tuple(varied)
         if place not in self._variations:
             fixed = {name: value for name, (_, value, _) in self._parameters.items() if name not in varied}
             found = self._question.variations(path, varied)
             self._variations[place] = [Variation(fixed | {**one.parameters}, one.figure) for one in found]
-        return judge_formula(formula, self._variations[place], self._units, reference)
+        return judge_formula(formula, self._variations[place], self._units, reference, times)
 
     @cached_property
     def _parameters(self) -> Mapping[str, tuple[Path, float, str]]:

@@ -53,7 +53,11 @@ class JudgedFormula:
 
 
 def judge_formula(
-    formula: Formula, variations: Sequence[Varied], units: Mapping[str, str], reference: Reference
+    formula: Formula,
+    variations: Sequence[Varied],
+    units: Mapping[str, str],
+    reference: Reference,
+    times: float = 1.0,
 ) -> JudgedFormula:
     """Judge a formula.
 
@@ -66,13 +70,15 @@ def judge_formula(
         Of the parameters.
     reference : Reference
         At the question's own parameters.
+    times : float
+        What one unit of the formula's value is in the unit of the reference.
     """
     if len(variations) <= ENOUGH:
         return JudgedFormula(Judgement("not-gradable"), NOT_JUDGED)
     try:
-        values = [value_in_doubles(formula, one.parameters) for one in variations]
+        values = [times * value_in_doubles(formula, one.parameters) for one in variations]
     except Undefined:
-        return JudgedFormula(Judgement("incorrect"), "The formula has no value at such parameters.")
+        return JudgedFormula(Judgement("incorrect"), UNDEFINED)
     # Formula and reference have the same numbers: how uncertain these are is no difference between the two.
     own = compare(replace(reference, inherited=0.0), values[0], FORMULA)
     if own.verdict == "not-gradable":
@@ -86,6 +92,7 @@ def judge_formula(
     return JudgedFormula(own, _dimensional_fault(formula, units, reference.unit) or why, None if why else values[0])
 
 
+UNDEFINED = "The formula has no value at such parameters."
 NOT_JUDGED = "A formula cannot be judged here. Write the number, with its unit."
 AT_ONE_PLACE = "The formula agrees at the given parameters, and at others it does not."
 

@@ -346,12 +346,18 @@ class RestRange:
         Its value in the scene.
     lower, upper : RestEnd or None
         null where the scene does not rest as it is written.
+    reason : str or None
+        Why they are null.
+    error : float
+        Of the written value as a double.
     """
 
     vary: str
     written: OwnUnit
     lower: RestEnd | None
     upper: RestEnd | None
+    reason: str | None
+    error: OwnUnit
 
 
 @dataclass(frozen=True)

@@ -72,3 +72,70 @@ def test_a_number_that_is_equal_by_chance_keeps_its_own_effect() -> None:
     by_angle = abs(slope * (c / s - s / c - 2 * m * s * c / (mass + m * s * s)))
     size = m * 9.81 * s * c / (mass + m * s * s)
     assert reference["inherited"] == pytest.approx(size * share * (1 + by_masses + by_angle), rel=1e-4)
+
+
+SWINGING = {
+    "gravity": [0, -9.81],
+    "bodies": {"bob": {"mass": 1, "at": [0.6, -0.8]}},
+    "connections": [{"kind": "rod", "name": "rod", "a": "bob", "b": [0, 0]}],
+}
+OSCILLATOR = {
+    "gravity": [0, -9.81],
+    "bodies": {"block": {"mass": 1, "at": [0.9, 0]}},
+    "connections": [
+        {"kind": "track", "place": "block", "on": {"at": [0, 0]}},
+        {"kind": "spring", "a": [-1, 0], "b": "block", "stiffness": 1, "rest_length": 1},
+    ],
+    "times": [1],
+}
+
+
+@pytest.mark.parametrize("outputs", [None, ["forces"], ["forces", "trajectory"], ["trajectory", "forces-in-time"]])
+def test_forces_in_time_are_graded_at_times_of_the_claim(outputs: list[str] | None) -> None:
+    times = [0.25, 0.5, 1.0]
+    asked = SWINGING | {"times": times, "outputs": ["forces-in-time"]}
+    column = answer_to({"path": "/v1/scenes", "request": asked})["trajectory"]["columns"]["rod.force"]
+    request = SWINGING | ({} if outputs is None else {"outputs": outputs})
+    if outputs is not None and outputs != ["forces"]:
+        request |= {"times": [0.1]}
+    claim = {"value": column["values"], "unit": "N", "times": times}
+    wrong = claim | {"value": [2 * x for x in column["values"]]}
+    right, other = handled({"path": "/v1/scenes", "request": request}, *({FORCE: one} for one in (claim, wrong)))[
+        "results"
+    ]
+    assert right["tests"][0]["verdict"] == "correct"
+    assert other["tests"][0]["verdict"] == "incorrect"
+
+
+FORCE = "/trajectory/columns/rod.force/values"
+
+
+@pytest.mark.parametrize(
+    ("claim", "verdict"),
+    [
+        ({"formula": "2*pi", "unit": "s"}, "correct"),
+        ({"formula": "2000*pi", "unit": "ms"}, "correct"),
+        ({"text": "2*pi s"}, "correct"),
+        ({"formula": "pi/30", "unit": "min"}, "correct"),
+        ({"formula": "2*pi*sqrt(m/k)", "unit": "s"}, "correct"),
+        ({"formula": "2000*pi*sqrt(m/k)", "unit": "ms"}, "correct"),
+        ({"formula": "2*pi*sqrt(m/k)"}, "correct"),
+        ({"formula": "2*pi*sqrt(m/k)", "unit": "ms"}, "incorrect"),
+        ({"formula": "2*pi*sqrt(m/k)", "unit": "m"}, "wrong-unit"),
+        ({"formula": "pi", "unit": "s"}, "incorrect"),
+        ({"formula": "2*pi", "unit": "kg"}, "wrong-unit"),
+        ({"formula": "2*pi"}, "incorrect"),
+    ],
+)
+def test_a_unit_beside_a_formula_counts(claim: dict[str, str], verdict: str) -> None:
+    """A constant with its unit is a number; a formula with names has the value in the unit beside it."""
+    names = {"m": "/bodies/block/mass", "k": "/connections/1/stiffness"}
+    question = {"path": "/v1/scenes", "request": OSCILLATOR}
+    (result,) = handled(question, {"/period": claim}, names=names)["results"]
+    assert [test["verdict"] for test in result["tests"]] == [verdict]
+
+
+def test_a_reference_has_the_error_that_stands_beside_it() -> None:
+    question = {"path": "/v1/scenes", "request": OSCILLATOR}
+    answer = handled(question, {"/period": {"value": 6.283, "unit": "s"}})
+    assert answer["reference"][0]["error"] == answer_to(question)["errors"]["period"]

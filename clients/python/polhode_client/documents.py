@@ -1683,6 +1683,8 @@ class RestRange(TypedDict):
     written: float
     lower: RestEnd | None
     upper: RestEnd | None
+    reason: str | None
+    error: float
 
 
 class RestEnd(TypedDict):

@@ -207,6 +207,8 @@ def _quotient(one: Ball, other: Ball) -> Ball:
 def _power(one: Ball, exponent: Ball) -> Ball:
     if not abs(exponent) <= LARGEST_POWER:
         raise InvalidParameter((), f"have powers between -{LARGEST_POWER} and {LARGEST_POWER}")
+    if is_zero(one) and exponent > 0:
+        return arb(0)
     return _quotient(arb(1), one**-exponent) if exponent < 0 else one**exponent
 
 
@@ -220,8 +222,8 @@ def _of_a_sine(inverse: Callable[[Ball], Ball]) -> Callable[[Ball], Ball]:
     """Return an inverse function that takes what cannot be told from -1 and 1 as these."""
 
     def found(argument: Ball) -> Ball:
-        near = argument.sgn()
-        return inverse(near if is_zero(argument - near) else argument)
+        end = next((end for end in (arb(-1), arb(1)) if is_zero(argument - end)), None)
+        return inverse(argument if end is None else end)
 
     return found
 

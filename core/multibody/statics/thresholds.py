@@ -20,12 +20,13 @@ from math import isfinite
 
 from flint import arb
 
+from core.balls import distance_bound
 from core.errors import InvalidParameter, MechanicsError, NotApplicable, Path, pointer_of
 from core.multibody.algebra.polynomials import Ball, is_zero
 from core.multibody.answer import RestEnd, RestRange
 from core.multibody.contacts.complementarity import decided, stays
 from core.multibody.contacts.contact_start import assemble_contacts
-from core.multibody.contacts.contact_states import Problem
+from core.multibody.contacts.contact_states import Problem, State
 from core.multibody.equations.packed import nearest
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
@@ -41,6 +42,10 @@ _NARROW = 2.0**-64
 _HALVINGS = 200
 _UNITS = 50.0
 """Work of one probe, for every coordinate of the scene."""
+
+
+_BECOMES = {State.OPEN: "open", State.FORWARD: "slide", State.BACKWARD: "slide"}
+"""What becomes of a contact that does not hold."""
 
 
 @dataclass(frozen=True)
@@ -134,10 +139,29 @@ def range_of_rest(scene: Scene, question: RestOf, where: Path = ()) -> RestRange
     if written < least or written > most:
         raise InvalidParameter((*where, "between"), f"hold the written value {float(written):.10g}")
     touching = assemble_contacts(base).touching
+    value = nearest(written)
+    error = distance_bound(written, value) or 0.0
     if not _rests(base, touching):
-        return RestRange(question.vary, nearest(written), None, None)
+        return RestRange(question.vary, value, None, None, _why_not(base, touching), error)
     varied = _Varied(scene, path, where, touching)
-    return RestRange(question.vary, nearest(written), _end(varied, written, least), _end(varied, written, most))
+    return RestRange(question.vary, value, _end(varied, written, least), _end(varied, written, most), None, error)
+
+
+def _why_not(base: Described, touching: Sequence[int]) -> str:
+    """Return why a scene does not rest as it is written."""
+    table, unilateral = base.measures.table, base.measures.unilateral
+    moving = dict.fromkeys(
+        name.partition(".")[0] for name, x in zip(table.names, table.v, strict=True) if not is_zero(x)
+    )
+    if moving:
+        return f"with the written value it does not rest: at the start {', '.join(moving)} has a velocity"
+    found = decided(table, unilateral, touching, table.q, table.v)
+    if isinstance(found, Problem):
+        return f"with the written value it does not rest: {found.explanation}"
+    states = [
+        f"{unilateral[i].name} would {_BECOMES[found.states[i]]}" for i in touching if found.states[i] in _BECOMES
+    ]
+    return f"with the written value no forces balance it{': ' if states else ''}{', '.join(states)}"
 
 
 def _checked(question: RestOf, where: Path) -> tuple[Path, Ball, Ball]:

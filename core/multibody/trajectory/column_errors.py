@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from core.arrays import Floats
 from core.errors import AccuracyUnreachable, NotApplicable
 from core.systems.trajectory import Column
 
+PLACES_BETWEEN = np.arange(1, 18) * ((5.0**0.5 - 1.0) / 2.0) % 1.0
+"""Shares of a time that are spread evenly and meet none of the fractions of a period."""
+ROUNDED = 2.0**-46
+"""Share of the largest value that the error of a column has by rounding alone, with that of its sizes."""
 FINEST = 2.0**-50
 """An accuracy below this is only met by coordinates and rates that are the doubles nearest to pairs."""
 
@@ -42,15 +47,13 @@ def relative(figures: Mapping[str, float], columns: Mapping[str, Column]) -> flo
 def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
     """Return what the error of each column is relative to: the largest value among the columns of its unit.
 
-    That is a scale that is known already, or the largest sample. What is zero by symmetry has no scale of its own.
-    Angles that are zero within their error are measured against one radian, and their rates against the largest speed
-    over the largest distance.
+    That is a scale that is known already, as of what is small at all samples, or the largest sample. What is zero by
+    symmetry has no scale of its own. Angles that are zero within their error are measured against one radian, and their
+    rates against the largest speed over the largest distance.
     """
-    largest: dict[str, float] = {}
-    unknown: dict[str, float] = {}
+    largest, unknown = _sizes(columns)
     for column in columns.values():
-        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest, column.scale or 0.0)
-        unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
+        largest[column.unit] = max(largest[column.unit], column.scale or 0.0)
     away, speed = largest.get("m", 0.0), largest.get("m/s", 0.0)
     for unit, scale in (("rad", 1.0), ("rad/s", speed / away if away > 0.0 else 0.0)):
         if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
@@ -60,6 +63,45 @@ def scales_of(columns: Mapping[str, Column]) -> dict[str, float]:
         if largest.get(unit, 0.0) <= unknown.get(unit, 0.0):
             largest[unit] = 0.0
     return {name: largest[column.unit] for name, column in columns.items()}
+
+
+def _sizes(columns: Mapping[str, Column]) -> tuple[dict[str, float], dict[str, float]]:
+    """Return the largest value and the largest error among the columns of each unit."""
+    largest: dict[str, float] = {}
+    unknown: dict[str, float] = {}
+    for column in columns.values():
+        largest[column.unit] = max(largest.get(column.unit, 0.0), column.largest)
+        unknown[column.unit] = max(unknown.get(column.unit, 0.0), column.error)
+    return largest, unknown
+
+
+def with_natural_sizes(
+    columns: Mapping[str, Column], times: Floats, columns_at: Callable[[Floats], Mapping[str, Column]]
+) -> dict[str, Column]:
+    """Return columns, those that are small at all times with how large they are between the start and the farthest.
+
+    A rate is zero where the motion turns back. There its error is that of the whole motion, and no share of what is
+    left of the rate.
+
+    Parameters
+    ----------
+    times : ndarray, shape (t,)
+        Of the samples.
+    columns_at : callable
+        The same columns at other times.
+    """
+    largest, unknown = _sizes(columns)
+    small = {unit for unit, size in largest.items() if unknown[unit] > ROUNDED * size}
+    farthest = float(times[np.argmax(np.abs(times))]) if len(times) else 0.0
+    if not small or farthest == 0.0:
+        return dict(columns)
+    other = columns_at(farthest * PLACES_BETWEEN)
+    return {
+        name: replace(column, scale=max(column.scale or 0.0, other[name].largest))
+        if column.unit in small and name in other
+        else column
+        for name, column in columns.items()
+    }
 
 
 def scaled(columns: Mapping[str, Column]) -> dict[str, Column]:

@@ -23,6 +23,7 @@ from core.multibody.trajectory.column_errors import (
     require_known,
     require_reached,
     scaled,
+    with_natural_sizes,
     worst,
 )
 from core.multibody.trajectory.columns import COLUMNS_OF_STATES, NEAREST, Columns
@@ -240,7 +241,11 @@ class DescribedSystem:
             )
         columns = Columns(self.whole, times, states, self.how, rounding)
         chosen = Nearest(columns).chosen if rounding == NEAREST else columns.chosen
-        return chosen(self.outputs, self.determined)
+        return with_natural_sizes(chosen(self.outputs, self.determined), times, self._columns_between)
+
+    def _columns_between(self, times: Floats) -> dict[str, Column]:
+        """Return the columns at times between the samples, for their sizes."""
+        return Columns(self.whole, times, self.whole.states(times), self.how).chosen(self.outputs, self.determined)
 
     def _measured(self, times: Floats, states: WholeStates, how: How) -> dict[str, Column]:
         """Return the columns of states that a method computed, their errors measured against the motion itself."""
@@ -251,7 +256,10 @@ class DescribedSystem:
             right = self._columns(times, finer=finer)
             require_known(right)
             known = worst(right)
-            found = {name: replace(one, error=apart(one, right[name]) + right[name].error) for name, one in own.items()}
+            found = {
+                name: replace(one, error=apart(one, right[name]) + right[name].error, scale=right[name].scale)
+                for name, one in own.items()
+            }
             if finer or not self.numerical or known <= SHARE * worst(found):
                 break
             finer = True

@@ -323,3 +323,20 @@ def test_impulse_of_a_pendulum_that_meets_a_wall(seed: int) -> None:
             Figure("loss", event.energy_loss, event.errors.energy_loss, mass * speed**2 / 2 * (1 - bounce**2)),
         ]
     )
+
+
+@pytest.mark.parametrize("halves", [1, 2, 7, 1000])
+def test_rates_where_a_motion_turns_back(halves: int) -> None:
+    """The speed is zero there but for the rounding of the time: its error is a share of the speeds of the motion."""
+    found = solve_scene(read(pendulum(mpf(1), mpf("0.6"), mpf("0.8"), 0)), [1.0])
+    assert found.period is not None
+    time = halves * found.period / 2
+    solution = solve_scene(read(pendulum(mpf(1), mpf("0.6"), mpf("0.8"), 0)), [time], accuracy=1e-14)
+    assert solution.trajectory is not None
+    column = solution.trajectory.columns["bob.velocity"]
+    # Beside a turning point the speed is g sin(amplitude) times the time since then.
+    exact = 4 * mpmath.ellipk(mpf("0.1")) / mpmath.sqrt(G)
+    late = mpf(time) - halves * exact / 2
+    speed = mpmath.norm([mpf(x) for x in column.values[0].tolist()])
+    assert abs(speed - abs(late) * G * mpf("0.6")) <= column.error + abs(late) ** 3 * 1000
+    assert column.scale == pytest.approx(float(mpmath.sqrt(2 * G * mpf("0.2"))), rel=0.1)

@@ -129,3 +129,24 @@ def test_names_that_cannot_be(let: Any) -> None:
 def test_no_text_does_anything_but_mean_a_number_or_be_refused(text: str) -> None:
     with suppress(InvalidParameter):
         assert ball(text).is_finite()
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("acos(0.3 - 0.3)", mpmath.pi / 2),
+        ("asin(0.3 - 0.3)", 0),
+        ("acos(0.1 + 0.2 - 0.3)", mpmath.pi / 2),
+        ("asin(1 - 0.9 - 0.1)", 0),
+        ("acos(0.7 + 0.3)", 0),
+        ("asin(-0.7 - 0.3)", -mpmath.pi / 2),
+        ("(0.3 - 0.3)^0.5", 0),
+        ("(0.1 + 0.2 - 0.3)^1.5", 0),
+        ("sqrt(0.3 - 0.3)", 0),
+    ],
+)
+def test_functions_of_what_cancels(text: str, value: Any) -> None:
+    """Differences of decimals that are zero are so in balls up to their width, also where functions end there."""
+    found = ball(text)
+    assert found.is_finite()
+    assert abs(float(found) - float(value)) < 1e-90 or float(found) == float(value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Any
 
 import mpmath
@@ -185,9 +186,14 @@ def test_equilibrium_at_one_value_alone() -> None:
 
 def test_a_scene_that_moves_has_no_range() -> None:
     steep = {**INCLINE, "let": {"alpha": "0.8"}}
-    assert ranged(steep, "/let/alpha", 0, 1) == RestRange("/let/alpha", 0.8, None, None)
+    found = ranged(steep, "/let/alpha", 0, 1)
+    assert (found.written, found.lower, found.upper) == (0.8, None, None)
+    assert found.reason == "with the written value no forces balance it: face would slide"
+    assert abs(Fraction("0.8") - Fraction(0.8)) <= found.error < 2.0**-54
     thrown = {**INCLINE, "bodies": {"block": {"mass": 2, "at": [0, 0], "velocity": ["cos(0.2)", "sin(0.2)"]}}}
-    assert ranged(thrown, "/connections/0/friction/0", 0.5, 1).lower is None
+    found = ranged(thrown, "/connections/0/friction/0", 0.5, 1)
+    assert found.lower is None
+    assert found.reason == "with the written value it does not rest: at the start block has a velocity"
 
 
 def test_rest_that_would_end_by_other_places_touching_is_refused() -> None:
