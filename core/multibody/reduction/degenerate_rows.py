@@ -8,6 +8,7 @@ there, so that g is a quadratic form in q - q_0. Three cases matter for the moti
 * The free places near the start lie in an affine subspace, as those of bars that only move parallel to themselves do.
   The subspace is found from places near the start and then proven: within it the measures that are left are as many as
   they have to be, and independent, so that the places of the subspace are all there are on the component of the start.
+  g may be semidefinite along the directions that the lines of W leave: then only its kernel is free among these.
 * Otherwise g follows from the others along the motion, or the start is a singular place
   (`core.multibody.equations.dynamics.singular_row`); nothing is changed.
 """
@@ -15,16 +16,14 @@ there, so that g is a quadratic form in q - q_0. Three cases matter for the moti
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
-from flint import arb
 
-from core.errors import NotApplicable
+from core.errors import InvalidParameter
 from core.multibody.algebra.polynomials import (
     ONE,
     ZERO,
-    Ball,
+    LinearForm,
     Poly,
     combined,
     constant,
@@ -33,22 +32,14 @@ from core.multibody.algebra.polynomials import (
     is_zero,
     product,
     substituted,
-    variables,
 )
 from core.multibody.algebra.rank import Elimination, Line, independent
-from core.multibody.equations.assembly import least_change
+from core.multibody.reduction.free_places import FreePlaces, tangent_directions
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.table.table import Row, Table
 
 _INDEPENDENT = 1e-6
 """Ratio of singular values in doubles from which lines are independent for certain: far above their rounding."""
-
-_STRIDE = 0.125
-"""How far from the start places are taken, as a share of the coordinates: the n-th derivatives of the free places are
-then visible as 8^-n, beside 2^-280 to which the places are known."""
-
-_NEWTON_STEPS = 12
-"""From a share of an eighth to 2^-280 quadratic convergence takes nine."""
 
 
 def resolve(state: Reduced) -> bool:
@@ -97,13 +88,8 @@ def _squares(state: Reduced, rows: Sequence[Row]) -> bool:
         if roots is None:
             continue
         others = [row for row in state.table.rows if row is not rows[k]]
-        state.table.rows = [*others, *(Row.held(rows[k].name, root) for root in roots)]
-        state.steps.append(
-            f"{rows[k].name}: a sum of squares, each of which vanishes"
-            if roots
-            else f"{rows[k].name}: follows from other measures"
-        )
-        return True
+        why = "a sum of squares, each of which vanishes" if roots else "follows from other measures"
+        return _hold(state, rows[k].name, roots, why, others)
     return False
 
 
@@ -135,90 +121,84 @@ def squared(measure: Poly) -> list[Poly] | None:
 def _subspace(state: Reduced, rows: Sequence[Row]) -> bool:
     """Add the affine measures that hold for all free places next to the start."""
     table = state.table
-    inside = sorted(variables(row.measure or {} for row in rows))
-    hull = _affine_hull(table, rows, inside)
-    if hull is None or len(hull.pivots) == len(inside):
+    lines = [row.line(table.q) for row in rows]
+    bounds = [rows[k].measure or {} for k in independent(lines)]
+    double = _double(table, rows, bounds)
+    if double is None:
         return False
-    held = [_through(table, line) for line in _complement(hull, inside)]
-    if not _proven(table, rows, inside, held):
+    places = FreePlaces(table, [*bounds, *double], [row.measure or {} for row in rows])
+    inside = places.inside
+    if not places.span() or len(places.hull.pivots) == len(inside):
         return False
-    name = ", ".join(dict.fromkeys(row.name for row in rows))
-    state.table.rows = [*table.rows, *(Row.held(rows[0].name, measure) for measure in held)]
-    state.steps.append(f"{name}: their free places lie in an affine subspace")
+    held = [_through(table, form) for form in places.complement()]
+    dimension = len(inside) - len(bounds) - len(double)
+    if not _proven(table, rows, inside, held, dimension):
+        return False
+    if double and len(independent(row.line(places.last) for row in rows)) > len(bounds):
+        # Elsewhere in the subspace the measures are independent: the start is where it meets other free places.
+        return False
+    return _hold(state, rows[0].name, held, "free places lie in an affine subspace", state.table.rows)
+
+
+def _hold(state: Reduced, name: str, held: Sequence[Poly], why: str, others: Sequence[Row]) -> bool:
+    """Add affine measures beside rows.
+
+    Raises
+    ------
+    InvalidParameter
+        If the rates of the start contradict them, which the lines of W at the start do not show.
+    """
+    rows = [Row.held(name, measure) for measure in held]
+    for row in rows:
+        if not is_zero(sum((x * state.table.v[j] for j, x in row.line(state.table.q).items()), ZERO)):
+            raise InvalidParameter(
+                ("connections",),
+                f'agree with the velocities: the start is a singular place, where "{name}" and the connections around '
+                "it hold what the velocities move, to second order",
+                remedy="leave out the velocities, or start elsewhere",
+            )
+    state.table.rows = [*others, *rows]
+    state.steps.append(f"{name}: {why}")
     return True
 
 
-def _affine_hull(table: Table, rows: Sequence[Row], inside: Sequence[int]) -> Elimination | None:
-    """Return the span of the ways from the start to free places next to it, None where these are not found."""
-    lines = [row.line(table.q) for row in rows]
-    chosen = independent(lines)
-    tangent = Elimination()
-    for k in chosen:
-        tangent.add(lines[k], ZERO)
-    free = [j for j in inside if j not in tangent.pivots]
-    scale = {
-        unit: max((float(abs(table.q[j])) for j in inside if table.units[j] == unit), default=0.0) or 1.0
-        for unit in set(table.units)
-    }
-    hull = Elimination()
-    if not free:
-        return hull
-    idle = 0
-    # A place of the subspace adds a direction, but for a set of measure zero; two in a row that add none end it.
-    for number in range(2 * len(inside) + 2):
-        place = _free_place(table, rows, chosen, _stride(tangent, free, number, scale, table.units))
-        if place is None:
+def _double(table: Table, rows: Sequence[Row], bounds: Sequence[Poly]) -> list[Poly] | None:
+    """Return affine measures of the places where measures that depend on others vanish doubly; None where none are.
+
+    Along the directions t that the lines of W leave, such a measure is t H t to second order. Where that is
+    semidefinite, nothing but its kernel is free, and H (q - q_0) = 0 holds along the motion if the measures go on to
+    depend on one another in the same way.
+    """
+    directions = tangent_directions(table, bounds)
+    found: list[Poly] = []
+    basis = Elimination()
+    for _, measure in _dependent(table, rows):
+        bend = Row.held("", measure).rates
+        slopes = [_applied(bend, direction) for direction in directions]
+        form: Poly = {}
+        for a, slope in enumerate(slopes):
+            for b, direction in enumerate(directions[: a + 1]):
+                x = sum((y * direction[j] for j, y in slope.items() if j in direction), ZERO)
+                if not is_zero(x):
+                    form[b, a] = x / 2 if a == b else x
+        if squared(form) is None:
             return None
-        way = {j: x for j in inside if not is_zero(x := place[j] - table.q[j])}
-        idle = 0 if hull.add(way, ZERO) is None else idle + 1
-        if idle == 2 or len(hull.pivots) == len(inside):
-            return hull
-    return None
+        for slope in slopes if form else ():
+            across = {
+                a: sum((y * slope[j] for j, y in t.items() if j in slope), ZERO) for a, t in enumerate(directions)
+            }
+            if basis.add({a: x for a, x in across.items() if not is_zero(x)}, ZERO) is None:
+                found.append(_through(table, slope))
+    return found
 
 
-def _stride(
-    tangent: Elimination, free: Sequence[int], number: int, scale: dict[str, float], units: Sequence[str]
-) -> Line:
-    """Return one of a sequence of steps along the connections."""
-    step: Line = {}
-    for k, f in enumerate(free):
-        # Multiples of the golden ratio are spread evenly (Weyl) and depend on one another for no short sequence.
-        share = ((number + 1) * (k + 1) * 0.6180339887498949) % 1.0 - 0.5
-        step[f] = ONE * (_STRIDE * share * scale[units[f]])
-    for j, (line, _) in tangent.pivots.items():
-        step[j] = sum((-line[f] * step[f] for f in free if f in line), ZERO)
-    return step
-
-
-def _free_place(table: Table, rows: Sequence[Row], chosen: Sequence[int], step: Line) -> list[Ball] | None:
-    """Return the place on the measures next to one that is a step away from the start, None where there is none."""
-    q = [x + step[j] if j in step else x for j, x in enumerate(table.q)]
-    trial = replace(table)
-    for _ in range(_NEWTON_STEPS):
-        q = [x.mid() for x in q]
-        lines = [rows[k].line(q) for k in chosen]
-        try:
-            change = least_change(trial, lines, [evaluated(rows[k].measure or {}, q) for k in chosen])
-        except NotApplicable:
-            return None
-        q = [x - d for x, d in zip(q, change, strict=True)]
-        largest, size = (max((float(abs(x)) for x in values), default=0.0) for values in (change, q))
-        if largest <= 2.0**-150 * size:
-            q = [arb(x.mid(), max(largest, 2.0**-280 * size)) for x in q]
-            return q if all(is_zero(evaluated(row.measure or {}, q)) for row in rows) else None
-    return None
-
-
-def _complement(hull: Elimination, inside: Sequence[int]) -> list[Line]:
-    """Return linear forms that vanish on a span of ways."""
-    found = []
-    for j in inside:
-        if j not in hull.pivots:
-            form: Line = {j: ONE}
-            for i, (line, _) in hull.pivots.items():
-                if j in line:
-                    form[i] = ZERO - line[j]
-            found.append(form)
+def _applied(bend: LinearForm, direction: Line) -> Line:
+    """Return the second derivative of a quadratic, given its gradient, times a direction."""
+    found: Line = {}
+    for j, poly in bend.items():
+        x = sum((value * direction[key[0]] for key, value in poly.items() if key and key[0] in direction), ZERO)
+        if not is_zero(x):
+            found[j] = x
     return found
 
 
@@ -228,14 +208,12 @@ def _through(table: Table, form: Line) -> Poly:
     return combined((ONE, measure), (-evaluated(measure, table.q), constant(ONE)))
 
 
-def _proven(table: Table, rows: Sequence[Row], inside: Sequence[int], held: Sequence[Poly]) -> bool:
+def _proven(table: Table, rows: Sequence[Row], inside: Sequence[int], held: Sequence[Poly], dimension: int) -> bool:
     """Return whether affine measures follow from others on the component of the start.
 
-    The independent measures bound a manifold of dimension d at the start. Where the subspace holds a manifold of the
-    same dimension on which all measures vanish, the two are one.
+    The independent measures, and those where others vanish doubly, bound a manifold of a dimension at the start. Where
+    the subspace holds a manifold of the same dimension on which all measures vanish, the two are one.
     """
-    lines = [row.line(table.q) for row in rows]
-    dimension = len(inside) - len(independent(lines))
     elimination = Elimination()
     for measure in held:
         elimination.add({key[0]: x for key, x in measure.items() if key}, -entry(measure, ()))

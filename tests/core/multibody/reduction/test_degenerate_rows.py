@@ -134,3 +134,34 @@ def test_crank_and_coupler_in_line_remain_a_singular_place() -> None:
     scene = platform(("1", "0"), "0", "0", [("-0.5", "0"), ("0.5", "0")])
     with pytest.raises(ValueError, match="singular place"):
         moved(scene)
+
+
+def test_velocities_that_hold_to_first_order_only_are_refused() -> None:
+    scene = touching([-6, -8])
+    scene["bodies"]["p"]["velocity"] = [0.8, -0.6]
+    with pytest.raises(ValueError, match="singular place"):
+        moved(scene)
+
+
+@pytest.mark.parametrize("rate", [["0", "0"], ["0.3", "-1"]])
+@pytest.mark.parametrize("at", [("0.48", "0.36", "-0.8"), ("-0.64", "0.48", "-0.6"), ("3/13", "-4/13", "-12/13")])
+@pytest.mark.parametrize("count", [4, 5])
+def test_plates_in_space_on_parallel_rods_move_as_a_pendulum(
+    at: tuple[str, str, str], rate: list[str], count: int
+) -> None:
+    """The fourth rod holds the turn about the rods to second order only, a fifth off its circle to first order."""
+    x, y, z = at
+    u, v = rate
+    body = {"mass": 4, "at": list(at), "velocity": [u, v, f"-(({u})*({x}) + ({v})*({y}))/({z})"]}
+    point = {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"p": body},
+        "connections": [{"kind": "rod", "a": "p", "b": [0, 0, 0]}],
+    }
+    places = [[0.5, 0.3, 0], [-0.5, 0.3, 0], [-0.5, -0.3, 0], [0.5, -0.3, 0], [0.1, 0.2, 0]][:count]
+    plate = {
+        "gravity": [0, 0, -9.81],
+        "bodies": {"p": body | {"moments": [0.5, 0.6, 0.8], "places": {f"a{k}": at for k, at in enumerate(places)}}},
+        "connections": [{"kind": "rod", "a": f"p.a{k}", "b": at} for k, at in enumerate(places)],
+    }
+    assert alike(moved(plate), moved(point))
