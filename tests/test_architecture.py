@@ -264,7 +264,7 @@ TESTED_IN |= {
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",
         "motion/test_free_body": "motion/turning_body",
         "trajectory/test_nearest": "motion/attitudes",
-        "search/test_first_zero": "search/curves search/location search/pieces search/taylor",
+        "search/test_first_zero": ("search/curves search/first_of_motion search/location search/pieces search/taylor"),
         "phases/test_sums_in_phases": "phases/stretches",
         "parts/test_joined_answer": (
             "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"

@@ -26,6 +26,9 @@ SINGULAR_TIME_ERROR = 1e-9
 """Relative error of the time of a singular place: steps end where they are shorter than 1e-12 of the time reached, and
 a thousand such steps are a margin for what is left to the place."""
 
+BEFORE_SINGULAR = 1.0 - SINGULAR_TIME_ERROR
+"""Share of the time of a singular place up to which the motion is followed."""
+
 _SHARE, _FINE_SHARE = 2.0**-10, 2.0**-4
 """Largest error of a reference's coordinates, as a share of the largest that it finds: of doubles, and of pairs."""
 

@@ -65,7 +65,8 @@ class Whole:
     dropped: bool = False
 
     @cached_property
-    def _affine(self) -> tuple[Floats, Floats]:
+    def affine(self) -> tuple[Floats, Floats]:
+        """Slopes and offsets of the coordinates as described in those of the reduced table, as pairs."""
         count = len(self.reduced.table.names)
         slopes = np.zeros((len(self.reduced.expressions), count, 2))
         offsets = np.zeros((len(self.reduced.expressions), 2))
@@ -82,6 +83,14 @@ class Whole:
         """The table as described for compiled code, its units, and the rows that it holds."""
         table, chosen = self.measures.table, self.independent_rows
         units = units_of(table, self.acceleration)
+        return packed(table, chosen, units), units, chosen
+
+    @cached_property
+    def reduced_arrays(self) -> tuple[Packed, Units, list[int]]:
+        """The reduced table for compiled code, its units, and the rows that it holds."""
+        table = self.reduced.table
+        chosen = independent(row.line(table.q) for row in table.rows)
+        units = units_of(table, self.reduced_accelerations)
         return packed(table, chosen, units), units, chosen
 
     @cached_property
@@ -118,13 +127,13 @@ class Whole:
             z_error[:, where], w_error[:, where] = found.q_error, found.v_error
             other[:, where], rate[:, where] = (found.q, found.v) if found.reference is None else found.reference
             measured = measured or found.reference is not None
-        slopes, offsets = self._affine
+        slopes, offsets = self.affine
         size = np.abs(slopes[:, :, 0]).T
         nothing = np.zeros_like(offsets)
-        reference = (_spread(slopes, offsets, other), _spread(slopes, nothing, rate)) if measured else None
+        reference = (spread(slopes, offsets, other), spread(slopes, nothing, rate)) if measured else None
         return WholeStates(
-            _spread(slopes, offsets, z),
-            _spread(slopes, nothing, w),
+            spread(slopes, offsets, z),
+            spread(slopes, nothing, w),
             z_error @ size,
             w_error @ size,
             reference,
@@ -132,17 +141,24 @@ class Whole:
 
     def states_at(self, z: Floats, w: Floats) -> WholeStates:
         """Return the states that go with coordinates and rates of the reduced table, each of shape (t, n)."""
-        slopes, offsets = self._affine
-        q = _spread(slopes, offsets, np.stack([z, np.zeros_like(z)], axis=2))
-        v = _spread(slopes, np.zeros_like(offsets), np.stack([w, np.zeros_like(w)], axis=2))
+        slopes, offsets = self.affine
+        q = spread(slopes, offsets, np.stack([z, np.zeros_like(z)], axis=2))
+        v = spread(slopes, np.zeros_like(offsets), np.stack([w, np.zeros_like(w)], axis=2))
         nothing = np.zeros(q.shape[:2])
         return WholeStates(q, v, nothing, nothing, None)
 
     def in_pairs(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
         """Return every coordinate and rate at times of shape (t,), right to pairs of doubles, each of (t, n, 2).
 
-        The kind is that of the runs of parts without a closed form, "fine" or the coarser "check".
+        The kind is that of the runs of parts without a closed form: "fine" or the coarser "check", "reference" or
+        "doubles".
         """
+        slopes, offsets = self.affine
+        z, w = self.reduced_in_pairs(times, kind)
+        return spread(slopes, offsets, z), spread(slopes, np.zeros_like(offsets), w)
+
+    def reduced_in_pairs(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
+        """Return the coordinates and rates of the reduced table, as `in_pairs` does."""
         shape = (len(times), len(self.reduced.table.names), 2)
         z, w = np.zeros(shape), np.zeros(shape)
         for indices, motion in self.parts:
@@ -150,10 +166,10 @@ class Whole:
                 z[:, list(indices)], w[:, list(indices)] = motion.by(kind, times)
             else:
                 found = motion.states(times)
-                own = (found.q, found.v) if kind == "fine" or found.reference is None else found.reference
+                first = kind in ("fine", "reference") or found.reference is None
+                own = (found.q, found.v) if first or found.reference is None else found.reference
                 z[:, list(indices)], w[:, list(indices)] = own
-        slopes, offsets = self._affine
-        return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w)
+        return z, w
 
     def in_doubles(self, times: Floats) -> tuple[Floats, Floats, bool]:
         """Return the states as `in_pairs`, or faster to a few roundings of doubles, and whether it is the latter."""
@@ -171,8 +187,8 @@ class Whole:
             else:
                 states = motion.states(times)
                 z[:, where], w[:, where] = states.q, states.v
-        slopes, offsets = self._affine
-        return _spread(slopes, offsets, z), _spread(slopes, np.zeros_like(offsets), w), True
+        slopes, offsets = self.affine
+        return spread(slopes, offsets, z), spread(slopes, np.zeros_like(offsets), w), True
 
     def places(self, times: Floats) -> Floats:
         """Return every coordinate at times of one sign, shape (t, n), to a few roundings of the answer's."""
@@ -180,7 +196,7 @@ class Whole:
         for indices, motion in self.parts:
             own = motion.places(times) if isinstance(motion, Numerical) else motion.states(times).q[..., 0]
             z[:, list(indices)] = own
-        slopes, offsets = self._affine
+        slopes, offsets = self.affine
         found: Floats = offsets[:, 0] + z @ slopes[:, :, 0].T
         return found
 
@@ -271,7 +287,7 @@ def rates_along(line: LinearForm, q: Floats, v: Floats) -> tuple[Floats, Floats]
 
 
 @kernel()
-def _spread(slopes: Floats, offsets: Floats, z: Floats) -> Floats:
+def spread(slopes: Floats, offsets: Floats, z: Floats) -> Floats:
     """Return offsets + slopes z in pairs for z of shape (t, n, 2)."""
     count, n = slopes.shape[0], slopes.shape[1]
     out = np.empty((z.shape[0], count, 2))

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from flint import arb
 
 from core.errors import AccuracyUnreachable
@@ -15,31 +14,36 @@ from core.multibody.contacts.contact_states import State, phase_table
 from core.multibody.contacts.projection import project
 from core.multibody.equations.packed import two_to
 from core.multibody.equations.polynomial_roots import sharpened
-from core.multibody.motion.numerical import Numerical
-from core.multibody.motion.periods import Periodic
-from core.multibody.motion.vertical_symmetry import Shifted
-from core.multibody.motion.whole import Whole
+from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
 from core.multibody.phases.crossings import Crossing, first_in_closed_form, state_of, uniform_motion
 from core.multibody.phases.phase import Phase
+from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
-from core.multibody.phases.watches import Watch, watches
-from core.multibody.search.first_zero import FirstZero, Found
+from core.multibody.phases.watches import Watch, lengths, watches
+from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
+from core.multibody.search.first_zero import Found
 from core.multibody.search.location import NotLocated, located
-from core.multibody.search.pieces import Expanded, ExpandedWhole
+from core.multibody.search.pieces import Expanded, repeats_after
 from core.multibody.table.description import Described
 from core.multibody.table.table import Row
 
-_PAST = 1.0 + 2.0**-20
-"""How far beyond a period is searched, so that what touches zero at its start and so at its end is seen to do so."""
-
 
 class SingularPlace(Exception):
-    """The connections lose their hold at a time of the phase."""
+    """The motion ends in a phase: its connections lose their hold, or a length is zero.
 
-    def __init__(self, time: float) -> None:
+    Attributes
+    ----------
+    time : ball
+        Since the start of the phase.
+    error : float
+    name : str
+        The connection whose length is zero.
+    """
+
+    def __init__(self, time: Ball, error: float, name: str = "") -> None:
         super().__init__(time)
-        self.time = time
+        self.time, self.error, self.name = time, error, name
 
 
 @dataclass(frozen=True)
@@ -74,13 +78,24 @@ def crossings_of(base: Described, phase: Phase, left: Ball, noticed: list[str]) 
     Raises
     ------
     SingularPlace
-        Where the connections lose their hold before.
+        Where the connections lose their hold before, or a length reaches zero.
     AccuracyUnreachable
         If the end cannot be located.
     Undecided
         If it is not known whether a gap closes before that.
     """
-    watched = watches(phase.unilateral, phase.states, phase.tables[0])
+    watched = [*watches(phase.unilateral, phase.states, phase.tables[0]), *lengths(base.measures.limits)]
+    found = _crossings(base, phase, watched, left, noticed)
+    if found and found[0].watch.what == "length":
+        time = found[0].time
+        apart = SAFETY_FACTOR * abs(float(time - found[-1].time))
+        raise SingularPlace(time, apart + float(time.rad()) + 2.0**-52 * abs(float(time)), found[0].watch.one.name)
+    return found
+
+
+def _crossings(
+    base: Described, phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]
+) -> list[Crossing]:
     if phase.uniform and len(phase.tracks) == 1:
         return _in_closed_form(phase, watched, left, noticed)
     if phase.turning:
@@ -127,25 +142,26 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
 
 def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
     """Return the first crossing of a phase on both of its tracks, none where nothing ends it."""
-    motions, period = _motions(phase), _repeats(phase.models[0].whole)
-    search = FirstZero(motions, [watch.along for watch in watched], [watch.what == "gap" for watch in watched])
+    expansions, period = _expansions(phase), repeats_after(phase.models[0].whole)
+    search = FirstOfMotion(expansions, [watch.watched for watch in watched])
     last = left if period is None else min(left, period)
     reach, singular = min(last, _first_reach(phase)), None
     while True:
         singular = _singular(phase, reach)
-        one = search.until(reach if singular is None else singular)
-        if one is not None or singular is not None or reach >= last:
+        hit = search.until(reach if singular is None else singular * BEFORE_SINGULAR)
+        if hit is not None or singular is not None or reach >= last:
             break
         reach = min(last, 2.0 * reach)
-    if one is None:
+    if hit is None:
         if singular is not None:
-            raise SingularPlace(singular)
+            raise SingularPlace(arb(singular), SINGULAR_TIME_ERROR * singular)
         return []
-    watch = watched[one.index]
+    number, one = hit
+    watch = watched[number]
     if one.width > 0.0:
         raise Undecided(Graze(arb(one.time, one.width), watch))
     try:
-        crossings = _located(phase, motions, watch, one, left)
+        crossings = _located(phase, expansions.by(watch.watched), watch, one, left)
     except NotLocated:
         since = float(phase.start)
         raise AccuracyUnreachable(
@@ -175,14 +191,14 @@ def _located(phase: Phase, motions: Sequence[Expanded], watch: Watch, found: Fou
     return crossings
 
 
-def _motions(phase: Phase) -> list[Expanded]:
+def _expansions(phase: Phase) -> Expansions:
     """Return the motion on both tracks, or by both of its runs; only one where it is known in closed form."""
     first, last = phase.models[0].whole, phase.models[-1].whole
     if phase.turning:
-        return [ExpandedInBalls(first, "fine"), ExpandedInBalls(last, "check")]
-    if first is last and all(motion.how == "closed form" for _, motion in first.parts):
-        return [ExpandedWhole(first)]
-    return [ExpandedWhole(first, "fine"), ExpandedWhole(last, "check")]
+        both = [ExpandedInBalls(first, "fine"), ExpandedInBalls(last, "check")]
+        return Expansions(both, both)
+    exact = first is last and all(motion.how == "closed form" for _, motion in first.parts)
+    return Expansions.of([(first, "fine")] if exact else [(first, "fine"), (last, "check")])
 
 
 def _first_reach(phase: Phase) -> float:
@@ -206,14 +222,3 @@ def _singular(phase: Phase, end: float) -> float | None:
             if run.singular and kind == "fine":
                 found.append(run.end * two_to(motion.units.time))
     return min(found, default=None)
-
-
-def _repeats(whole: Whole) -> float | None:
-    """Return the time after which nothing new happens in a motion, None where it does not repeat itself."""
-    moving = [motion for _, motion in whole.parts if motion.name != "rest"]
-    period = moving[0].period if len(moving) == 1 else None
-    inner = moving[0].motion if len(moving) == 1 and isinstance(moving[0], Shifted) else moving[0] if moving else None
-    # It may turn about the vertical with each period, or something may only wind on.
-    if period is None or (isinstance(inner, Periodic) and (inner.winding != 0.0 or bool(np.any(inner.shift)))):
-        return None
-    return _PAST * float(period)

@@ -26,7 +26,6 @@ from core.multibody.equations.dynamics import kinetic
 from core.multibody.equations.packed import nearest
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
-from core.multibody.motion.numerical import SINGULAR_TIME_ERROR
 from core.multibody.phases.phase import Phase, PhaseMotion, phase_of
 from core.multibody.phases.phase_ends import SingularPlace, Undecided, crossings_of
 from core.multibody.phases.recurring_bounces import LATER_LISTED, LISTED, MANY, SMALL, recurring
@@ -286,7 +285,7 @@ class _Run:
             return False
         except SingularPlace as place:
             phase.end = phase.start + place.time
-            event = MotionEvent("singular", "", float(phase.end), SINGULAR_TIME_ERROR * float(phase.end))
+            event = MotionEvent("singular", place.name, nearest(phase.end), self.tracks.late() + place.error)
             self.motion.events.append(event)
             self.motion.ended = event
             return False

@@ -52,6 +52,12 @@ class ExpandedInBalls:
             for i, series in enumerate(motion.multipliers):
                 multipliers[s, i] = [pair(x, k * exponent) for k, x in enumerate(series)]
             for i in range(n):
-                sizes[s, i] = np.max(np.abs(places[s, group == group[i], :, 0]), axis=0)
-            others[s] = np.max(np.abs(multipliers[s, :, :, 0]), axis=0, initial=0.0)
+                sizes[s, i] = _falling(np.max(np.abs(places[s, group == group[i], :, 0]), axis=0))
+            others[s] = _falling(np.max(np.abs(multipliers[s, :, :, 0]), axis=0, initial=0.0))
         return Pieces(lengths, places, sizes, multipliers, others)
+
+
+def _falling(sizes: Floats) -> Floats:
+    """Return the sizes of coefficients, each at least as large as those that follow it."""
+    found: Floats = np.maximum.accumulate(sizes[::-1])[::-1]
+    return found

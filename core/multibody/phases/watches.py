@@ -11,8 +11,9 @@ from core.multibody.contacts.admissible_forces import AdmissibleForce, admissibl
 from core.multibody.contacts.contact_states import PhaseTable, State
 from core.multibody.equations.expansion import Expansion, Series
 from core.multibody.search.curves import Curve
+from core.multibody.search.first_of_motion import Watched
 from core.multibody.search.pieces import Pieces
-from core.multibody.table.connection_effects import Unilateral
+from core.multibody.table.connection_effects import Limit, Unilateral
 
 
 @dataclass(frozen=True)
@@ -23,29 +24,35 @@ class Watch:
     ----------
     number : int
         Of the unilateral measure.
-    what : {"gap", "push", "grip", "slip"}
+    what : {"gap", "push", "grip", "slip", "length"}
+        The last is that of a part of a string, a spring or another line: where it is zero, the motion ends.
     admissible : AdmissibleForce or None
         What has to be positive, for "push" and "grip".
     """
 
     number: int
-    what: Literal["gap", "push", "grip", "slip"]
+    what: Literal["gap", "push", "grip", "slip", "length"]
     one: Unilateral
     sense: int = 1
     admissible: AdmissibleForce | None = None
 
     def series(self, motion: Expansion) -> Series:
         """Return it along a motion."""
-        if self.what == "gap":
+        if self.what in ("gap", "length"):
             return motion.of(self.one.gap)
         if self.what == "slip":
             return [self.sense * x for x in motion.of_rates(self.one.slip or {})]
         assert self.admissible is not None
         return self.admissible.series(motion)
 
+    @property
+    def watched(self) -> Watched:
+        """What a search has to know of it."""
+        return Watched(self.along, self.admissible is not None, self.what == "gap", self.what == "length")
+
     def along(self, pieces: Pieces) -> Curve:
         """Return it along a motion in pieces."""
-        if self.what == "gap":
+        if self.what in ("gap", "length"):
             return pieces.of(self.one.gap)
         if self.what == "slip":
             return pieces.nothing().plus(self.sense * ONE, pieces.of_rates(self.one.slip or {}))
@@ -70,3 +77,8 @@ def watches(unilateral: Sequence[Unilateral], states: Sequence[State], phase: Ph
         found.append(Watch(force.number, what, unilateral[force.number], admissible=force))
     found.extend(Watch(i, "slip", unilateral[i], states[i].sense) for i in closed if states[i].sense)
     return found
+
+
+def lengths(limits: Sequence[Limit]) -> list[Watch]:
+    """Return the lengths whose zeros end a motion."""
+    return [Watch(-1, "length", Unilateral(one.name, one.length)) for one in limits if one.length is not None]

@@ -30,6 +30,7 @@ MOST_PIECES = 60_000
 """Pieces that one search may take."""
 _AT_ONCE = 256
 """Pieces that are expanded at once at most: twice as many each time, as what follows an event is expanded in vain."""
+_LONGER = 4.0
 _CLOSER = 2.0**-4
 """Share of a piece in which it is expanded anew: what is left out then is 2^-84 of what it was."""
 _BELOW = (int(Sign.FALLING), int(Sign.NEGATIVE))
@@ -130,6 +131,11 @@ class FirstZero:
         same to within its error.
     way : float
         -1 for the time before zero.
+
+    Attributes
+    ----------
+    below : list of int
+        The quantities that are below zero from the start on: only what they do once they have been above is found.
     """
 
     def __init__(
@@ -141,6 +147,7 @@ class FirstZero:
         self._reached = 0.0
         self._last = 0.0
         self._count, self._at_once = 0, 1
+        self.below: list[int] = []
 
     def until(self, end: float) -> Found | None:
         """Return the first zero up to a time, or where it is first not known whether there is one.
@@ -155,6 +162,8 @@ class FirstZero:
         AccuracyUnreachable
             Where the motion leaves the range of doubles.
         """
+        if not end > self._reached:
+            return None
         self._left = [_Interval(self._reached, end - self._reached)]
         self._reached = end
         while self._left and self.watched:
@@ -192,7 +201,9 @@ class FirstZero:
         batch = self._batch([one.start for one in ahead], [one.reach for one in ahead])
         for number, one in enumerate(ahead):
             one.batch, one.number = batch, number
-        self._last = float(batch.lengths[-1])
+        # What is shorter than it might be, beside something that was looked at closely, is followed by longer pieces.
+        limited = batch.lengths[-1] >= ahead[-1].reach
+        self._last = float(batch.lengths[-1]) * (_LONGER if limited else 1.0)
         self._left.extend(reversed(ahead))
 
     def _batch(self, starts: Sequence[float], reach: Sequence[float]) -> _Batch:
@@ -234,6 +245,8 @@ class FirstZero:
         shifted, errors = np.zeros_like(values), np.zeros_like(band)
         shifted[:, : count - zeros], errors[:, : count - zeros] = values[:, zeros:], band[:, zeros:]
         watch.above = bool(shifted[0, 0, 0] > 0.0)
+        if not watch.above and watch.index not in self.below:
+            self.below.append(watch.index)
         return shifted, errors, count - zeros
 
     def _searched(self, one: _Interval) -> Found | None:

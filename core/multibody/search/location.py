@@ -35,10 +35,12 @@ class Located:
     ----------
     time : ball
     q, v : list of ball
+    width : float
+        Sum of the terms of the quantity over its slope (s): by this times their relative error the time is wrong.
     """
 
-    def __init__(self, time: Ball, q: list[Ball], v: list[Ball]) -> None:
-        self.time, self.q, self.v = time, q, v
+    def __init__(self, time: Ball, q: list[Ball], v: list[Ball], width: float) -> None:
+        self.time, self.q, self.v, self.width = time, q, v, width
 
 
 def located(motion: Expanded, quantity: Callable[[Pieces], Curve], time: float, rest: float, reach: float) -> Located:
@@ -57,14 +59,17 @@ def located(motion: Expanded, quantity: Callable[[Pieces], Curve], time: float, 
     for _ in range(_ROUNDS):
         pieces = motion(np.array([time]), np.array([reach]))
         length = float(pieces.lengths[0])
-        curve = quantity(pieces).values[0]
+        own = quantity(pieces)
+        curve = own.values[0]
         th, tl = _newton(curve, rest / length)
         if not math.isfinite(th):
             break
         if abs(th) <= _NEAR or abs(th * length) <= 2.0**-50 * abs(time):
-            return _state(pieces, time, th, tl)
+            slope = abs(slope_at(curve, th) / length)
+            width = float(own.sizes[0, 0]) / slope if slope > 0.0 else abs(time)
+            return _state(pieces, time, th, tl, width)
         moved = time + th * length
-        time, rest = (moved if moved > 0.0 else 0.5 * time), 0.0
+        time, rest = (moved if moved * reach > 0.0 else 0.5 * time), 0.0
     raise NotLocated
 
 
@@ -85,14 +90,14 @@ def _newton(curve: Floats, share: float) -> tuple[float, float]:
     return th, tl
 
 
-def _state(pieces: Pieces, time: float, th: float, tl: float) -> Located:
+def _state(pieces: Pieces, time: float, th: float, tl: float, width: float) -> Located:
     """Return the state at a share of a piece that begins at a time."""
     q, v = [], []
     for i in range(pieces.places.shape[1]):
         q.append(_ball(*horner(np.ascontiguousarray(pieces.places[0, i]), th, tl)))
         v.append(_ball(*horner(pieces.rate(i).values[0], th, tl)))
     high, low = dd_mul_d(th, tl, float(pieces.lengths[0]))
-    return Located(arb(time) + arb(high) + arb(low), q, v)
+    return Located(arb(time) + arb(high) + arb(low), q, v, width)
 
 
 def _ball(high: float, low: float) -> Ball:

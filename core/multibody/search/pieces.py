@@ -15,12 +15,15 @@ import numpy as np
 from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable
 from core.multibody.algebra.polynomials import ZERO, LinearForm, Poly
-from core.multibody.equations.packed import two_to
-from core.multibody.motion.whole import Whole
+from core.multibody.equations.packed import Packed, Units, two_to
+from core.multibody.motion.periods import Periodic
+from core.multibody.motion.vertical_symmetry import Shifted
+from core.multibody.motion.whole import Whole, spread
 from core.multibody.search.curves import Curve, differentiate
 from core.multibody.search.taylor import ORDER, expand
 from core.multibody.table.connection_effects import Force
 
+_PAST = 1.0 + 2.0**-20
 COEFFICIENTS = ORDER - 1
 """Of every curve: multipliers have two powers less than coordinates."""
 
@@ -117,12 +120,12 @@ class Expanded(Protocol):
 
 @dataclass(frozen=True)
 class ExpandedWhole:
-    """The motion of a whole scene, from its states in pairs.
+    """The motion of a whole scene with its multipliers, from its states in pairs: its table as described is expanded.
 
     Attributes
     ----------
     whole : Whole
-    kind : {"fine", "check"}
+    kind : {"fine", "check", "reference", "doubles"}
         Which of the runs of a motion without a closed form.
     """
 
@@ -138,34 +141,85 @@ class ExpandedWhole:
             At a place where the connections lose their rank.
         """
         arrays, units, chosen = self.whole.arrays
-        q, v = self.whole.in_pairs(times, self.kind)
-        down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
-        way = np.sign(reach)
-        n, rows = q.shape[1], len(self.whole.measures.table.rows)
-        exponents = np.zeros(len(times), dtype=np.int64)
-        series = np.zeros((len(times), n + len(chosen), ORDER + 1, 2))
-        sizes = np.zeros(series.shape[:-1])
-        # Backwards in time the rates are the opposite.
-        rates = v * (down * two_to(units.time))
-        done = expand(arrays, q * down, rates, _covering(reach, units.time), exponents, series, sizes)
-        if done < len(times):
-            raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
-        signs = np.where(way[:, None] < 0.0, (-1.0) ** np.arange(ORDER + 1), 1.0)
-        series *= signs[:, None, :, None]
-        up = np.array([two_to(e) for e in units.lengths])
+        lengths, series, sizes = _expanded(arrays, units, self.whole.in_pairs(times, self.kind), reach)
+        n, rows = len(units.lengths), len(self.whole.measures.table.rows)
         multipliers = np.zeros((len(times), rows, COEFFICIENTS, 2))
         multiplier_sizes = np.zeros((len(times), rows, COEFFICIENTS))
         for k, row in enumerate(chosen):
             factor = two_to(units.multiplier(row))
             multipliers[:, row] = series[:, n + k, :COEFFICIENTS] * factor
             multiplier_sizes[:, row] = sizes[:, n + k, :COEFFICIENTS] * factor
-        return Pieces(
-            way * np.ldexp(1.0, exponents + units.time),
-            series[:, :n] * up[None, :, None, None],
-            sizes[:, :n] * up[None, :, None],
-            multipliers,
-            multiplier_sizes,
+        return Pieces(lengths, series[:, :n], sizes[:, :n], multipliers, multiplier_sizes)
+
+
+@dataclass(frozen=True)
+class ExpandedPlaces:
+    """The same without multipliers, by the reduced table.
+
+    A length that reaches zero is a singular place of the table as described, and often none of the reduced one.
+    """
+
+    whole: Whole
+    kind: str = "fine"
+
+    def __call__(self, times: Floats, reach: Floats) -> Pieces:
+        """Return the pieces; it raises as `ExpandedWhole` does."""
+        arrays, units, _ = self.whole.reduced_arrays
+        lengths, series, sizes = _expanded(arrays, units, self.whole.reduced_in_pairs(times, self.kind), reach)
+        slopes, offsets = self.whole.affine
+        n = len(units.lengths)
+        # Coefficients of one power after another, of which the first alone has offsets.
+        powers = np.moveaxis(series[:, :n], 2, 0)
+        places = np.stack(
+            [
+                spread(slopes, offsets if k == 0 else np.zeros_like(offsets), np.ascontiguousarray(own))
+                for k, own in enumerate(powers)
+            ],
+            axis=2,
         )
+        place_sizes = np.einsum("ij,pjk->pik", np.abs(slopes[..., 0]), sizes[:, :n])
+        place_sizes[..., 0] += np.abs(offsets[:, 0])
+        nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
+        return Pieces(lengths, places, place_sizes, nothing, nothing[..., 0])
+
+
+def _expanded(
+    arrays: Packed, units: Units, states: tuple[Floats, Floats], reach: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Return lengths of pieces (s), coefficients in SI units, and their sizes; multipliers as in the arrays."""
+    q, v = states
+    down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
+    count, n = q.shape[:2]
+    exponents = np.zeros(count, dtype=np.int64)
+    series = np.zeros((count, n + arrays.rate.shape[0], ORDER + 1, 2))
+    sizes = np.zeros(series.shape[:-1])
+    rates = v * (down * two_to(units.time))
+    done = expand(arrays, q * down, rates, _covering(reach, units.time), exponents, series, sizes)
+    if done < count:
+        raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
+    way = np.sign(reach)
+    signs = np.where(way[:, None] < 0.0, (-1.0) ** np.arange(ORDER + 1), 1.0)
+    series *= signs[:, None, :, None]
+    up = np.array([two_to(e) for e in units.lengths])
+    series[:, :n] *= up[None, :, None, None]
+    sizes[:, :n] *= up[None, :, None]
+    return way * np.ldexp(1.0, exponents + units.time), series, sizes
+
+
+def repeats_after(whole: Whole, coordinates: Sequence[int] | None = None) -> float | None:
+    """Return the time after which nothing new happens, of everything or of some coordinates; None where it does.
+
+    It is a little more than a period, so that what touches zero at the start and so at the end is seen to do so.
+    """
+    among = [motion for _, motion in whole.parts] if coordinates is None else whole.motions_of(coordinates)
+    moving = [motion for motion in among if motion.name != "rest"]
+    if len(moving) != 1 or moving[0].period is None:
+        return None
+    inner = moving[0].motion if isinstance(moving[0], Shifted) else moving[0]
+    # Each period may turn it about the vertical, or something may only wind on.
+    if isinstance(inner, Periodic) and (inner.winding != 0.0 or bool(np.any(inner.shift))):
+        return None
+    return _PAST * float(moving[0].period)
 
 
 def _covering(reach: Sequence[float] | Floats, time: int) -> Integers:

@@ -90,9 +90,13 @@ def expand(
                     largest = max(largest, (k + 1.0) * (k + 2.0) * abs(path[0, (k + 2) * size + i]))
             for r in range(m):
                 sizes[s, n + r, k] = largest * factor if largest > 0.0 else 0.0
-        for k in range(order + 1):
+        # Motions that are even in time have odd powers of rounding alone: a power is at least as large as later ones.
+        for k in range(order - 1, -1, -1):
+            for r in range(m):
+                sizes[s, n + r, k] = max(sizes[s, n + r, k], sizes[s, n + r, k + 1])
+        for k in range(order, -1, -1):
             for i in range(n):
-                most = 0.0
+                most = sizes[s, i, k + 1] if k < order else 0.0
                 for j in range(n):
                     if table.group[j] == table.group[i]:
                         most = max(most, abs(series[s, j, k, 0]))

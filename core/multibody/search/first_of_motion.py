@@ -1,0 +1,95 @@
+"""The first zero of what a motion is watched for: coordinates and rates by the reduced table, forces by the other.
+
+The table as described is expanded only where forces are watched: it is larger, and a length that reaches zero is a
+singular place of it, at which no force is known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from core.multibody.motion.numerical import BEFORE_SINGULAR
+from core.multibody.motion.whole import Whole
+from core.multibody.search.curves import Curve
+from core.multibody.search.first_zero import FirstZero, Found
+from core.multibody.search.pieces import Expanded, ExpandedPlaces, ExpandedWhole, Pieces
+
+Quantity = Callable[[Pieces], Curve]
+
+
+@dataclass(frozen=True)
+class Watched:
+    """A quantity that is watched.
+
+    Attributes
+    ----------
+    along : callable
+        The quantity along a motion.
+    of_forces : bool
+        Whether it depends on multipliers.
+    jumps : bool
+        Whether it matters that it only touches zero.
+    singular : bool
+        Whether its zero is a singular place of the table as described.
+    """
+
+    along: Quantity
+    of_forces: bool = False
+    jumps: bool = False
+    singular: bool = False
+
+
+@dataclass(frozen=True)
+class Expansions:
+    """Computations of one motion: of its coordinates and rates, and of these with its multipliers."""
+
+    places: Sequence[Expanded]
+    forces: Sequence[Expanded]
+
+    @classmethod
+    def of(cls, runs: Sequence[tuple[Whole, str]]) -> Expansions:
+        """Return those of a whole motion, by some of its runs."""
+        return cls([ExpandedPlaces(*run) for run in runs], [ExpandedWhole(*run) for run in runs])
+
+    def by(self, watched: Watched) -> Sequence[Expanded]:
+        """Return those that know a quantity."""
+        return self.forces if watched.of_forces else self.places
+
+
+class FirstOfMotion:
+    """A search along a motion from time zero on.
+
+    Parameters
+    ----------
+    expansions : Expansions
+    watched : sequence of Watched
+    way : float
+        -1 for the time before zero.
+    """
+
+    def __init__(self, expansions: Expansions, watched: Sequence[Watched], way: float = 1.0) -> None:
+        self._numbers = [[i for i, one in enumerate(watched) if one.of_forces == forces] for forces in (False, True)]
+        self._searches = [
+            FirstZero(motions, [watched[i].along for i in numbers], [watched[i].jumps for i in numbers], way)
+            for motions, numbers in zip((expansions.places, expansions.forces), self._numbers, strict=True)
+        ]
+        self._watched = watched
+
+    @property
+    def below(self) -> list[int]:
+        """The quantities that are below zero from the start on."""
+        both = zip(self._searches, self._numbers, strict=True)
+        return [numbers[i] for search, numbers in both for i in search.below]
+
+    def until(self, end: float) -> tuple[int, Found] | None:
+        """Return the first zero up to a time and the number of its quantity, as `FirstZero.until` does."""
+        best: tuple[int, Found] | None = None
+        for search, numbers in zip(self._searches, self._numbers, strict=True):
+            if best is not None:
+                time = abs(best[1].time)
+                end = min(end, time * BEFORE_SINGULAR if self._watched[best[0]].singular else time)
+            found = search.until(end)
+            if found is not None and (best is None or abs(found.time) < abs(best[1].time)):
+                best = numbers[found.index], found
+        return best
