@@ -1,0 +1,130 @@
+"""Relations between the answers to two requests, by name."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Callable
+
+import numpy as np
+
+from core.multibody.answer import SceneSolution
+from core.multibody.solve import solve_scene
+from core.multibody.trajectory.occurrences import ExtremesOf, When
+from tests.core.multibody.relations import additions, geometry, writing
+from tests.core.multibody.relations.comparison import Difference, differences
+from tests.core.multibody.relations.geometry import Transformed, dimension
+from tests.core.multibody.relations.numbers import Json
+from tests.core.multibody.relations.views import Figure, Refusal, View, viewed
+from tests.core.multibody.worked_examples import read
+
+CHANGE = 1e-12
+"""Relative change of a number by which answers may move by as much times their condition."""
+OF_OUTPUTS = ("gravity", "let", "bodies", "connections", "numbers")
+
+Relation = Callable[[Json], Transformed | None]
+
+
+def answered(request: Json, input_uncertainty: float | None = None) -> SceneSolution:
+    """Return the answer to a request, which is not changed by being read."""
+    scene = read(json.loads(json.dumps({key: request[key] for key in OF_OUTPUTS if key in request})))
+    outputs = [_output(one) for one in request.get("outputs", ["trajectory"])]
+    return solve_scene(
+        scene, request.get("times", ()), outputs, request.get("accuracy", 1e-9), input_uncertainty=input_uncertainty
+    )
+
+
+def _output(one: object) -> object:
+    if isinstance(one, dict):
+        return When(**one["when"]) if "when" in one else ExtremesOf(one["extremes"])
+    return one
+
+
+def _moved(request: Json) -> Transformed | None:
+    return geometry.moved(request, ["3", "-7/3", "1/8"][: dimension(request)])
+
+
+RELATIONS: dict[str, Relation] = {
+    "beside a pendulum": lambda request: additions.beside(request, "pendulum"),
+    "beside a bouncing ball": lambda request: additions.beside(request, "ball"),
+    "beside a driven wheel": lambda request: additions.beside(request, "wheel"),
+    "turned": geometry.turned,
+    "turned about x": lambda request: geometry.turned(request, about=0) if dimension(request) == 3 else None,
+    "moved": _moved,
+    "mirrored": geometry.mirrored,
+    "reversed in time": geometry.reversed_in_time,
+    "in units of powers of two": lambda request: writing.in_units(request, 4, 2, 2),
+    "in units of three": lambda request: writing.in_units(request, 3, 3, 3),
+    "reordered": writing.reordered,
+    "renamed": writing.renamed,
+    "written as formulas": writing.as_formulas,
+    "a connection repeated": additions.repeated,
+    "a rod as a track": additions.rod_as_track,
+    "at other times": writing.asked_at_other_times,
+    "fewer outputs": writing.asked_for_less,
+    "a finer accuracy": writing.more_accurate,
+    "a contact out of reach": additions.with_floor_far_below,
+}
+"""Relations that hold within the stated errors of both answers."""
+MOVED_A_LITTLE = "a number moved by 1e-12"
+NAMES = (*RELATIONS, MOVED_A_LITTLE)
+
+
+def checked(request: Json, name: str, seed: int = 0, original: View | Refusal | None = None) -> list[Difference] | None:
+    """Return how the answers to a request and to what a relation makes of it differ; None where it says nothing."""
+    if name == MOVED_A_LITTLE:
+        return _checked_by_condition(request, np.random.default_rng(seed))
+    made = RELATIONS[name](copy.deepcopy(request))
+    if made is None:
+        return None
+    own = viewed(lambda: answered(request)) if original is None else original
+    found = viewed(lambda: answered(made.request))
+    if isinstance(own, Refusal) or isinstance(found, Refusal):
+        if name == "a finer accuracy" and isinstance(found, Refusal) and found.kind == "AccuracyUnreachable":
+            return []
+        return differences(own, found)
+    return differences(made.image(own), made.restored(found, own))
+
+
+def _checked_by_condition(request: Json, random: np.random.Generator) -> list[Difference] | None:
+    """Compare the answers for a number and one that is larger by `CHANGE`, by what that is stated to do."""
+    other = additions.moved_a_little(request, random)
+    if other is None:
+        return None
+    stated: dict[str, float] = {}
+
+    def ask() -> SceneSolution:
+        answer = answered(request, CHANGE)
+        motion = answer.trajectory
+        if motion is not None:
+            stated.update(
+                (f"column:{key}", one.inherited) for key, one in motion.columns.items() if one.inherited is not None
+            )
+        return answer
+
+    own, found = viewed(ask), viewed(lambda: answered(other))
+    if isinstance(own, Refusal) or isinstance(found, Refusal):
+        # A number on which the scene hangs, such as the place of a joint, cannot be moved.
+        return [one for one in differences(own, found) if one.kind == "crash"]
+
+    def kept(figure: Figure) -> bool:
+        return f"column:{figure.owner}.{figure.what}" in stated
+
+    def wide(view: View) -> View:
+        figures = {key: figure for key, figure in view.figures.items() if key in stated and kept(figure)}
+        return View(
+            figures={
+                key: Figure(one.values, one.unit, one.error + 2.0 * stated[key], one.what, one.owner)
+                for key, one in figures.items()
+            },
+            times=view.times,
+            events=[],
+            ended=None,
+            problem=None,
+            models=view.models,
+            states=[],
+        )
+
+    # Which model suffices hangs on numbers that are exact.
+    exempt = ("model", "degrees of freedom", "period in one form")
+    return [one for one in differences(wide(own), wide(found)) if one.kind not in exempt]

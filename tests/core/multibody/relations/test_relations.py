@@ -1,0 +1,67 @@
+"""Two answers about one motion agree within what both state: scenes turned, moved, mirrored, written in another way."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+
+import pytest
+
+from tests.core.multibody.relations.hard_scenes import hard_scenes
+from tests.core.multibody.relations.numbers import Json
+from tests.core.multibody.relations.relations import NAMES, RELATIONS, checked
+from tests.core.multibody.relations.sources import catalogue, random_scene
+
+SLOW = ("block whose string reaches its pulley", "two stones on humps with a string")
+"""Scenes that take seconds: their motion ends where a search does not see it, or nothing moves what is searched."""
+HARD = {name: scene for name, scene in hard_scenes().items() if name not in SLOW}
+CATALOGUE = catalogue()
+SEEDS = 200
+AXES = "symmetry about the vertical is seen along the third axis alone"
+KNOWN: dict[tuple[str, str], str] = {
+    ("lagrange-top", "turned about x"): AXES,
+    ("precessing-top", "turned about x"): AXES,
+    ("sphere-on-turntable", "turned about x"): AXES,
+    ("spherical-pendulum", "turned about x"): AXES,
+    ("70", "a connection repeated"): "the error of what does not move is compared with rounding",
+}
+"""Scenes whose answers are known to differ by a relation, and what is wrong."""
+
+
+def marked(scene: str, relation: str) -> object:
+    """Return a scene and a relation as a parameter, which is expected to fail where that is known."""
+    reason = KNOWN.get((scene, relation))
+    marks = [] if reason is None else [pytest.mark.xfail(strict=True, reason=reason)]
+    return pytest.param(scene, relation, marks=marks, id=f"{scene}, {relation}")
+
+
+def in_turn(scenes: Mapping[str, Json], count: int) -> list[object]:
+    """Return scenes with so many relations each that say something about them; all relations take turns."""
+    names, found, first = list(RELATIONS), [], 0
+    for scene, request in scenes.items():
+        order = [names[(first + i) % len(names)] for i in range(len(names))]
+        chosen = [name for name in order if RELATIONS[name](copy.deepcopy(request)) is not None][:count]
+        found += [marked(scene, name) for name in chosen]
+        first += count
+    return found
+
+
+def of_seed(seed: int) -> object:
+    """Return a random scene and a relation; the relations take turns."""
+    relation = NAMES[(seed + seed // len(NAMES)) % len(NAMES)]
+    return marked(str(seed), relation)
+
+
+@pytest.mark.parametrize(("seed", "relation"), [of_seed(seed) for seed in range(SEEDS)])
+def test_random_scenes(seed: str, relation: str) -> None:
+    assert not checked(random_scene(int(seed)), relation, int(seed))
+
+
+@pytest.mark.parametrize(("scene", "relation"), in_turn(HARD, 4))
+def test_hard_scenes(scene: str, relation: str) -> None:
+    assert not checked(HARD[scene], relation)
+
+
+@pytest.mark.parametrize(("scene", "relation"), in_turn(CATALOGUE, 2))
+def test_the_catalogue(scene: str, relation: str) -> None:
+    assert not checked(CATALOGUE[scene], relation)
