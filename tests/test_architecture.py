@@ -266,6 +266,7 @@ TESTED_IN |= {
         "trajectory/test_nearest": "motion/attitudes",
         "search/test_first_zero": ("search/curves search/first_of_motion search/location search/pieces search/taylor"),
         "phases/test_sums_in_phases": "phases/stretches",
+        "proven/test_proven_answer": "proven/part_proof",
         "parts/test_joined_answer": (
             "parts/common_span parts/joined_model parts/joined_phases parts/joined_trajectory parts/searched_parts"
         ),

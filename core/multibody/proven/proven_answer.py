@@ -7,33 +7,26 @@ tell from zero counts as zero.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
-from flint import arb, ctx
+from flint import ctx
 
-from core.balls import Undetermined, precision
-from core.certified.adaptive_precision import bits_for, check_digits, until_determined, working_bits
-from core.certified.decimals import decimal, floor_below, place_of
+from core.balls import precision
+from core.certified.adaptive_precision import bits_for, check_digits, until_determined
 from core.certified.exact_inputs import enclosed
 from core.errors import InvalidParameter, NotApplicable
-from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
-from core.multibody.answer import Energy, PartModel, SceneModel, SmallMotion
-from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
+from core.multibody.algebra.polynomials import BITS, ZERO
+from core.multibody.answer import Energy, SceneModel
+from core.multibody.language.faults_of_parts import FaultsOfParts
+from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
-from core.multibody.motion.attitudes import angular_velocity, dot, quaternion
-from core.multibody.motion.modelling import Modelled, Piece, modelled
-from core.multibody.motion.modes import Modes
-from core.multibody.motion.motion import Motion, Rest
-from core.multibody.motion.uniform import Uniform
+from core.multibody.parts.joined_model import joined_model
 from core.multibody.phases.phases import one_sided
-from core.multibody.proven.proven_series import ProvenSeries, ProvenStep, Vector
-from core.multibody.start import NumberKind, accelerations_of, energy_of, forces_of_start, noticed_of, scene_model
-from core.multibody.table.frames import Frame
-from core.multibody.trajectory.events import first_event
+from core.multibody.proven.part_proof import PartProof, ProvenColumn
+from core.multibody.start import NumberKind, accelerations_of, energy_of, forces_of_start
 from core.notices import Notice
 from core.systems.trajectory import HORIZON
 
@@ -43,14 +36,6 @@ LATEST = 10**300
 _BITS_OF_A_SECOND = 30
 """What a second of motion in several coordinates loses, about; at the first precision so many are added."""
 _MOST_ADDED = 300
-
-
-@dataclass(frozen=True)
-class ProvenColumn:
-    """One quantity at every time, as decimal strings or lists of them."""
-
-    values: list[Any]
-    unit: str
 
 
 @dataclass(frozen=True)
@@ -107,7 +92,8 @@ def proven_answer(
     check_instants(times)
     farthest = max((abs(float(t)) for t in times), default=0.0)
     bits = bits_for(digits) + int(min(_MOST_ADDED, _BITS_OF_A_SECOND * farthest))
-    return until_determined(lambda: _Proof(scene, digits, bits).answer(times, outputs), bits)
+    parts = independent_parts(scene)
+    return until_determined(lambda: _answer(_proofs(parts, digits, bits), times, outputs), bits)
 
 
 def check_instants(times: Sequence[Fraction]) -> None:
@@ -116,203 +102,52 @@ def check_instants(times: Sequence[Fraction]) -> None:
         raise InvalidParameter("times", "be between -1e300 and 1e300 s", remedy="describe the scene in other units")
 
 
-class _Proof:
-    """An answer at the present precision."""
+def _proofs(parts: Sequence[Scene], digits: int, first_bits: int) -> list[PartProof]:
+    """Return what is proven of every part, or raise the faults of all of them."""
+    found, faults = [], FaultsOfParts()
+    for part in parts:
+        with faults.part():
+            found.append(PartProof(part, digits, first_bits))
+    faults.raised()
+    return found
 
-    def __init__(self, scene: Scene, digits: int, first_bits: int) -> None:
-        self.digits, self.first_bits = digits, first_bits
-        with precision(max(BITS, ctx.prec)):
-            self.found = modelled(scene)
-        _require_exact(self.found)
 
-    def answer(self, times: Sequence[Fraction], outputs: Sequence[str]) -> ProvenAnswer:
-        found = self.found
-        numbers = NumberKind(self._number, None)
-        with precision(max(BITS, ctx.prec)):
-            multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
-            forces = forces_at_start(found.described.measures, multipliers)
-            model = scene_model(found, noticed_of(found, forces, multipliers), multipliers.rank)
-            model = _in_numerals(model, found, self._number)
-            accelerations = accelerations_of(found.described, found.whole.acceleration, numbers)
-            at_start = forces_of_start(found.described, forces, numbers)
-            energy = energy_of(found.described, numbers)
-        rows, columns, ended = None, None, None
-        warnings: tuple[Notice, ...] = ()
-        if times:
-            rows, ended, warnings = self._reached(times, [force.value is not None for force in forces])
-            if "trajectory" in outputs:
-                columns = self._columns([enclosed(times[row]) for row in rows])
-        return ProvenAnswer(
-            model,
-            accelerations if "accelerations" in outputs else None,
-            at_start if "forces" in outputs else None,
-            energy if "energy" in outputs else None,
-            rows,
-            columns,
-            ended,
-            warnings,
+def _answer(parts: Sequence[PartProof], times: Sequence[Fraction], outputs: Sequence[str]) -> ProvenAnswer:
+    """Return the answer about a scene from what is proven of its independent parts."""
+    numbers = NumberKind(parts[0].number, None)
+    with precision(max(BITS, ctx.prec)):
+        model = joined_model([part.model() for part in parts])
+        accelerations: dict[str, Any] = {}
+        forces: dict[str, Any] = {}
+        for part in parts:
+            accelerations |= accelerations_of(part.found.described, part.found.whole.acceleration, numbers)
+            forces |= forces_of_start(part.found.described, part.forces, numbers)
+        energies = [energy_of(part.found.described, NumberKind(lambda ball: ball, None)) for part in parts]
+        kinetic, potential, total = (
+            parts[0].number(sum((getattr(one, name) for one in energies), ZERO))
+            for name in ("kinetic", "potential", "total")
         )
-
-    def _number(self, ball: Ball) -> Any:
-        return "0" if is_zero(ball) else decimal(ball, self.digits)
-
-    def _reached(
-        self, times: Sequence[Fraction], determined: Sequence[bool]
-    ) -> tuple[list[int], str, tuple[Notice, ...]]:
-        """Return the rows of the times before what ends the motion, which is looked for as in doubles."""
-        whole = self.found.whole
-        watched = [limit for limit in whole.measures.limits if limit.force is None or determined[limit.force]]
-        rows, ended = list(range(len(times))), HORIZON
-        with precision(BITS):
-            for end in {max(float(max(times)), 0.0), min(float(min(times)), 0.0)} - {0.0}:
-                event = first_event(whole, watched, end)
-                if event is not None:
-                    ended = event.kind if end > 0.0 else ended
-                    # Within the error of its time nothing is said to be before it.
-                    bound = Fraction(event.time) - Fraction(event.error) * (1 if end > 0.0 else -1)
-                    rows = [k for k in rows if (times[k] <= bound if end > 0.0 else times[k] >= bound)]
-        what = "that strings stay taut, chains on their pegs and lengths positive up to the last time"
-        detail = f"{what} is found in doubles, and not proven"
-        return rows, ended, (Notice("end-not-proven", detail, ("times",)),) if watched else ()
-
-    def _columns(self, times: Sequence[Ball]) -> dict[str, ProvenColumn]:
-        whole, frames = self.found.whole, self.found.described.measures.coordinates.frames
-        count = len(whole.reduced.table.names)
-        steps = [
-            _states(piece, motion, self._directions(piece), times)
-            for piece, (_, motion) in zip(self.found.pieces, whole.parts, strict=True)
-        ]
-        columns: dict[str, ProvenColumn] = {}
-        for k in range(len(times)):
-            z, w = [ZERO] * count, [ZERO] * count
-            for piece, found in zip(self.found.pieces, steps, strict=True):
-                for i, x, y in zip(piece.indices, found[k].q, found[k].v, strict=True):
-                    z[i], w[i] = x, y
-            q = [evaluated(poly, z) for poly in whole.reduced.expressions]
-            v = [sum((x * w[key[0]] for key, x in poly.items() if key), ZERO) for poly in whole.reduced.expressions]
-            for name, frame in frames.items():
-                path = next(
-                    (
-                        found[k].path
-                        for piece, found in zip(self.found.pieces, steps, strict=True)
-                        if self._follows(piece, frame)
-                    ),
-                    [],
-                )
-                for column, unit, value in self._of_body(name, frame, q, v, path):
-                    columns.setdefault(f"{name}.{column}", ProvenColumn([], unit)).values.append(value)
-        return columns
-
-    def _follows(self, piece: Piece, frame: Frame) -> bool:
-        seen = {key[0] for i in frame.direction or () for key in self.found.whole.reduced.expressions[i] if key}
-        return bool(seen & set(piece.indices))
-
-    def _directions(self, piece: Piece) -> list[Any]:
-        """Return the components of directions that follow a part, in its own coordinates."""
-        number = {i: k for k, i in enumerate(piece.indices)}
-        expressions = self.found.whole.reduced.expressions
-        return [
-            {(number[key[0]],) if key else (): x for key, x in expressions[i].items()}
-            for frame in self.found.described.measures.coordinates.frames.values()
-            if frame.direction is not None and self._follows(piece, frame)
-            for i in frame.direction
-        ]
-
-    def _of_body(self, name: str, frame: Frame, q: Vector, v: Vector, path: list[Vector]) -> list[tuple[str, str, Any]]:
-        found: list[tuple[str, str, Any]] = [
-            ("position", "m", self._vector([q[i] for i in frame.position])),
-            ("velocity", "m/s", self._vector([v[i] for i in frame.position])),
-        ]
-        if frame.turn is not None:
-            found.append(("angle", "rad", self._vector([q[frame.turn]])[0]))
-            found.append(("angular_velocity", "rad/s", self._vector([v[frame.turn]])[0]))
-        elif frame.direction is not None:
-            c, s = frame.direction
-            found.append(("angle", "rad", self._vector([self._angle(name, frame, q, path)])[0]))
-            found.append(("angular_velocity", "rad/s", self._vector([q[c] * v[s] - q[s] * v[c]])[0]))
-        elif frame.axis is not None:
-            found.append(("axis", "1", self._vector([q[i] for i in frame.axis[1]])))
-        elif frame.axes is not None:
-            e, rate = ([[x[i] for i in axis] for axis in frame.axes] for x in (q, v))
-            found.append(("attitude", "1", self._vector(quaternion(e))))
-            found.append(("angular_velocity", "rad/s", self._vector(angular_velocity(e, rate))))
-        elif frame.turns is not None:
-            found.append(("angular_velocity_in_space", "rad/s", self._vector([v[i] for i in frame.turns])))
-        return found
-
-    def _angle(self, name: str, frame: Frame, q: Vector, path: list[Vector]) -> Ball:
-        """Return an unwrapped angle: that at the start, and what was turned in every step since."""
-        assert frame.direction is not None
-        measures, expressions = self.found.described.measures, self.found.whole.reduced.expressions
-        total = measures.coordinates.start_angle(name)
-        piece = next((piece for piece in self.found.pieces if self._follows(piece, frame)), None)
-        places = []
-        for own in path if piece is not None else []:
-            z = dict(zip(piece.indices, own, strict=True)) if piece is not None else {}
-            places.append([evaluated(expressions[i], z) for i in frame.direction])
-        places.append([q[i] for i in frame.direction])
-        for (c, s), (x, y) in pairwise(places):
-            total = total + arb.atan2(c * y - s * x, c * x + s * y)
-        return total
-
-    def _vector(self, components: Sequence[Ball]) -> list[str]:
-        size = dot(components, components).sqrt()
-        if not size > 0:
-            if size.is_zero():
-                return ["0"] * len(components)
-            if working_bits() < 2 * self.first_bits:
-                raise Undetermined
-            # Nothing but zero, as far as twice the digits tell.
-            return [f"0e{place_of(size.abs_upper()) + 1}"] * len(components)
-        return [decimal(x, self.digits, floor_below(size, self.digits)) for x in components]
-
-
-def _require_exact(found: Modelled) -> None:
-    """Raise `NotApplicable` for a start that meets the connections only to rounding, or where they are redundant."""
-    if found.moved or found.fitted:
-        what = ", ".join([*found.moved, *found.fitted])
-        raise NotApplicable(
-            f"{what} would hold only after rounding: the digits would be those of another scene",
-            path=("connections",),
-            remedy='write positions and velocities exactly, as formulas where needed: "sqrt(3)/2", {"degrees": 30}',
-        )
-    if found.whole.dropped:
-        raise NotApplicable(
-            "connections depend on one another at the start, and nothing proves that they do later",
-            path=("connections",),
-            remedy="leave out connections that follow from others",
-        )
-
-
-def _in_numerals(model: SceneModel, found: Modelled, number: Callable[[Ball], Any]) -> SceneModel:
-    """Return the model with the modes of linear parts as numerals, and without figures that are found in pairs."""
-    apart = []
-    for part, (_, motion) in zip(model.apart, found.whole.parts, strict=True):
-        modes: tuple[SmallMotion, ...] = ()
-        period = None
-        if isinstance(motion, Modes):
-            modes = tuple(SmallMotion(number(mode.frequency), number(mode.growth)) for mode in motion.modes)
-            period = None if motion.period is None else number(motion.period)
-        apart.append(PartModel(part.name, part.why, part.degrees_of_freedom, part.coordinates, period, None, modes))
-    return SceneModel(**{**vars(model), "apart": tuple(apart)})
-
-
-def _states(piece: Piece, motion: Motion, directions: Sequence[Any], times: Sequence[Ball]) -> list[ProvenStep]:
-    """Return the states of a part: in closed form where it is elementary, otherwise by its series."""
-    q, v = piece.table.q, piece.table.v
-    if isinstance(motion, Rest):
-        return [ProvenStep(q, v, [])] * len(times)
-    if isinstance(motion, Uniform):
-        a = motion.acceleration
-        return [
-            ProvenStep(
-                [x + t * (y + t * g / 2) for x, y, g in zip(q, v, a, strict=True)],
-                [y + t * g for y, g in zip(v, a, strict=True)],
-                [],
-            )
-            for t in times
-        ]
-    if isinstance(motion, Modes):
-        n = len(q)
-        return [ProvenStep(x[:n], x[n : 2 * n], []) for x in motion.proven(times)]
-    return ProvenSeries(piece.table, piece.chosen, directions).states(times)
+        energy = Energy(kinetic, potential, total, all(one.conserved for one in energies))
+    rows, ended = None, None
+    columns: dict[str, ProvenColumn] | None = None
+    if times:
+        reached = [part.reached(times) for part in parts]
+        rows = [k for k in range(len(times)) if all(k in own for own, _ in reached)]
+        events = [event for _, events in reached for event in events if event.time >= 0.0]
+        ended = min(events, key=lambda event: event.time).kind if events else HORIZON
+        if "trajectory" in outputs:
+            columns = {}
+            for part in parts:
+                columns |= part.columns([enclosed(times[row]) for row in rows])
+    what = "that strings stay taut, chains on their pegs and lengths positive up to the last time"
+    notice = Notice("end-not-proven", f"{what} is found in doubles, and not proven", ("times",))
+    return ProvenAnswer(
+        model,
+        accelerations if "accelerations" in outputs else None,
+        forces if "forces" in outputs else None,
+        energy if "energy" in outputs else None,
+        rows,
+        columns,
+        ended,
+        (notice,) if times and any(part.watched for part in parts) else (),
+    )

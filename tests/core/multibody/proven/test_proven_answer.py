@@ -190,9 +190,33 @@ def test_what_cannot_be_proven_is_refused_with_a_remedy() -> None:
 
 
 def test_only_what_is_requested_is_answered() -> None:
-    found = asked(PULLEY, 20, ["1"], outputs=("energy",))
+    found = asked(PULLEY, 20, ["0.5"], outputs=("energy",))
     assert found.columns is None
     assert found.accelerations is None
     assert found.energy is not None
     assert found.ended == "horizon"
     assert asked(PULLEY, 20).ended is None
+
+
+def test_parts_that_share_no_connection_have_the_digits_that_they_have_alone() -> None:
+    far = {"mass": 2, "at": [9, 1], "velocity": [1, 3]}
+    fall = {"gravity": POINTS["gravity"], "bodies": {"far": far}}
+    both = {**POINTS, "bodies": POINTS["bodies"] | fall["bodies"]}
+    found, points, falling = (asked(scene, 22, ["0.25"]) for scene in (both, POINTS, fall))
+    assert points.columns is not None
+    assert falling.columns is not None
+    assert found.columns == {**points.columns, **falling.columns}
+    assert found.model.apart == (*points.model.apart, *falling.model.apart)
+    assert found.accelerations == {**(points.accelerations or {}), **(falling.accelerations or {})}
+    with mp.workdps(40):
+        assert found.energy is not None
+        heights = -mpf("9.81") * (2 * mp.cos(1) + mp.cos(mpf("0.5"))) + 2 * mpf("9.81")
+        assert near(found.energy.total, heights + 10, 22)
+
+
+def test_the_motion_of_parts_ends_with_the_first_of_them() -> None:
+    """The weight of the pulley reaches it after 0.81 s."""
+    far = {"mass": 2, "at": [9, 1], "velocity": [1, 3]}
+    both = {**PULLEY, "bodies": PULLEY["bodies"] | {"far": far}}
+    alone, found = asked(PULLEY, 18, ["0.5", "5"]), asked(both, 18, ["0.5", "5"])
+    assert (found.rows, found.ended) == (alone.rows, alone.ended) == ([0], "singular")

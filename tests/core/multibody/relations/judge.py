@@ -32,7 +32,7 @@ SHOWN = 8
 """Scenes that are named for every kind of difference."""
 
 LONGEST = 20
-"""Time (s) after which a comparison is given up, and counted."""
+"""Processor time (s) after which a comparison is given up, and counted."""
 
 
 class TimeUp(BaseException):
@@ -45,14 +45,14 @@ def limited(compare: Callable[..., list[Difference] | None], *inputs: Any) -> li
     def stop(*_: object) -> None:
         raise TimeUp
 
-    signal.signal(signal.SIGALRM, stop)
-    signal.alarm(LONGEST)
+    signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, LONGEST)
     try:
         return compare(*inputs)
     except TimeUp:
         return [Difference("no answer in time", f"{LONGEST} s", math.inf)]
     finally:
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
 
 
 Found = tuple[str, str, list[Difference] | None]
