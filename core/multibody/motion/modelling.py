@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from core.balls import precision
@@ -9,6 +10,7 @@ from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, is_zero
 from core.multibody.equations.assembly import assemble_places, assemble_rates
 from core.multibody.equations.dynamics import accelerations, parts, restricted, singular_row
+from core.multibody.equations.expansion import expansion
 from core.multibody.language.numerals import Numerals
 from core.multibody.language.scene import Scene
 from core.multibody.motion.euler_poisson import EulerPoisson
@@ -24,9 +26,14 @@ from core.multibody.motion.turning_body import turning_body
 from core.multibody.motion.uniform import Uniform
 from core.multibody.motion.vertical_symmetry import precessing
 from core.multibody.motion.whole import Whole
-from core.multibody.reduction.passes import reduced
+from core.multibody.reduction.passes import further, reduced
+from core.multibody.reduction.reduction import Reduced
+from core.multibody.reduction.turned_axes import scene_axes, spans_plane, turned_to
 from core.multibody.table.description import Described, described
 from core.multibody.table.table import Table
+
+_LATER = 4
+"""Order of the derivatives that show a plane: of a pendulum at rest beside its support the third one is zero."""
 
 
 @dataclass(frozen=True)
@@ -102,16 +109,46 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
 def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled:
     """Return the models of a table whose start meets its rows."""
     small = reduced(found.measures.table, pinning=True)
+    pieces, accelerations, full = _start_of(found, small)
+    axes = _axes(found, small, full)
+    if axes is not None:
+        turned = further(turned_to(found.measures.table, found.measures.coordinates.vectors, axes), pinning=True)
+        if len(turned.table.names) <= len(small.table.names):
+            small = turned
+            pieces, accelerations, full = _start_of(found, small)
+    motions = [(piece.indices, _motion(piece)) for piece in pieces]
+    dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
+    whole = Whole(found.measures, small, full, accelerations, motions, dropped)
+    return Modelled(found, whole, pieces, moved, fitted)
+
+
+def _start_of(found: Described, small: Reduced) -> tuple[list[Piece], list[Ball], list[Ball]]:
+    """Return the parts of a reduced table, its accelerations at the start, and those of the coordinates described."""
     pieces = [_piece(found, small.table, indices) for indices in parts(small.table)]
     accelerations: list[Ball] = [ZERO] * len(small.table.names)
     for piece in pieces:
         for i, x in zip(piece.indices, piece.acceleration, strict=True):
             accelerations[i] = x
-    full = [sum((c * accelerations[key[0]] for key, c in e.items() if key), ZERO) for e in small.expressions]
-    motions = [(piece.indices, _motion(piece)) for piece in pieces]
-    dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
-    whole = Whole(found.measures, small, full, accelerations, motions, dropped)
-    return Modelled(found, whole, pieces, moved, fitted)
+    return pieces, accelerations, small.directions(accelerations)
+
+
+def _axes(found: Described, small: Reduced, accelerations: Sequence[Ball]) -> list[list[Ball]] | None:
+    """Return axes of space that suit a scene better than those in which it is described, None without."""
+    coordinates = found.measures.coordinates
+    if coordinates.dimension == 2:
+        return None
+    changes = [found.measures.table.v, accelerations]
+    moving = _moving(coordinates.vectors, changes)
+    if not spans_plane([*moving, coordinates.gravity]) and not all(row.constant for row in small.table.rows):
+        # What starts along a line shows its plane later.
+        places = expansion(small.table, _LATER).places
+        later = [small.directions([place[k] for place in places]) for k in range(3, _LATER + 1)]
+        moving += _moving(coordinates.vectors, later)
+    return scene_axes(moving, coordinates.gravity)
+
+
+def _moving(vectors: Sequence[Sequence[int]], changes: Sequence[Sequence[Ball]]) -> list[list[Ball]]:
+    return [[change[i] for i in vector] for change in changes for vector in vectors]
 
 
 def system_of(scene: Scene) -> SceneSystem:

@@ -38,8 +38,13 @@ _MOST_FACTORED = 8
 
 
 def reduced(table: Table, *, pinning: bool) -> Reduced:
-    """Apply the passes until none of them finds anything."""
-    state = Reduced(replace(table, rows=list(table.rows)), identity(len(table.names)))
+    """Apply the passes to a table until none of them finds anything."""
+    return further(Reduced(table, identity(len(table.names))), pinning=pinning)
+
+
+def further(state: Reduced, *, pinning: bool) -> Reduced:
+    """Apply the passes to what has been reduced already, which is brought up to date, until none finds anything."""
+    state.table = replace(state.table, rows=list(state.table.rows))
     while True:
         changed = _integrate(state.table)
         changed = _combine(state) or changed

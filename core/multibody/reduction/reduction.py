@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from core.multibody.algebra.polynomials import ONE, Poly, substituted
+from core.multibody.algebra.polynomials import ONE, ZERO, Ball, Poly, substituted
 from core.multibody.table.table import Table
 
 
@@ -26,6 +27,10 @@ class Reduced:
     expressions: list[Poly]
     pinned: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
+
+    def directions(self, changes: Sequence[Ball]) -> list[Ball]:
+        """Return rates or higher derivatives of every coordinate of the original table, from those of this one."""
+        return [sum((x * changes[key[0]] for key, x in e.items() if key), ZERO) for e in self.expressions]
 
 
 def substitute(state: Reduced, expressions: list[Poly | None]) -> None:

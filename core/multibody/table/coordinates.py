@@ -75,6 +75,16 @@ class Coordinates:
             raise InvalidParameter(path, rule, remedy=near_and_all(spot, ["centre", *frame.places], "places"))
         return Point(self._offset(frame, centre, frame.places[spot], path), body)
 
+    @property
+    def vectors(self) -> list[list[int]]:
+        """The coordinates in space that are the components of vectors: centres, axes and turns."""
+        found: list[list[int]] = []
+        for frame in self.frames.values():
+            found += [frame.position, *(frame.axes or ())]
+            found += [] if frame.axis is None else [frame.axis[1]]
+            found += [] if frame.turns is None else [list(frame.turns)]
+        return found
+
     def vector_of(self, body: str | None, components: Sequence[Ball], path: Path) -> list[Poly]:
         """Return a vector that is fixed in a body, given by its components in body axes; None is the ground."""
         nothing: list[Poly] = [{} for _ in range(self.dimension)]
