@@ -261,6 +261,8 @@ TESTED_IN |= {
         "table/test_contact_geometry_in_space": (
             "contacts/shares_in_space contacts/slip_directions phases/turning_pieces phases/turning_slip"
         ),
+        "statics/test_exact_places": "statics/places_beside statics/small_motions",
+        "test_stated_errors": "algebra/doubles",
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",
         "motion/test_free_body": "motion/turning_body",
         "trajectory/test_nearest": "motion/attitudes",

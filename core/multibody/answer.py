@@ -240,6 +240,14 @@ class SceneExtremes:
 
 
 @dataclass(frozen=True)
+class EquilibriumErrors:
+    """Errors of positions, as the lengths of vectors (m), and of angles (rad), by body."""
+
+    positions: Mapping[str, float]
+    angles: Mapping[str, float]
+
+
+@dataclass(frozen=True)
 class Equilibrium:
     """A place where the scene can rest.
 
@@ -254,6 +262,8 @@ class Equilibrium:
     modes : tuple of SmallMotion
     residual : float
         Largest force left over, relative to the forces of the scene.
+    errors : EquilibriumErrors
+        Of positions and angles.
     """
 
     positions: Mapping[str, tuple[float, ...]]
@@ -261,6 +271,7 @@ class Equilibrium:
     stable: bool | None
     modes: tuple[SmallMotion, ...]
     residual: float
+    errors: EquilibriumErrors
 
 
 @dataclass(frozen=True)

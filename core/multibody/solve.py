@@ -11,6 +11,7 @@ import numpy as np
 from core.arrays import Floats
 from core.balls import precision
 from core.errors import InvalidParameter, SlackAtStart
+from core.multibody.algebra.doubles import error_in_doubles
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.answer import SceneSolution
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
@@ -23,7 +24,6 @@ from core.multibody.start import (
     accelerations_of,
     at_rest,
     energy_of,
-    error_in_doubles,
     forces_of_start,
     noticed_of,
     scene_model,

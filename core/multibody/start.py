@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import hypot, inf, nextafter
 from typing import Any, NamedTuple, Protocol
 
-from core.balls import distance_bound
+from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
 from core.multibody.answer import (
     AccelerationErrors,
@@ -14,7 +14,6 @@ from core.multibody.answer import (
     Energy,
     EnergyErrors,
     ForceAnswer,
-    ModeErrors,
     PartErrors,
     PartModel,
     SceneModel,
@@ -34,16 +33,6 @@ class _Named(Protocol):
 
     @property
     def why(self) -> str: ...
-
-
-def in_doubles(ball: Ball) -> float:
-    """Return a number of the start as a double; what cannot be told from zero is zero."""
-    return 0.0 if is_zero(ball) else float(ball)
-
-
-def error_in_doubles(ball: Ball) -> float | None:
-    """Return a bound of the error of the double that `in_doubles` returns; None beyond the range of doubles."""
-    return distance_bound(ball, in_doubles(ball))
 
 
 class NumberKind(NamedTuple):
@@ -72,7 +61,7 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
     for piece, (_, motion) in zip(found.pieces, found.whole.parts, strict=True):
         modes: tuple[SmallMotion, ...] = ()
         if isinstance(motion, Modes):
-            modes = tuple(small_motion(mode.frequency, mode.growth) for mode in motion.modes)
+            modes = tuple(mode.in_doubles() for mode in motion.modes)
         period = motion.period
         turned = motion if isinstance(motion, (Periodic, Steady, Shifted)) and motion.winding else None
         apart.append(
@@ -107,12 +96,6 @@ def scene_model(found: Modelled, noticed: list[str], rank: int) -> SceneModel:
         tuple(apart),
         tuple(noticed),
     )
-
-
-def small_motion(frequency: Ball, growth: Ball) -> SmallMotion:
-    """Return a mode in doubles."""
-    errors = ModeErrors(error_in_doubles(frequency), error_in_doubles(growth))
-    return SmallMotion(in_doubles(frequency), in_doubles(growth), errors)
 
 
 def accelerations_of(

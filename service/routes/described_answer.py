@@ -173,6 +173,9 @@ class SceneEquilibrium(View):
     stable: bool | None = Field(description="null where the small motions do not decide.")
     modes: list[SmallMotion[float]]
     residual: Ratio[float] = Field(description="Largest force left over, relative to the forces of the scene.")
+    errors: dict[str, dict[str, Annotated[float, Unit("as in the field of that name")]]] = Field(
+        description="Bounds of the errors of positions, as the length of a vector, and of angles, by body."
+    )
 
 
 class DescribedAccuracy(View):

@@ -1674,6 +1674,7 @@ class SceneEquilibrium(TypedDict):
     stable: bool | None
     modes: list[SmallMotion]
     residual: float
+    errors: dict[str, dict[str, float]]
 
 
 class RestRange(TypedDict):

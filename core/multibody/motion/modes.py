@@ -20,8 +20,10 @@ from flint import acb, acb_mat, arb, arb_mat, ctx
 from core.arrays import Floats
 from core.balls import precision
 from core.multibody.algebra.characteristic_roots import roots_but_zero
+from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degree, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
+from core.multibody.answer import ModeErrors, SmallMotion
 from core.multibody.equations.packed import pair
 from core.multibody.motion.motion import States, check_sample_count
 from core.multibody.motion.turning import FEW_RADIANS
@@ -51,6 +53,11 @@ class Mode:
 
     frequency: Ball
     growth: Ball
+
+    def in_doubles(self) -> SmallMotion:
+        """Return the mode as it is answered, with bounds of its errors."""
+        errors = ModeErrors(error_in_doubles(self.frequency), error_in_doubles(self.growth))
+        return SmallMotion(in_doubles(self.frequency), in_doubles(self.growth), errors)
 
 
 @dataclass(frozen=True)

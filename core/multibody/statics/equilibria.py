@@ -1,31 +1,45 @@
 """Where a scene can rest, and how it moves near there.
 
-K q - b = W(q)^T lambda with g = 0 is quadratic again: Newton's method from many starts finds its solutions, those with
-positive lengths and taut strings count. That all are found is not proven. Small motions are those of Z^T M Z, Z^T D Z
-and Z^T (K - sum lambda dW) Z, with Z the directions that the connections leave free. Coordinates that a motion from the
-given start would never move are free here.
+K q - b = W(q)^T lambda with g = 0 is quadratic again: Newton's method in doubles from many starts finds about where its
+solutions are, those with positive lengths and taut strings count, and each is refined and enclosed in balls. That all
+are found is not proven. Coordinates that a motion from the given start would never move are free here.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import chain
+from math import hypot, inf, isfinite, nextafter
+
 import numpy as np
+from flint import arb
 
-from core.arrays import Floats
+from core.balls import precision
 from core.errors import AccuracyUnreachable, NotApplicable
-from core.multibody.answer import Equilibrium, SmallMotion
+from core.multibody.algebra.doubles import error_in_doubles, in_doubles
+from core.multibody.algebra.polynomials import BITS, Ball, evaluated
+from core.multibody.answer import Equilibrium, EquilibriumErrors
 from core.multibody.equations.dynamics import accelerations
-from core.multibody.equations.packed import packed, state, two_to, units_of
+from core.multibody.equations.packed import exponent, packed, state, two_to, units_of
 from core.multibody.reduction.passes import reduced
+from core.multibody.reduction.reduction import Reduced
 from core.multibody.statics.equilibrium_search import MOST_FOUND, solutions_of
+from core.multibody.statics.exact_places import ExactPlace, RestEquations, Tie
+from core.multibody.statics.places_beside import places_beside
 from core.multibody.statics.resting_places import RestingPlaces
+from core.multibody.statics.small_motions import small_motions, soft_directions
 from core.multibody.statics.static_equations import StaticEquations
-from core.multibody.table.description import Described
+from core.multibody.table.description import Described, described
+from core.multibody.table.table import Table
 
-_SMALL = 1e-9
+_FEW_BITS = 64
+"""Bits by which masses may differ before the scene is read in more of them."""
+_ALIKE = 2.0**-64
+"""Share of the scene's size by which places differ at least that are two."""
 
 
 def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
-    """Return the equilibria that Newton's method finds, those of lowest potential first.
+    """Return the equilibria that are found, those of lowest potential first.
 
     Raises
     ------
@@ -34,6 +48,15 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
     BudgetExceeded
         If the search would take too long.
     """
+    spread = _spread(found.measures.table)
+    if spread > _FEW_BITS:
+        # Beside the forces on heavy bodies those on light ones keep their bits.
+        with precision(BITS + 2 * spread):
+            return _found(described(found.scene))
+    return _found(found)
+
+
+def _found(found: Described) -> tuple[Equilibrium, ...]:
     small = reduced(found.measures.table, pinning=False)
     table = small.table
     frames = found.measures.coordinates.frames
@@ -48,106 +71,100 @@ def equilibria_of(found: Described) -> tuple[Equilibrium, ...]:
     gains, chosen = accelerations(table)
     units = units_of(table, gains)
     equations = StaticEquations(packed(table, chosen, units))
+    ties: dict[int, Tie] = {}
     for number, r in enumerate(chosen):
         if r in tied:
-            equations.tie(number, found, small, units, frames[table.rows[r].name], two_to(units.rows[r]))
+            frame = frames[table.rows[r].name]
+            equations.tie(number, found, small, units, frame, two_to(units.rows[r]))
+            ties[r] = _tie(found, small, frame.turn, frame.direction)
+    powers = [*units.lengths, *(units.multiplier(r) for r in chosen)]
+    exact = RestEquations(table, chosen, ties, [arb(2) ** power for power in powers])
     start = state(table, units)[0][:, 0]
     places = solutions_of(equations, start, len(table.names) - len(chosen))
-    resting = RestingPlaces(found, small, units)
+    resting = RestingPlaces(found, small)
+    refined = _different((place for q, x in places for place in [exact.place(q, x)] if place is not None), exact)
+    beside = (
+        other
+        for place in refined
+        if not place.one_of_many
+        for direction in soft_directions(exact, place)
+        for other in places_beside(exact, place, direction)
+    )
+    refined = _different(chain(list(refined), beside), exact)
     answers = [
-        (equations.potential(q), _described(resting, units.time, equations, q, multipliers))
-        for q, multipliers in places
-        if resting.possible(q)
+        (exact.potential(place.q), _described(found, small, exact, place))
+        for place in refined
+        if resting.possible(place)
     ]
-    answers.sort(key=lambda entry: entry[0])
+    answers.sort(key=lambda entry: float(entry[0]))
     return tuple(entry[1] for entry in answers[:MOST_FOUND])
 
 
-def _described(
-    resting: RestingPlaces, time: int, equations: StaticEquations, q: Floats, multipliers: Floats
-) -> Equilibrium:
-    load, pull = equations.arrays.load, equations.arrays.stiffness @ q
-    left = load - pull + equations.jacobian(q).T @ multipliers
-    terms = np.abs(load).max(initial=0.0) + np.abs(pull).max(initial=0.0)
+def _spread(table: Table) -> int:
+    """Return by how many bits the largest and the smallest mass differ."""
+    powers = [power for (i, j), x in table.mass.items() if i == j and (power := exponent(x)) is not None]
+    return max(powers) - min(powers) if powers else 0
+
+
+def _tie(found: Described, small: Reduced, turn: int | None, direction: tuple[int, int] | None) -> Tie:
+    assert turn is not None
+    assert direction is not None
+    q = found.measures.table.q
+    now, cosine, sine = (small.expressions[i] for i in (turn, *direction))
+    return Tie(now, cosine, sine, q[turn], arb.atan2(q[direction[1]], q[direction[0]]))
+
+
+def _different(places: Iterator[ExactPlace], equations: RestEquations) -> list[ExactPlace]:
+    """Return places without those that are one of the others."""
+    kept: list[ExactPlace] = []
+    for place in places:
+        if all(
+            any(_apart(x, y, size) for x, y, size in zip(place.q, one.q, equations.sizes, strict=False)) for one in kept
+        ):
+            kept.append(place)
+    return kept
+
+
+def _apart(x: Ball, y: Ball, size: Ball) -> bool:
+    return bool(abs(x - y) > _ALIKE * size)
+
+
+def _described(found: Described, small: Reduced, equations: RestEquations, place: ExactPlace) -> Equilibrium:
     try:
-        modes, stable = _small_motion(equations, q, multipliers)
-    except np.linalg.LinAlgError as fault:
-        raise _out_of_range("the masses differ by more than doubles can resolve") from fault
-    rate = two_to(-time)
-    shown = tuple(SmallMotion(float(w * rate), float(g * rate)) for w, g in modes)
-    if not np.isfinite([mode[:2] for mode in shown]).all():
+        modes, stable = small_motions(equations, place)
+    except (ValueError, ZeroDivisionError) as fault:
+        raise _out_of_range("the masses differ by more than 320 bits can resolve") from fault
+    shown = tuple(mode.in_doubles() for mode in modes)
+    where = [evaluated(expression, place.q) for expression in small.expressions]
+    positions: dict[str, tuple[float, ...]] = {}
+    angles: dict[str, float] = {}
+    wrong: dict[str, float] = {}
+    turned: dict[str, float] = {}
+    for name, frame in found.measures.coordinates.frames.items():
+        centre = [where[i] for i in frame.position]
+        positions[name] = tuple(map(in_doubles, centre))
+        wrong[name] = _length(list(map(error_in_doubles, centre)))
+        if frame.direction is not None:
+            c, s = frame.direction
+            angle = arb.atan2(where[s], where[c])
+        elif frame.turn is not None:
+            angle = where[frame.turn]
+        else:
+            continue
+        angles[name] = in_doubles(angle)
+        turned[name] = _length([error_in_doubles(angle)])
+    numbers = [*(x for centre in positions.values() for x in centre), *(x for mode in shown for x in mode[:2])]
+    if not np.isfinite(numbers).all() or not all(map(isfinite, [*wrong.values(), *turned.values()])):
         raise _out_of_range("the search for equilibria leaves the range of doubles")
-    residual = float(np.abs(left).max(initial=0.0) / terms) if terms else 0.0
-    return Equilibrium(*resting.shown(q), stable, shown, residual)
+    return Equilibrium(positions, angles, stable, shown, equations.share_left(place), EquilibriumErrors(wrong, turned))
+
+
+def _length(errors: Sequence[float | None]) -> float:
+    """Return the length of the errors of a vector, infinite where one is not known."""
+    length = hypot(*(inf if error is None else error for error in errors))
+    return nextafter(length, inf) if length > 0.0 and len(errors) > 1 else length
 
 
 def _out_of_range(reason: str) -> AccuracyUnreachable:
     remedy = "ask without equilibria, or choose units in which the numbers are moderate"
     return AccuracyUnreachable(None, np.inf, reason, path=("outputs",), remedy=remedy)
-
-
-def _small_motion(
-    equations: StaticEquations, q: Floats, multipliers: Floats
-) -> tuple[list[tuple[float, float]], bool | None]:
-    """Return (frequency, growth rate) of the small motions near an equilibrium, and whether it is stable."""
-    n, m = len(q), len(multipliers)
-    z = _directions(equations.jacobian(q)) if m else np.eye(n)
-    if not z.shape[1]:
-        return [], True
-    # Directions are scaled so that each has the same mass: light bodies beside heavy ones are then resolved as well.
-    z = z * _one_over_root(np.diag(z.T @ equations.mass @ z))
-    mass = z.T @ equations.mass @ z
-    damping = z.T @ equations.damping_at(q) @ z
-    stiffness = z.T @ (equations.arrays.stiffness - np.einsum("rji,r->ji", equations.slopes, multipliers)) @ z
-    inverse = np.linalg.inv(mass)
-    symmetric = np.abs(stiffness - stiffness.T).max() <= _SMALL * np.abs(stiffness).max()
-    bound = np.sqrt(np.abs(inverse @ stiffness).max()) + np.abs(inverse @ damping).max()
-    if symmetric and np.abs(damping).max(initial=0.0) <= _SMALL * bound * np.abs(mass).max():
-        low = np.linalg.cholesky((mass + mass.T) / 2)
-        squares = np.linalg.eigvalsh(np.linalg.solve(low, np.linalg.solve(low, (stiffness + stiffness.T) / 2).T))
-        modes = [(float(np.sqrt(x)), 0.0) if x > 0 else (0.0, float(np.sqrt(-x))) for x in squares]
-        edge = _SMALL * float(np.abs(squares).max(initial=0.0))
-        lowest = float(squares.min())
-        return modes, True if lowest > edge else (False if lowest < -edge else None)
-    size = len(mass)
-    system = np.block([[np.zeros((size, size)), np.eye(size)], [-inverse @ stiffness, -inverse @ damping]])
-    roots = np.linalg.eigvals(system)
-    modes = sorted((float(x.imag), float(x.real)) for x in roots if x.imag >= -_SMALL * bound)
-    growth = float(roots.real.max())
-    if growth > 1e-7 * bound:
-        return modes, False
-    if growth < -1e-7 * bound:
-        return modes, True
-    # Damping and gyroscopic terms cannot destroy a minimum of the potential.
-    convex = symmetric and float(np.linalg.eigvalsh((stiffness + stiffness.T) / 2).min()) > _SMALL * bound
-    return modes, True if convex else None
-
-
-def _one_over_root(masses: Floats) -> Floats:
-    positive = masses > 0.0
-    roots: Floats = 1.0 / np.sqrt(np.where(positive, masses, 1.0))
-    return roots
-
-
-def _directions(w: Floats) -> Floats:
-    """Return a basis of what rows of shape (m, n) leave free, by Gauss and Jordan's elimination with full pivoting.
-
-    Each vector moves one free coordinate and those that depend on it. An orthonormal basis would mix coordinates at
-    will, and rounding at the heavy bodies would then hide the light ones.
-    """
-    rows, held = w.copy(), list[int]()
-    least = np.finfo(float).eps * max(w.shape) * np.abs(w).max(initial=0.0)
-    for k in range(min(w.shape)):
-        i, j = np.unravel_index(np.argmax(np.abs(rows[k:])), rows[k:].shape)
-        if abs(rows[k + i, j]) <= least:
-            break
-        rows[k], rows[k + i] = rows[k + i].copy(), rows[k].copy()
-        rows[k] /= rows[k, j]
-        others = np.arange(len(rows)) != k
-        rows[others] -= np.outer(rows[others, j], rows[k])
-        held.append(int(j))
-    free = [j for j in range(w.shape[1]) if j not in held]
-    basis = np.zeros((w.shape[1], len(free)))
-    basis[free, np.arange(len(free))] = 1.0
-    basis[held] = -rows[: len(held)][:, free]
-    return basis

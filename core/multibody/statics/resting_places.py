@@ -1,16 +1,14 @@
-"""Places of a reduced table as places of the whole scene, in doubles: which of them can be, and what they look like."""
+"""Which places of a reduced table can be: those with positive lengths and taut strings, as doubles tell."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from core.arrays import Floats
-from core.multibody.algebra.polynomials import Poly
-from core.multibody.equations.packed import Units, two_to
+from core.multibody.algebra.polynomials import Poly, evaluated
 from core.multibody.reduction.reduction import Reduced
+from core.multibody.statics.exact_places import ExactPlace
 from core.multibody.table.description import Described
 from core.multibody.table.table import Table
 
@@ -44,20 +42,10 @@ class RestingPlaces:
     ----------
     found : Described
     small : Reduced
-    units : Units
-        Of the places.
     """
 
-    def __init__(self, found: Described, small: Reduced, units: Units) -> None:
-        up = np.array([two_to(e) for e in units.lengths])
-        self.slopes, self.offsets = np.zeros((len(small.expressions), len(up))), np.zeros(len(small.expressions))
-        for i, expression in enumerate(small.expressions):
-            for key, value in expression.items():
-                if key:
-                    self.slopes[i, key[0]] = float(value) * up[key[0]]
-                else:
-                    self.offsets[i] = float(value)
-        self.found, measures = found, found.measures
+    def __init__(self, found: Described, small: Reduced) -> None:
+        self.expressions, measures = small.expressions, found.measures
         self._holds = Holds(
             measures.table,
             [(r, j, _terms(p)) for r, row in enumerate(measures.table.rows) for j, p in row.rates.items()],
@@ -72,28 +60,9 @@ class RestingPlaces:
             [_terms(limit.length) for limit in measures.limits if limit.length is not None],
         )
 
-    def whole(self, q: Floats) -> Floats:
-        """Return every coordinate as described, shape (n,), in SI units."""
-        place: Floats = self.offsets + self.slopes @ q
-        return place
-
-    def shown(self, q: Floats) -> tuple[Mapping[str, tuple[float, ...]], Mapping[str, float]]:
-        """Return the centres of mass of the bodies, and the angles of those in the plane whose direction matters."""
-        place = self.whole(q)
-        frames = self.found.measures.coordinates.frames
-        positions = {name: tuple(float(place[i]) for i in frame.position) for name, frame in frames.items()}
-        angles = {}
-        for name, frame in frames.items():
-            if frame.direction is not None:
-                c, s = frame.direction
-                angles[name] = float(np.arctan2(place[s], place[c]))
-            elif frame.turn is not None:
-                angles[name] = float(place[frame.turn])
-        return positions, angles
-
-    def possible(self, q: Floats) -> bool:
+    def possible(self, found: ExactPlace) -> bool:
         """Return whether lengths are positive there and strings taut."""
-        place, holds = self.whole(q).tolist(), self._holds
+        place, holds = [float(evaluated(expression, found.q)) for expression in self.expressions], self._holds
         if not all(_value(length, place) > 0.0 for length in holds.lengths):
             return False
         if not holds.forces:

@@ -67,25 +67,21 @@ class StaticEquations:
     Attributes
     ----------
     arrays : StaticArrays
-    mass, damping : ndarray, shape (n, n)
     slopes : ndarray, shape (m, n, n)
         ``dW[r, j]/dq[i]``.
     """
 
     def __init__(self, packed: Packed) -> None:
         n, m = len(packed.load), len(packed.rate)
-        self.mass, stiffness, self.damping = packed.mass[..., 0], np.zeros((n, n)), np.zeros((n, n))
+        mass, stiffness = packed.mass[..., 0], np.zeros((n, n))
         for (i, j), x in zip(packed.stiff_at, packed.stiff[:, 0], strict=True):
             stiffness[i, j] = x
-        for (i, j), x in zip(packed.damp_at, packed.damp[:, 0], strict=True):
-            self.damping[i, j] = x
         lines, self.slopes = np.zeros((m, n)), np.zeros((m, n, n))
         for (r, j), x in zip(packed.lines_at, packed.lines[:, 0], strict=True):
             lines[r, j] = x
         for (e, i), x in zip(packed.slopes_at, packed.slopes[:, 0], strict=True):
             r, j = packed.lines_at[e]
             self.slopes[r, j, i] = x
-        self._gyration = [(*at, x) for at, x in zip(packed.gyre_at.tolist(), packed.gyre[:, 0], strict=True)]
         # Where there is one slope only, numpy returns another layout, and kernels would be compiled for that again.
         at = np.ascontiguousarray(np.argwhere(self.slopes))
         self.arrays = StaticArrays(
@@ -99,7 +95,7 @@ class StaticEquations:
             np.empty((0, 3, n + 1)),
             np.empty((0, 2)),
             np.empty(0),
-            _weights(np.diag(self.mass), packed.load[:, 0], stiffness),
+            _weights(np.diag(mass), packed.load[:, 0], stiffness),
             (lines != 0.0) | (self.slopes != 0.0).any(axis=2),
         )
 
@@ -123,22 +119,6 @@ class StaticEquations:
             tie_starts=np.append(now.tie_starts, [[start[0], float(np.arctan2(start[2], start[1]))]], axis=0),
             tie_factors=np.append(now.tie_factors, factor),
         )
-
-    def jacobian(self, q: Floats) -> Floats:
-        """Return W at a place."""
-        found: Floats = self.arrays.lines + self.slopes @ q
-        return found
-
-    def potential(self, q: Floats) -> float:
-        """Return the potential energy of a place."""
-        return float(q @ self.arrays.stiffness @ q / 2 - self.arrays.load @ q)
-
-    def damping_at(self, q: Floats) -> Floats:
-        """Return what multiplies the rates near a place at rest, gyroscopic terms included."""
-        total = self.damping.copy()
-        for i, j, k, x in self._gyration:
-            total[i, k] -= x * q[j]
-        return total
 
 
 def _weights(mass: Floats, load: Floats, stiffness: Floats) -> Floats:

@@ -75,8 +75,7 @@ def test_modes_of_a_double_pendulum_of_any_masses(upper: str, lower: str) -> Non
         squares = [mpmath.mpf("9.81") / (1 + sign * mpmath.sqrt(share)) for sign in (1, -1)]
         expected = [float(mpmath.sqrt(square)) for square in squares]
     assert [mode[0] for mode in found[0].modes] == pytest.approx(expected, rel=1e-11)
-    # Where the fastest mode is a million times the slowest, the sign of the slowest square is not decided.
-    assert found[0].stable is (True if expected[1] < 1e6 * expected[0] else None)
+    assert found[0].stable is True
     assert [one.stable for one in found[1:]] == [False] * 3
     for name, reach in (("p0", 1.0), ("p1", 2.0)):
         heights = sorted(abs(one.positions[name][1]) for one in found)
