@@ -159,5 +159,7 @@ def _merged(
         for mine, own in pieces:
             values[mine] = own[name].values
         error = max(own[name].error for _, own in pieces)
-        found[name] = Column(values, first.unit, error, first.how, scale=fastest.get(first.unit))
+        known = [fastest.get(first.unit), *(own[name].scale for _, own in pieces)]
+        scale = max((x for x in known if x is not None), default=None)
+        found[name] = Column(values, first.unit, error, first.how, scale=scale)
     return found

@@ -18,6 +18,7 @@ from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.motion.whole import values as values_of
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.momenta import StateFunction, momenta
+from core.multibody.trajectory.column_errors import ROUNDED
 from core.systems.trajectory import Column, How
 
 _SMALL = 2.0**-50
@@ -112,7 +113,9 @@ class Columns:
             if by_reference is not None:
                 other = self.whole.force(force, *by_reference)[0]
                 error += 4.0 * float(np.max(np.abs(values - other), initial=0.0))
-            found[force.name] = Column(values, force.unit, error, self.how)
+            # A force that is zero by symmetry is known as a share of those that are solved for with it.
+            small = error > ROUNDED * float(np.max(np.abs(values), initial=0.0))
+            found[force.name] = Column(values, force.unit, error, self.how, scale=floor / _SOLVED if small else None)
         return found
 
     def _forces(self, chosen: Sequence[Force], q: Floats, v: Floats) -> Floats:

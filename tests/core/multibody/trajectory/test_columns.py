@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -66,3 +68,23 @@ def test_every_error_of_a_chaotic_motion_covers_the_distance_from_the_motion_in_
         assert other.error < 1e-12, name
         assert largest > 1e-8, name
         assert largest <= own.error, name
+
+
+@pytest.mark.parametrize("contact", [False, True])
+def test_a_torque_that_is_zero_by_symmetry_has_the_scale_of_the_other_forces(contact: bool) -> None:
+    """A pinned bar that a motor turns evenly without gravity: the pin pulls with m r w^2, the motor does nothing."""
+    bar = {"mass": 1, "inertia": "1/12", "at": [0, 0.5], "angle": "pi/2", "places": {"top": [-0.5, 0]}}
+    connections: list[dict[str, Any]] = [
+        {"kind": "pin", "name": "pin", "a": "bar.top", "b": [0, 0]},
+        {"kind": "motor", "name": "motor", "a": "bar", "rate": 2},
+    ]
+    bodies: dict[str, Any] = {"bar": bar}
+    if contact:
+        bodies["ball"] = {"mass": 1, "at": [5, 1], "velocity": [0, -1]}
+        connections.append({"kind": "contact", "place": "ball", "on": {"at": [5, 0]}, "restitution": 1})
+    scene = {"gravity": [0, 0], "bodies": bodies, "connections": connections}
+    found = solve_scene(read(scene), [0.0, 0.7, 1.9], ("trajectory", "forces-in-time")).trajectory
+    assert found is not None
+    torque = found.columns["motor.torque"]
+    assert np.max(np.abs(torque.values)) <= torque.error < 1e-15
+    assert torque.scale == pytest.approx(2.0, rel=0.6)
