@@ -252,15 +252,14 @@ TESTED_IN |= {
             "contacts/conditions_of_states contacts/contact_forces contacts/contact_responses contacts/contact_states"
         ),
         "contacts/test_certificates": "contacts/admissible_forces",
+        "contacts/test_shares_in_space": "phases/shared_friction",
         "table/test_contact_geometry": (
             "contacts/contact_start contacts/projection equations/expansion equations/polynomial_roots "
             "phases/crossings phases/phase phases/phases "
             "phases/slow_bounces phases/tracks phases/watches start "
             "table/contact_places"
         ),
-        "table/test_contact_geometry_in_space": (
-            "contacts/shares_in_space contacts/slip_directions phases/turning_pieces phases/turning_slip"
-        ),
+        "table/test_contact_geometry_in_space": ("contacts/slip_directions phases/turning_pieces phases/turning_slip"),
         "statics/test_exact_places": "statics/places_beside statics/small_motions",
         "test_stated_errors": "algebra/doubles",
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",

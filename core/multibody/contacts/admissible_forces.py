@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from flint import arb
+
+from core.arrays import Floats
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, constant, entry, is_zero
 from core.multibody.algebra.rank import Elimination, independent
 from core.multibody.contacts.certificates import certificates
 from core.multibody.contacts.contact_states import PhaseTable, State, disc
-from core.multibody.equations.expansion import Expansion, Series
+from core.multibody.contacts.shares_in_space import Cone, best_share
+from core.multibody.equations.expansion import Expansion, Series, expansion
 from core.multibody.table.connection_effects import Force, Unilateral
 from core.multibody.table.table import Table
 
@@ -48,14 +53,56 @@ class AdmissibleForce:
         return disc(total, [motion.multipliers[row] for row in self.rubs]) if self.rubs else total
 
 
+@dataclass(frozen=True)
+class SharedCones:
+    """A load that is shared by what sticks in space.
+
+    Attributes
+    ----------
+    conditions : list of AdmissibleForce
+        Of every contact, as if its multipliers were known.
+    shares : list of dict of int to ball
+        Multipliers that give no force, by the numbers of their rows.
+    """
+
+    conditions: list[AdmissibleForce]
+    shares: list[dict[int, Ball]]
+
+    def certificate(self, multipliers: Floats) -> tuple[float, AdmissibleForce]:
+        """Return the margin of the best share of a load, and what holds it back as a sum without the share.
+
+        The sum cannot be negative where some share is admissible; for the multipliers given it is the least of such
+        sums.
+
+        Parameters
+        ----------
+        multipliers : ndarray, shape (rows,)
+            Of which redundant rows may have zero.
+        """
+        rows = sorted({row for one in self.conditions for row in (*one.terms, *one.rubs)})
+        where = {row: i for i, row in enumerate(rows)}
+        cones = []
+        for one in self.conditions:
+            ((row, factor),) = one.terms.items()
+            cones.append(Cone(where[row], float(factor), tuple(where[r] for r in one.rubs)))
+        slopes = np.array([[float(entry(share, row)) for share in self.shares] for row in rows])
+        best = best_share(cones, multipliers[rows], slopes)
+        parts = []
+        for one, weight, direction in zip(self.conditions, best.weights, best.directions, strict=True):
+            rubs = {row: arb(float(x)) for row, x in zip(one.rubs, direction, strict=False)}
+            parts.append((arb(float(weight)), AdmissibleForce(one.number, one.grips, {**one.terms, **rubs})))
+        return best.margin, _summed(parts)
+
+
 def admissible(
     unilateral: Sequence[Unilateral], group: Sequence[int], states: Sequence[State], phase: PhaseTable
 ) -> list[AdmissibleForce]:
     """Return what has to stay at least zero of the forces of some measures in a phase.
 
     Where rows follow from others, their multipliers are not unique. Then the conditions are those under which some
-    share of the load is admissible; they are the same whatever the share. What sticks in space is taken with the
-    multipliers of redundant rows zero, as are rows of which the dependence changes along the motion.
+    share of the load is admissible; they are the same whatever the share. Of cones in space there are infinitely many:
+    one stands for what holds back the best share at the start. Where the dependence of the rows changes along the
+    motion, the multipliers of redundant rows are taken as zero.
     """
     single: list[AdmissibleForce] = []
     for i in group:
@@ -67,19 +114,40 @@ def admissible(
             single.extend(AdmissibleForce(i, True, {row: one.static, stuck[0]: sense}) for sense in (ONE, -ONE))
         elif stuck:
             single.append(AdmissibleForce(i, True, {row: one.static}, tuple(stuck)))
-    if any(one.rubs for one in single):
-        return single
-    shares = _shares(phase.table)
-    if not shares:
-        return single
     # That what sticks pushes follows from its cone.
     stuck_pushes = {one.number for one in single if one.grips}
     needed = [one for one in single if one.grips or one.number not in stuck_pushes]
+    shares = _shares_of(needed, phase.table)
+    if not shares:
+        return single
+    if not any(one.rubs for one in needed):
+        return _without_share(needed, shares)
+    start = np.array([float(x[0].mid()) if x else 0.0 for x in expansion(phase.table, 2).multipliers])
+    return [SharedCones(needed, shares).certificate(start)[1]]
+
+
+def shared_cones(unilateral: Sequence[Unilateral], group: Sequence[int], phase: PhaseTable) -> SharedCones | None:
+    """Return the load that measures share which stick in space, None where they share none."""
+    conditions = []
+    for i in group:
+        row, stuck = phase.normal[i], phase.grip(i)
+        if row is not None and len(stuck) == 2:
+            conditions.append(AdmissibleForce(i, True, {row: unilateral[i].static}, tuple(stuck)))
+        elif row is not None:
+            conditions.append(AdmissibleForce(i, False, {row: ONE}))
+    if not any(one.rubs for one in conditions):
+        return None
+    shares = _shares_of(conditions, phase.table)
+    return SharedCones(conditions, shares) if shares else None
+
+
+def _without_share(conditions: Sequence[AdmissibleForce], shares: Sequence[dict[int, Ball]]) -> list[AdmissibleForce]:
+    """Return the least sums of linear conditions in which no share has a part."""
     slopes = [
         {f: sum((x * entry(share, row) for row, x in one.terms.items()), ZERO) for f, share in enumerate(shares)}
-        for one in needed
+        for one in conditions
     ]
-    return [_summed([(y, needed[k]) for k, y in weights.items()]) for weights in certificates(slopes)]
+    return [_summed([(y, conditions[k]) for k, y in weights.items()]) for weights in certificates(slopes)]
 
 
 def _summed(parts: Sequence[tuple[Ball, AdmissibleForce]]) -> AdmissibleForce:
@@ -91,16 +159,48 @@ def _summed(parts: Sequence[tuple[Ball, AdmissibleForce]]) -> AdmissibleForce:
     return AdmissibleForce(parts[0][1].number, any(one.grips for _, one in parts), left)
 
 
-def _shares(table: Table) -> list[dict[int, Ball]]:
-    """Return multipliers that give no force: of rows that follow from others, by their numbers."""
+def _shares_of(conditions: Sequence[AdmissibleForce], table: Table) -> list[dict[int, Ball]]:
+    """Return multipliers that give no force and have a part in conditions, if they are the same along the motion."""
     if len(independent(row.line(table.q) for row in table.rows)) == len(table.rows):
         return []
-    lines: dict[int, dict[int, Ball]] = {}
+    rows = {row for one in conditions for row in (*one.terms, *one.rubs)}
+    forceless = _balanced(table, {})
+    assert forceless is not None, "no multipliers give no force"
+    free = [r for r in range(len(table.rows)) if r not in forceless.pivots]
+    shares = [{f: ONE, **{r: -rest[f] for r, (rest, _) in forceless.pivots.items() if f in rest}} for f in free]
+    found = [share for share in shares if any(not is_zero(entry(share, row)) for row in rows)]
+    motion = expansion(table, 2)
+    for power in (1, 2):
+        # Along the rates, and along the accelerations: what is free stays as it is, and so have the others to.
+        moved = [series[power] for series in motion.places]
+        for share in found if not all(is_zero(x) for x in moved) else ():
+            change = _balanced(table, _lost(table, share, moved))
+            if change is None or any(row in change.pivots and not is_zero(change.pivots[row][1]) for row in rows):
+                return []
+    return found
+
+
+def _balanced(table: Table, load: dict[int, Ball]) -> Elimination | None:
+    """Return the multipliers that give a load on the coordinates, None where none do."""
+    lines: dict[int, dict[int, Ball]] = {j: {} for j in load}
     for r, row in enumerate(table.rows):
         for j, x in row.pushed(table.q).items():
             lines.setdefault(j, {})[r] = x
     elimination = Elimination()
-    for line in lines.values():
-        elimination.add(line, ZERO)
-    free = [r for r in range(len(table.rows)) if r not in elimination.pivots]
-    return [{f: ONE, **{r: -rest[f] for r, (rest, _) in elimination.pivots.items() if f in rest}} for f in free]
+    for j, line in lines.items():
+        left = elimination.add(line, entry(load, j))
+        if left is not None and not is_zero(left):
+            return None
+    return elimination
+
+
+def _lost(table: Table, share: dict[int, Ball], moved: Sequence[Ball]) -> dict[int, Ball]:
+    """Return less the load that multipliers give once the coordinates have moved, to first order."""
+    found: dict[int, Ball] = {}
+    for r, factor in share.items():
+        for part in (table.rows[r].rates, table.rows[r].drag):
+            for j, poly in part.items():
+                for key, x in poly.items():
+                    if key:
+                        found[j] = entry(found, j) - factor * x * moved[key[0]]
+    return found

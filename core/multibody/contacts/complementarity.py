@@ -204,7 +204,7 @@ def _onsets(
     (i,) = onsets
 
     def after(direction: Direction) -> Direction | None:
-        balance = balanced(at.unilateral, group, states, at.found, {i: direction})
+        balance = balanced(at.unilateral, group, states, at.found, {i: direction}, shared=False)
         if balance is None:
             return None
         along, across = (at.found.along(balance.forces, line) for line in at.found.grip(i))

@@ -58,8 +58,7 @@ def lasts(at: Situation, group: Sequence[int], settled: Sequence[State], balance
     least = min(signs, default=1)
     if least < 0:
         return False
-    shared_in_space = bool(balance.shares) and sticks_in_space(at.unilateral, group, balance.states)
-    if least > 0 or shared_in_space or balance.moves:
+    if least > 0 or balance.moves:
         return True
     states = list(settled)
     for i, state in zip(group, balance.states, strict=True):
@@ -68,7 +67,7 @@ def lasts(at: Situation, group: Sequence[int], settled: Sequence[State], balance
     for i, direction in balance.directions.items():
         unilateral[i] = turned(unilateral[i], direction)
     now = replace(at, unilateral=unilateral)
-    return all(leading_sign(series) >= 0 for series in _conditions_in_time(now, group, states))
+    return all(leading_sign(series) >= 0 for series in _conditions_in_time(now, group, states, balance))
 
 
 def conditions_of(at: Situation, group: Sequence[int], balance: Balance) -> list[Ball]:
@@ -77,14 +76,20 @@ def conditions_of(at: Situation, group: Sequence[int], balance: Balance) -> list
         conditions = _linear_conditions(at, group, balance)
         return [_value(weights, balance, conditions) for weights in _certificates(balance, conditions)]
     found, forces = at.found, balance.forces
+    best = balance.best or forces
     values: list[Ball] = []
     for i, state in zip(group, balance.states, strict=True):
-        if state is State.STICK:
-            push = forces[found.normal[i]]
+        if state is State.STICK and balance.marginal:
+            values.append(ZERO)
+        elif state is State.STICK:
+            push = best[found.normal[i]]
             values.append(push)
-            values.extend(grips(at.unilateral[i].static * push, [forces[line] for line in found.grip(i)]))
+            values.extend(grips(at.unilateral[i].static * push, [best[line] for line in found.grip(i)]))
         else:
-            values.extend(start + rate_along(form, forces) for start, form in _of_contact(at, i, state, balance))
+            for start, form in _of_contact(at, i, state, balance):
+                # Accelerations are the same for every share.
+                shared = list(form) == [found.normal[i]]
+                values.append(start + rate_along(form, best if shared else forces))
     return values
 
 
@@ -131,12 +136,16 @@ def _value(weights: Weights, balance: Balance, conditions: Sequence[tuple[Ball, 
     )
 
 
-def _conditions_in_time(at: Situation, group: Sequence[int], states: Sequence[State]) -> Iterator[list[Ball]]:
+def _conditions_in_time(
+    at: Situation, group: Sequence[int], states: Sequence[State], balance: Balance
+) -> Iterator[list[Ball]]:
     """Yield the Taylor series of everything that has to stay at or above zero."""
     phase = phase_table(at.base, at.unilateral, states, at.q, at.v)
     motion = expansion(phase.table, LOOKED)
     for condition in admissible(at.unilateral, group, states, phase):
-        yield condition.series(motion)
+        series = condition.series(motion)
+        # What sticks in space by nothing, as far as that is known, does so exactly.
+        yield [ZERO, *series[1:]] if balance.marginal and condition.grips else series
     for i in group:
         if phase.normal[i] is None:
             # Gap and rate are zero: the contact touches.

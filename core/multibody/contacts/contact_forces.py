@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 from flint import arb_mat
 
 from core.multibody.algebra.polynomials import ONE, ZERO, Ball, entry, is_zero
 from core.multibody.algebra.rank import Elimination
 from core.multibody.contacts.contact_responses import NO_DIRECTIONS, Forces, Responses
 from core.multibody.contacts.contact_states import State
-from core.multibody.contacts.shares_in_space import shared_in_space
+from core.multibody.contacts.shares_in_space import MARGINAL, Cone, best_share
 from core.multibody.table.connection_effects import Unilateral
 
 
@@ -36,6 +37,10 @@ class Balance:
         Forces along every line that may be added, in any multiple, with all that is held as it is.
     moved : list of list of ball
         Accelerations of every coordinate by each of them: zero where the motion does not depend on the share.
+    best : list of ball
+        Forces with the share for which what sticks in space does so best; empty where none is looked for.
+    marginal : bool
+        Whether what sticks in space does so by nothing, as far as that is known.
     """
 
     states: tuple[State, ...]
@@ -44,6 +49,8 @@ class Balance:
     directions: dict[int, tuple[Ball, Ball]]
     shares: Sequence[Sequence[Ball]] = ()
     moved: Sequence[Sequence[Ball]] = ()
+    best: Sequence[Ball] = ()
+    marginal: bool = False
 
     @property
     def moves(self) -> bool:
@@ -78,10 +85,12 @@ def balanced(
     states: Sequence[State],
     found: Responses,
     directions: Mapping[int, tuple[Ball, Ball]] = NO_DIRECTIONS,
+    *,
+    shared: bool = True,
 ) -> Balance | None:
     """Return the forces that go with states, None where there are none; their signs are still to be checked.
 
-    Of places that stick in space and share a load, the forces are a share with which they do.
+    Of places that stick in space and share a load, the best share is looked for if they are `shared`.
     """
     unknowns, held = found.unknowns(unilateral, group, states, directions)
     size = len(unknowns)
@@ -106,20 +115,43 @@ def balanced(
     free = [j for j in range(size) if j not in elimination.pivots]
     if not free:
         return balance(elimination.solution(range(size)))
-    shares = []
+    alone = []
     for f in free:
-        alone = [ZERO] * size
-        alone[f] = ONE
+        unit = [ZERO] * size
+        unit[f] = ONE
         for j, (rest, _) in elimination.pivots.items():
-            alone[j] = -entry(rest, f)
-        shares.append(_spread(alone, unknowns, found))
-    solved: list[Ball] | None = elimination.solution(range(size))
-    if sticks_in_space(unilateral, group, states):
-        solved = shared_in_space(unilateral, group, states, elimination, free, size)
-    if solved is None:
-        return None
+            unit[j] = -entry(rest, f)
+        alone.append(unit)
+    solved = elimination.solution(range(size))
+    shares = [_spread(unit, unknowns, found) for unit in alone]
     moved = [found.accelerations(share, from_rest=True) for share in shares]
-    return replace(balance(solved), shares=shares, moved=moved)
+    if not (shared and sticks_in_space(unilateral, group, states)):
+        return replace(balance(solved), shares=shares, moved=moved)
+    best = best_share(
+        _cones(unilateral, group, states),
+        np.array([float(x) for x in solved]),
+        np.array([[float(unit[j]) for unit in alone] for j in range(size)]),
+    )
+    if best.margin < -MARGINAL:
+        return None
+    now = balance(solved)
+    best_forces = list(now.forces)
+    for x, share in zip(best.free.tolist(), shares, strict=True):
+        best_forces = [y + x * z for y, z in zip(best_forces, share, strict=True)]
+    return replace(now, shares=shares, moved=moved, best=best_forces, marginal=best.margin <= MARGINAL)
+
+
+def _cones(unilateral: Sequence[Unilateral], group: Sequence[int], states: Sequence[State]) -> list[Cone]:
+    """Return what has to hold of unknown forces: a push, and two components of friction of what sticks, in turn."""
+    found: list[Cone] = []
+    j = 0
+    for i, state in zip(group, states, strict=True):
+        if state is State.OPEN:
+            continue
+        sticks = state is State.STICK
+        found.append(Cone(j, float(unilateral[i].static), (j + 1, j + 2)) if sticks else Cone(j))
+        j += 3 if sticks else 1
+    return found
 
 
 def sticks_in_space(unilateral: Sequence[Unilateral], group: Sequence[int], states: Sequence[State]) -> bool:

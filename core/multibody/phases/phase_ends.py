@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from flint import arb
 
@@ -17,6 +18,7 @@ from core.multibody.equations.polynomial_roots import sharpened
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
 from core.multibody.phases.crossings import Crossing, first_in_closed_form, state_of, uniform_motion
 from core.multibody.phases.phase import Phase
+from core.multibody.phases.shared_friction import first_without_share
 from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
@@ -100,7 +102,7 @@ def _crossings(
         return _in_closed_form(phase, watched, left, noticed)
     if phase.turning:
         return _while_turning(base, phase, watched, float(left))
-    return _searched(phase, watched, float(left))
+    return first_without_share(phase, watched, float(left), partial(_searched, phase))
 
 
 def _in_closed_form(phase: Phase, watched: Sequence[Watch], left: Ball, noticed: list[str]) -> list[Crossing]:
