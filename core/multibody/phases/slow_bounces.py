@@ -14,7 +14,7 @@ from core.systems.trajectory import MotionEvent
 
 SLOW = 2.0**-42
 """Share of the largest rate below which several contacts that bounce in turn come to rest."""
-NEAR = 2.0**-33
+NEAR = 2.0**-36
 """The same where their order is beyond what is known: what is left out stays below the usual accuracy of 1e-9."""
 OFTEN = 3
 """Impacts among the last ones by which a contact shows that it bounces in turn with others."""
