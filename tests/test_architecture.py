@@ -248,6 +248,7 @@ TESTED_IN |= {
         "language/test_scene": "language/connections language/reading",
         "reduction/test_passes": "reduction/pinning reduction/reduction",
         "trajectory/test_along": "trajectory/integrals",
+        "trajectory/test_occurrences": "trajectory/smooth_search",
         "contacts/test_complementarity": (
             "contacts/conditions_of_states contacts/contact_forces contacts/contact_responses contacts/contact_states"
         ),

@@ -226,6 +226,8 @@ class SceneExtremes:
         End of what was searched, from the start.
     periodic : bool
         Whether that is a period, so that the extremes are those of all time.
+    errors : mapping of str to float
+        Of both times (s): how far from the extreme a value is told from it no more.
     """
 
     quantity: str
@@ -237,6 +239,7 @@ class SceneExtremes:
     error: OwnUnit
     until: Seconds
     periodic: bool
+    errors: Mapping[str, Seconds]
 
 
 @dataclass(frozen=True)

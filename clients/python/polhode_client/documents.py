@@ -1664,6 +1664,7 @@ class SceneExtremes(TypedDict):
     error: float
     until: float
     periodic: bool
+    errors: dict[str, float]
 
 
 class SceneEquilibrium(TypedDict):

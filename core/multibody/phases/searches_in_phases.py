@@ -71,7 +71,8 @@ class SearchInPhases:
         for piece, sampler in zip(self.pieces, self._samplers(search, index), strict=True):
             own = extremes_on(piece.grid(self._followed(search)), sampler, search.quantity)
             times = [nearest(piece.start + arb(t)) for t in (own.least_time, own.largest_time)]
-            found.append(replace(own, least_time=times[0], largest_time=times[1]))
+            errors = {name: error + piece.late + 2.0**-52 * max(times) for name, error in own.errors.items()}
+            found.append(replace(own, least_time=times[0], largest_time=times[1], errors=errors))
         low, high = min(found, key=lambda one: one.least), max(found, key=lambda one: one.largest)
         last = self.pieces[-1]
         return replace(
@@ -79,6 +80,7 @@ class SearchInPhases:
             largest=high.largest,
             largest_time=high.largest_time,
             error=max(low.error, high.error),
+            errors={"least_time": low.errors["least_time"], "largest_time": high.errors["largest_time"]},
             until=nearest(last.start + arb(last.length)),
         )
 

@@ -29,6 +29,8 @@ _MOST_ROUNDS = 100
 _CROWDED = np.concatenate([[0.0], 2.0 ** -np.arange(2, 54, 2), -(2.0 ** -np.arange(2, 54, 2))])
 _FLAT = 2.0**-51
 MOST_FOUND = 1000
+_BITS_OF_TIME = 60
+"""Powers of two that lead from the end of a search down to the last digits of its times."""
 
 Sampler = Callable[[Floats], Column]
 """From times to the column of one quantity, whose values have shape (t,)."""
@@ -170,7 +172,28 @@ def extremes_on(grid: Floats, sampler: Sampler, quantity: str, *, periodic: bool
     least = -least
     error = sampler(np.array([low, high])).error
     _require_in_range(quantity, least, largest, error)
-    return SceneExtremes(quantity, column.unit, least, low, largest, high, error, float(grid[-1]), periodic)
+    until = float(grid[-1])
+    errors = {
+        "least_time": _error_of_time(sampler, low, least, error, until),
+        "largest_time": _error_of_time(sampler, high, largest, error, until),
+    }
+    return SceneExtremes(quantity, column.unit, least, low, largest, high, error, until, periodic, errors)
+
+
+def _error_of_time(sampler: Sampler, time: float, value: float, error: float, until: float) -> float:
+    """Return how far from a time the values between zero and `until` are told from an extreme that was found there.
+
+    Distances grow by a factor of two. The extreme of a curve that turns once between two samples is nearer than the
+    first at which both sides differ by more than their errors.
+    """
+    steps = until * 2.0 ** -np.arange(_BITS_OF_TIME, -1.0, -1.0)
+    sides = np.stack([time - steps, time + steps])
+    outside = (sides < 0.0) | (sides > until)
+    values = sampler(np.clip(sides, 0.0, until).ravel())
+    apart = np.abs(values.values.reshape(sides.shape) - value) > 2.0 * (error + values.error)
+    told = np.all(apart | outside, axis=0)
+    k = int(np.argmax(told)) if np.any(told) else len(steps) - 1
+    return float(steps[k]) + 2.0**-52 * abs(time)
 
 
 def _touching(grid: Floats, curve: Floats) -> np.ndarray:

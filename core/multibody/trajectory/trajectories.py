@@ -16,7 +16,7 @@ from core.multibody.motion.modelling import Modelled
 from core.multibody.motion.numerical import Numerical
 from core.multibody.motion.whole import Whole, WholeStates
 from core.multibody.table.connection_effects import Limit
-from core.multibody.trajectory.along import Along, watched_times
+from core.multibody.trajectory.along import Along
 from core.multibody.trajectory.column_errors import (
     FINEST,
     apart,
@@ -26,20 +26,12 @@ from core.multibody.trajectory.column_errors import (
     with_natural_sizes,
     worst,
 )
-from core.multibody.trajectory.columns import COLUMNS_OF_STATES, NEAREST, Columns
+from core.multibody.trajectory.columns import NEAREST, Columns
 from core.multibody.trajectory.events import first_event
 from core.multibody.trajectory.inherited import NO_HORIZON_NEEDED, changes, horizon, instants, with_inherited
 from core.multibody.trajectory.nearest import Nearest
-from core.multibody.trajectory.occurrences import (
-    ExtremesOf,
-    Sampler,
-    When,
-    component,
-    coordinates_of,
-    extremes,
-    occurrences,
-    unknown,
-)
+from core.multibody.trajectory.occurrences import ExtremesOf, When
+from core.multibody.trajectory.smooth_search import SmoothSearch
 from core.notices import Notice
 from core.systems.budget import Budget
 from core.systems.methods.closed_form import ClosedFormEvaluation
@@ -313,38 +305,11 @@ class DescribedSystem:
             return None
         end = min((event.time for event in found.events if event.time >= 0.0), default=np.inf)
         end = min(end, float(np.max(times)))
-        times_found: list[Occurrence] = []
-        ranges: list[SceneExtremes] = []
+        search = SmoothSearch(
+            self.whole, self.how, self.determined, end, found.accuracy.requested, self.numerical, self.finer
+        )
         with np.errstate(over="ignore", invalid="ignore"):
-            for index, output in enumerate(self.outputs):
-                if isinstance(output, When):
-                    of = coordinates_of(output.quantity, self.whole.measures.coordinates.frames)
-                    grid = watched_times(self.whole, end, of=of)
-                    times_found.extend(occurrences(grid, self._sampler(output, index), output))
-                elif isinstance(output, ExtremesOf):
-                    ranges.append(extremes(self.whole, self._sampler(output, index), output.quantity, end))
-        return tuple(times_found), tuple(ranges)
-
-    def _sampler(self, search: When | ExtremesOf, index: int) -> Sampler:
-        """Return the samples of a quantity, from the columns among which it is."""
-
-        def of(group: str, times: Floats) -> dict[str, Column]:
-            states = self.whole.states(times, finer=self.finer)
-            return Columns(self.whole, times, states, self.how).group(group, self.determined)
-
-        known: dict[str, Column] = {}
-        for group in COLUMNS_OF_STATES:
-            columns = of(group, np.zeros(1))
-            known |= columns
-            if component(columns, search.quantity) is not None:
-
-                def sampled(times: Floats, group: str = group) -> Column:
-                    found = component(of(group, np.asarray(times, dtype=np.float64)), search.quantity)
-                    assert found is not None
-                    return found
-
-                return sampled
-        raise unknown(search, index, known)
+            return search.found(self.outputs)
 
 
 def _integrated(whole: Whole, times: Floats, method: AbstractMethod, budget: Budget) -> tuple[WholeStates, Work]:

@@ -16,7 +16,8 @@ from mpmath import mpf
 
 from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
-from tests.core.multibody.worked_examples import read
+from core.multibody.trajectory.occurrences import ExtremesOf, When
+from tests.core.multibody.worked_examples import points, read
 
 DIGITS = 60
 with mpmath.workdps(DIGITS):
@@ -340,3 +341,60 @@ def test_rates_where_a_motion_turns_back(halves: int) -> None:
     speed = mpmath.norm([mpf(x) for x in column.values[0].tolist()])
     assert abs(speed - abs(late) * G * mpf("0.6")) <= column.error + abs(late) ** 3 * 1000
     assert column.scale == pytest.approx(float(mpmath.sqrt(2 * G * mpf("0.2"))), rel=0.1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_times_of_the_extremes_of_an_oscillation(seed: int) -> None:
+    mass, stiff, away = drawn(seed, 3)
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {"a": {"mass": float(mass), "at": [float(away), 0], "velocity": [1, 0]}},
+        "connections": [
+            {"kind": "track", "place": "a", "on": {"at": [0, 0]}},
+            {"kind": "spring", "a": [0, 0], "b": "a", "stiffness": float(stiff), "rest_length": 0},
+        ],
+    }
+    rate = mpmath.sqrt(stiff / mass)
+    solution = solve_scene(read(scene), [float(0.9 * 2 * mpmath.pi / rate)], [ExtremesOf("a.position.x")])
+    assert solution.extremes is not None
+    (one,) = solution.extremes
+    # x = A cos(w t - phase)
+    phase, size = mpmath.atan2(1 / rate, away), mpmath.hypot(away, 1 / rate)
+    for name, value, time in (("largest", size, phase / rate), ("least", -size, (phase + mpmath.pi) / rate)):
+        assert abs(mpf(getattr(one, name)) - value) <= one.error <= 1e-14 * float(size)
+        wrong = abs(mpf(getattr(one, f"{name}_time")) - time)
+        assert wrong <= one.errors[f"{name}_time"] <= 1e-5 * float(time)
+
+
+def test_times_of_extremes_at_the_ends_and_of_what_is_constant() -> None:
+    thrown = {"gravity": GRAVITY, "bodies": {"a": {"mass": 1, "at": [0, 0], "velocity": [2, 3]}}}
+    searches = [ExtremesOf(f"a.position.{axis}") for axis in "xy"] + [ExtremesOf("a.velocity.x")]
+    solution = solve_scene(read(thrown), [1.0], searches)
+    assert solution.extremes is not None
+    along, up, steady = solution.extremes
+    assert (along.least_time, along.largest_time) == (0.0, 1.0)
+    assert max(along.errors.values()) < 1e-14
+    assert abs(mpf(up.largest_time) - 3 / G) <= up.errors["largest_time"] < 1e-6
+    assert (up.least_time, up.errors["least_time"] < 1e-14) == (1.0, True)
+    # Of a constant no time is told from another.
+    assert steady.errors["least_time"] >= 1.0
+
+
+def test_searched_values_honour_the_accuracy_without_a_trajectory() -> None:
+    """A double pendulum amplifies rounding of doubles beyond 1e-12: alone or not, it is searched in pairs."""
+    scene = read(points((1, 1), ("1", "1"), (1, 1)) | {"bodies": SWINGING})
+    search = When("p1.position.x", 0.0)
+    alone = solve_scene(scene, [12.0], [search], 1e-12)
+    beside = solve_scene(scene, [12.0], [search, "trajectory"], 1e-12)
+    assert alone.occurrences is not None
+    assert beside.occurrences is not None
+    assert len(alone.occurrences) == len(beside.occurrences) > 4
+    for one, other in zip(alone.occurrences, beside.occurrences, strict=True):
+        assert abs(one.time - other.time) <= one.error + other.error
+        assert one.error < 1e-11
+
+
+SWINGING = {
+    "p0": {"mass": 1, "at": ["sin(2)", "-cos(2)"]},
+    "p1": {"mass": 1, "at": ["sin(2) + sin(2.5)", "-cos(2) - cos(2.5)"]},
+}
