@@ -106,7 +106,7 @@ def test_a_slow_approach_of_many_turns_is_refused_and_no_touch_is_missed():
     answer = solve_scene(read(scene | {"connections": []}), times, ("trajectory",))
     w, x, y, z = column(answer, "b.attitude").values.T
     assert np.all(column(answer, "b.position").values[:, 2] + 2.0 * (y * z + w * x) > 0.0)
-    with pytest.raises(BudgetExceeded, match="samples for events"):
+    with pytest.raises(BudgetExceeded, match="pieces of the motion"):
         solve_scene(read(drifting(10_000)), [10_000], ("trajectory",))
 
 

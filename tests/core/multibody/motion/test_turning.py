@@ -57,7 +57,7 @@ def test_a_slow_approach_of_many_turns_ends_at_the_first_touch() -> None:
 
 
 def test_more_turns_than_can_be_looked_at_are_refused_and_not_skipped() -> None:
-    with pytest.raises(BudgetExceeded, match="samples for events") as refused:
+    with pytest.raises(BudgetExceeded, match="pieces of the motion") as refused:
         solve_scene(read(drifting(100_000)), [1e5], ("trajectory",))
     assert refused.value.path == ("times",)
 
