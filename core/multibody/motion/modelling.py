@@ -28,7 +28,7 @@ from core.multibody.motion.vertical_symmetry import precessing
 from core.multibody.motion.whole import Whole
 from core.multibody.reduction.passes import further, reduced
 from core.multibody.reduction.reduction import Reduced
-from core.multibody.reduction.turned_axes import scene_axes, spans_plane, turned_to
+from core.multibody.reduction.turned_axes import plane_axes, spans_plane, turned_to, vertical_axes
 from core.multibody.table.description import Described, described
 from core.multibody.table.table import Table
 
@@ -110,12 +110,10 @@ def models_of(found: Described, moved: list[str], fitted: list[str]) -> Modelled
     """Return the models of a table whose start meets its rows."""
     small = reduced(found.measures.table, pinning=True)
     pieces, accelerations, full = _start_of(found, small)
-    axes = _axes(found, small, full)
-    if axes is not None:
-        turned = further(turned_to(found.measures.table, found.measures.coordinates.vectors, axes), pinning=True)
-        if len(turned.table.names) <= len(small.table.names):
-            small = turned
-            pieces, accelerations, full = _start_of(found, small)
+    turned = _turned(found, small, full)
+    if turned is not None:
+        small = turned
+        pieces, accelerations, full = _start_of(found, small)
     motions = [(piece.indices, _motion(piece)) for piece in pieces]
     dropped = any(len(piece.chosen) < len(piece.table.rows) for piece in pieces)
     whole = Whole(found.measures, small, full, accelerations, motions, dropped)
@@ -132,19 +130,24 @@ def _start_of(found: Described, small: Reduced) -> tuple[list[Piece], list[Ball]
     return pieces, accelerations, small.directions(accelerations)
 
 
-def _axes(found: Described, small: Reduced, accelerations: Sequence[Ball]) -> list[list[Ball]] | None:
-    """Return axes of space that suit a scene better than those in which it is described, None without."""
-    coordinates = found.measures.coordinates
+def _turned(found: Described, small: Reduced, accelerations: Sequence[Ball]) -> Reduced | None:
+    """Return a scene of space reduced along its own axes: where those of a plane leave less, or for the vertical."""
+    coordinates, table = found.measures.coordinates, found.measures.table
     if coordinates.dimension == 2:
         return None
-    changes = [found.measures.table.v, accelerations]
-    moving = _moving(coordinates.vectors, changes)
+    moving = _moving(coordinates.vectors, [table.v, accelerations])
     if not spans_plane([*moving, coordinates.gravity]) and not all(row.constant for row in small.table.rows):
         # What starts along a line shows its plane later.
         places = expansion(small.table, _LATER).places
         later = [small.directions([place[k] for place in places]) for k in range(3, _LATER + 1)]
         moving += _moving(coordinates.vectors, later)
-    return scene_axes(moving, coordinates.gravity)
+    axes = plane_axes(moving, coordinates.gravity)
+    if axes is not None:
+        flat = further(turned_to(table, coordinates.vectors, axes), pinning=True)
+        if len(flat.table.names) < len(small.table.names):
+            return flat
+    axes = vertical_axes(coordinates.gravity)
+    return None if axes is None else further(turned_to(table, coordinates.vectors, axes), pinning=True)
 
 
 def _moving(vectors: Sequence[Sequence[int]], changes: Sequence[Sequence[Ball]]) -> list[list[Ball]]:

@@ -16,31 +16,38 @@ from core.multibody.table.table import Table, identity
 Vector = Sequence[Ball]
 
 
-def scene_axes(moving: Sequence[Vector], gravity: Vector) -> list[list[Ball]] | None:
-    """Return three axes of a scene, right-handed; None where they are the axes in which it is described.
+def plane_axes(moving: Sequence[Vector], gravity: Vector) -> list[list[Ball]] | None:
+    """Return the normal of the plane in which places move, as the first of three right-handed axes; None without.
 
     Parameters
     ----------
     moving : sequence of vectors
-        Directions in which places move at the start. If all lie in a plane, its normal is an axis.
+        Directions in which places move at the start.
     gravity : vector
-        Its opposite is the third axis, or what of it lies in the plane of the motion.
+        Its opposite, or what of it lies in the plane, is the third axis.
     """
     seen = [unit(vector, ()) for vector in moving if not _vanishes(vector)]
     up = None if _vanishes(gravity) else unit([-x for x in gravity], ())
     normal = _normal(seen)
     if normal is None and up is not None:
         normal = _normal([*seen, up])
-    if normal is not None and (up is None or not _vanishes(cross(up, normal))):
-        first, third = normal, seen[0] if up is None else _within(up, normal)
-    elif up is not None:
-        third = up
-        first = perpendicular(up, ())[0] if normal is None else seen[0]
-    elif seen and all(_vanishes(cross(seen[0], vector)) for vector in seen):
-        first, third = seen[0], perpendicular(seen[0], ())[0]
-    else:
+    if normal is None:
         return None
-    axes = [first, cross(third, first), third]
+    third = seen[0] if up is None or _vanishes(cross(up, normal)) else _within(up, normal)
+    return _oblique([normal, cross(third, normal), third])
+
+
+def vertical_axes(gravity: Vector) -> list[list[Ball]] | None:
+    """Return three right-handed axes of which the third is upwards; None where one of the description is."""
+    if _vanishes(gravity):
+        return None
+    third = unit([-x for x in gravity], ())
+    first = perpendicular(third, ())[0]
+    return _oblique([first, cross(third, first), third])
+
+
+def _oblique(axes: list[list[Ball]]) -> list[list[Ball]] | None:
+    """Return axes unless they are those of the description, in some order and with some signs."""
     return None if all(sum(not is_zero(x) for x in axis) == 1 for axis in axes) else axes
 
 

@@ -77,11 +77,15 @@ def test_a_weight_that_reaches_its_drum_ends_the_motion(
     assert answer.ended.name == "s"
 
 
-@pytest.mark.parametrize("beside", ["spring", "pendulum"])
+@pytest.mark.parametrize("beside", ["contact", "restitution", "spring", "pendulum"])
 def test_it_ends_the_motion_beside_everything(beside: str) -> None:
     scene = over_a_drum(1, 2, 1)
     expected = reached(1, 2, 1)
-    if beside == "spring":
+    if beside == "contact":
+        scene["connections"].append({"kind": "contact", "place": "b", "on": {"at": [0, -50]}})
+    elif beside == "restitution":
+        scene["connections"][1]["restitution"] = 0.5
+    elif beside == "spring":
         # A spring of almost no stiffness makes the motion one of modes.
         spring = {"kind": "spring", "a": "b", "b": [0.1, -1], "stiffness": 1e-9, "rest_length": 0}
         scene["connections"].append(spring)
@@ -91,6 +95,21 @@ def test_it_ends_the_motion_beside_everything(beside: str) -> None:
     answer = ended(scene, 1.5 * expected)
     assert answer.ended is not None
     assert answer.ended.time == pytest.approx(expected, rel=1e-8 if beside == "spring" else 1e-14)
+
+
+def test_a_block_on_a_rough_table_ends_at_its_pulley() -> None:
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"m": {"mass": 1, "at": [-1, 0]}, "w": {"mass": 1, "at": [0, -0.5]}},
+        "connections": [
+            {"kind": "contact", "place": "m", "friction": 0.2, "on": {"at": [0, 0]}},
+            {"kind": "string", "through": ["m", [0, 0], "w"]},
+        ],
+    }
+    answer = ended(scene, 1.0)
+    assert answer.ended is not None
+    # (m g - mu m g)/(2 m) = 4 m/s^2 over one metre.
+    assert answer.ended.time == pytest.approx(np.sqrt(0.5), rel=1e-14)
 
 
 def test_proven_digits_end_there_too() -> None:
