@@ -101,7 +101,7 @@ def repeated(request: Json) -> Transformed | None:
     found["connections"] = [*connections, again]
 
     def image(figure: Figure) -> Figure | None:
-        kept = ("position", "velocity", "angle", "angular_velocity", "attitude", "axis", "acceleration")
+        kept = ("position", "velocity", "angle", "angular_velocity", "attitude", "axis", "acceleration", "extremes")
         return figure if figure.what in kept else None
 
     return Transformed(found, lambda view: view.mapped(image))
@@ -157,7 +157,7 @@ def moved_a_little(request: Json, random: np.random.Generator) -> Json | None:
     places: list[tuple[Any, Any]] = []
 
     def visit(value: Any, key: str = "") -> None:
-        if key in ("times", "outputs", "kind", "name", "accuracy"):
+        if key in ("times", "outputs", "kind", "name", "accuracy", "searched"):
             return
         entries = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
         for name, entry in entries:

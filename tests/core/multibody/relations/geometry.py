@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tests.core.multibody.relations.numbers import Json, components, plus, times, transformed
-from tests.core.multibody.relations.views import Figure, View
+from tests.core.multibody.relations.views import Figure, View, without_freedoms
 
 PLACES = ("a", "b", "place")
 SCALARS = ("tension", "force", "angle", "angular_velocity", "torque", "moment", "work", "path", "kinetic", "potential",
@@ -136,6 +136,8 @@ def turned(request: Json, *, about: int = 2) -> Transformed | None:
         values = figure.values
         if figure.what in ("x", "y", "z", *shifted):
             return None
+        if figure.what == "extremes":
+            return figure
         if figure.what == "angle":
             return replace(figure, values=values + angle, error=figure.error + 2.0**-50)
         if figure.what == "attitude":
@@ -151,7 +153,7 @@ def turned(request: Json, *, about: int = 2) -> Transformed | None:
             return None
         return figure
 
-    return Transformed(found, lambda view: view.mapped(image))
+    return Transformed(found, lambda view: without_freedoms(view.mapped(image)), lambda view, _: without_freedoms(view))
 
 
 def _turn_slopes(connection: Json, request: Json, size: int, vector: Callable[[Any], list[Any]]) -> None:
@@ -231,6 +233,8 @@ def mirrored(request: Json) -> Transformed | None:
             return replace(figure, values=-values)
         if figure.what in ("torque", "moment", "normal") or figure.what.startswith("friction"):
             return None
+        if figure.what == "extremes":
+            return figure
         if values.ndim == 2 and values.shape[1] == 2:
             return replace(figure, values=values * [-1.0, 1.0])
         return figure
@@ -261,15 +265,16 @@ def reversed_in_time(request: Json) -> Transformed | None:
         if "rate" in connection:
             connection["rate"] = times(connection["rate"], "-1")
     found["times"] = [-t for t in found["times"]]
+    found.pop("searched", None)
     odd = ("velocity", "angular_velocity", "angular_velocity_in_space", "momentum", "angular_momentum")
 
     def image(figure: Figure) -> Figure | None:
-        if figure.what in ("path", "work"):
+        if figure.what in ("path", "work", "extremes"):
             return None
         return replace(figure, values=-figure.values) if figure.what in odd else figure
 
     def whole(view: View) -> View:
         own = view.mapped(image)
-        return replace(own, times=-own.times, events=[], ended=None)
+        return replace(own, times=-own.times, events=[], ended=None, found={})
 
     return Transformed(found, whole)

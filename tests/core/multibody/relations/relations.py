@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -28,16 +29,13 @@ Relation = Callable[[Json], Transformed | None]
 def answered(request: Json, input_uncertainty: float | None = None) -> SceneSolution:
     """Return the answer to a request, which is not changed by being read."""
     scene = read(json.loads(json.dumps({key: request[key] for key in OF_OUTPUTS if key in request})))
-    outputs = [_output(one) for one in request.get("outputs", ["trajectory"])]
+    outputs: list[Any] = list(request.get("outputs", ["trajectory"]))
+    if "searched" in request and max(request.get("times", [0.0])) > 0.0:
+        body, speed = request["searched"]
+        outputs += [When(f"{body}.velocity.length", speed), ExtremesOf(f"{body}.velocity.length")]
     return solve_scene(
         scene, request.get("times", ()), outputs, request.get("accuracy", 1e-9), input_uncertainty=input_uncertainty
     )
-
-
-def _output(one: object) -> object:
-    if isinstance(one, dict):
-        return When(**one["when"]) if "when" in one else ExtremesOf(one["extremes"])
-    return one
 
 
 def _moved(request: Json) -> Transformed | None:

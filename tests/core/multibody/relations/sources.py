@@ -34,13 +34,19 @@ def catalogue() -> dict[str, Json]:
 
 
 def asked(scene: Json) -> Json:
-    """Return the request for everything that relations compare."""
+    """Return the request for everything that relations compare, a speed that is looked for among it."""
     kept = {
         name: scene[name] for name in ("gravity", "let", "bodies", "connections", "numbers", "times") if name in scene
     }
     found = {"times": list(TIMES), "accuracy": 1e-6, **kept, "outputs": list(OUTPUTS)}
     # Times that stay exact in other units.
-    return found | {"times": [round(t * 2.0**20) / 2.0**20 for t in found["times"]]}
+    times = [round(t * 2.0**20) / 2.0**20 for t in found["times"]]
+    return found | {"times": times, "searched": [next(iter(scene["bodies"])), 1.25]}
+
+
+def without_search(request: Json) -> Json:
+    """Return a request that looks for nothing."""
+    return {name: value for name, value in request.items() if name != "searched"}
 
 
 RANDOM: tuple[Callable[[int], Any], ...] = (

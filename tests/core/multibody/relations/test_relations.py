@@ -10,18 +10,19 @@ import pytest
 from tests.core.multibody.relations.hard_scenes import hard_scenes
 from tests.core.multibody.relations.numbers import Json
 from tests.core.multibody.relations.relations import NAMES, RELATIONS, checked
-from tests.core.multibody.relations.sources import catalogue, random_scene
+from tests.core.multibody.relations.sources import catalogue, random_scene, without_search
 
 SLOW = ("block whose string reaches its pulley", "two stones on humps with a string")
 """Scenes that take seconds: their motion ends where a search does not see it, or nothing moves what is searched."""
-HARD = {name: scene for name, scene in hard_scenes().items() if name not in SLOW}
-CATALOGUE = catalogue()
-SEEDS = 200
+HARD = {name: without_search(scene) for name, scene in hard_scenes().items() if name not in SLOW}
+CATALOGUE = {name: without_search(scene) for name, scene in catalogue().items()}
+SEARCHED = 4
+"""Of so many random scenes one is searched for a speed too."""
+SEEDS = 150
 AXES = "symmetry about the vertical is seen along the third axis alone"
 KNOWN: dict[tuple[str, str], str] = {
     ("lagrange-top", "turned about x"): AXES,
     ("precessing-top", "turned about x"): AXES,
-    ("sphere-on-turntable", "turned about x"): AXES,
     ("spherical-pendulum", "turned about x"): AXES,
     ("70", "a connection repeated"): "the error of what does not move is compared with rounding",
 }
@@ -54,14 +55,15 @@ def of_seed(seed: int) -> object:
 
 @pytest.mark.parametrize(("seed", "relation"), [of_seed(seed) for seed in range(SEEDS)])
 def test_random_scenes(seed: str, relation: str) -> None:
-    assert not checked(random_scene(int(seed)), relation, int(seed))
+    request = random_scene(int(seed))
+    assert not checked(without_search(request) if int(seed) % SEARCHED else request, relation, int(seed))
 
 
-@pytest.mark.parametrize(("scene", "relation"), in_turn(HARD, 4))
+@pytest.mark.parametrize(("scene", "relation"), in_turn(HARD, 3))
 def test_hard_scenes(scene: str, relation: str) -> None:
     assert not checked(HARD[scene], relation)
 
 
-@pytest.mark.parametrize(("scene", "relation"), in_turn(CATALOGUE, 2))
+@pytest.mark.parametrize(("scene", "relation"), in_turn(CATALOGUE, 1))
 def test_the_catalogue(scene: str, relation: str) -> None:
     assert not checked(CATALOGUE[scene], relation)

@@ -102,6 +102,10 @@ def view_of(answer: SceneSolution) -> View:
         for name, column in motion.columns.items():
             owner, _, what = name.rpartition(".")
             figures[f"column:{name}"] = Figure(column.values, column.unit, column.error, what, owner)
+    for found in answer.extremes or ():
+        owner = found.quantity.partition(".")[0]
+        values = np.array([[found.least, found.largest]])
+        figures[f"extremes:{found.quantity}"] = Figure(values, found.unit, found.error, "extremes", owner)
     for body, one in (answer.accelerations or {}).items():
         _start(figures, f"{body}.acceleration", one.linear, "m/s^2")
         if one.angular is not None:
@@ -123,12 +127,22 @@ def view_of(answer: SceneSolution) -> View:
         None if answer.ended is None else (answer.ended.kind, answer.ended.time),
         None if answer.problem is None else answer.problem.code,
         sorted(
-            ((part.name, part.degrees_of_freedom, part.period) for part in answer.model.apart if part.name != "rest"),
+            (
+                # Up to a turn about the vertical it may repeat after half of the time in other axes.
+                (part.name, part.degrees_of_freedom, None if part.precession else part.period)
+                for part in answer.model.apart
+                if part.name != "rest"
+            ),
             key=lambda part: (part[0], part[1], part[2] or 0.0),
         ),
         [] if answer.phases is None else [(phase.start, dict(phase.states)) for phase in answer.phases],
-        {f"{one.quantity}={one.equals:g}#{one.nth}": (one.time, one.error) for one in answer.occurrences or ()},
+        {f"{one.quantity}#{one.nth}": (one.time, one.error) for one in answer.occurrences or ()},
     )
+
+
+def without_freedoms(view: View) -> View:
+    """Return the view without degrees of freedom and periods, which depend on the axes."""
+    return replace(view, models=[(name, 0, None) for name, _, _ in view.models])
 
 
 def viewed(ask: Callable[[], SceneSolution]) -> View | Refusal:

@@ -77,6 +77,8 @@ def in_units(request: Json, length: int, mass: int, time: int) -> Transformed | 
                     on[key] = scaled(on[key], own)
     if "times" in found:
         found["times"] = [t * time for t in found["times"]]
+    if "searched" in found:
+        found["searched"] = [found["searched"][0], found["searched"][1] * length / time]
 
     def factor(unit: str) -> float:
         powers = UNITS[unit]
@@ -104,6 +106,7 @@ def in_units(request: Json, length: int, mass: int, time: int) -> Transformed | 
             ended=None if own.ended is None else (own.ended[0], own.ended[1] * time),
             models=[(name, free, None if t is None else t * time) for name, free, t in own.models],
             states=[(t * time, states) for t, states in own.states],
+            found={key: (t * time, error * time) for key, (t, error) in own.found.items()},
         )
 
     return Transformed(found, whole)
@@ -153,12 +156,14 @@ def renamed(request: Json) -> Transformed | None:
             connection["slips"] = [place(one) for one in connection["slips"]]
         if "sides" in connection:
             connection["sides"] = {place(name): sides for name, sides in connection["sides"].items()}
+    if "searched" in found:
+        found["searched"] = [bodies[found["searched"][0]], found["searched"][1]]
     return Transformed(found, lambda view: view.renamed(names))
 
 
 def as_formulas(request: Json) -> Transformed | None:
     """Return a request whose decimals are written as quotients of whole numbers."""
-    exempt = ("times", "outputs", "name", "kind", "numbers", "accuracy")
+    exempt = ("times", "outputs", "name", "kind", "numbers", "accuracy", "searched")
 
     def written(value: Any, key: str = "") -> Any:
         if key in exempt or isinstance(value, (bool, str)):
@@ -205,6 +210,7 @@ def asked_for_less(request: Json) -> Transformed | None:
     """Return a request for its trajectory alone."""
     found = copy.deepcopy(request)
     found["outputs"] = ["trajectory"]
+    found.pop("searched", None)
     kept = ("position", "velocity", "angle", "angular_velocity", "attitude", "axis", "angular_velocity_in_space")
 
     def image(figure: Figure) -> Figure | None:
