@@ -125,6 +125,10 @@ def turned(request: Json, *, about: int = 2) -> Transformed | None:
         for key in ("force", "direction", "axis"):
             if key in connection and (key != "direction" or in_space(connection["b"], request)):
                 connection[key] = vector(connection[key])
+        if size == 2 and connection.get("b", "ground") == "ground":
+            for key in ("rest_angle", "at_least", "at_most"):
+                if key in connection:
+                    connection[key] = plus(connection[key], "acos(3/5)")
         if isinstance(connection.get("torque"), list):
             connection["torque"] = vector(connection["torque"])
         _turn_slopes(connection, request, size, vector)
@@ -262,8 +266,9 @@ def reversed_in_time(request: Json) -> Transformed | None:
             rate = body["angular_velocity"]
             body["angular_velocity"] = [times(x, "-1") for x in rate] if isinstance(rate, list) else times(rate, "-1")
     for connection in found.get("connections", ()):
-        if "rate" in connection:
-            connection["rate"] = times(connection["rate"], "-1")
+        for rated in (connection, connection.get("on", {})):
+            if "rate" in rated:
+                rated["rate"] = times(rated["rate"], "-1")
     found["times"] = [-t for t in found["times"]]
     found.pop("searched", None)
     odd = ("velocity", "angular_velocity", "angular_velocity_in_space", "momentum", "angular_momentum")

@@ -72,7 +72,7 @@ def in_units(request: Json, length: int, mass: int, time: int) -> Transformed | 
         on = connection.get("on")
         if on is not None:
             on["at"] = on["at"] if isinstance(on["at"], str) else scaled(on["at"], (1, 0, 0))
-            for key, own in (("radius", (1, 0, 0)), ("curvature", (-1, 0, 0))):
+            for key, own in (("radius", (1, 0, 0)), ("curvature", (-1, 0, 0)), ("rate", (0, 0, -1))):
                 if key in on:
                     on[key] = scaled(on[key], own)
     if "times" in found:
@@ -126,7 +126,13 @@ def reordered(request: Json) -> Transformed | None:
     leading = "gravity" in found or dimension(request) == 2
     if leading:
         found["bodies"] = dict(reversed(found["bodies"].items()))
-    return Transformed(found, lambda view: view)
+    # The force of a spring without a rest length is the vector from one end to the other.
+    springs = [names[i] for i, one in enumerate(request.get("connections", ())) if one["kind"] == "spring"]
+
+    def image(figure: Figure) -> Figure | None:
+        return None if figure.what == "vector" and figure.owner in springs else figure
+
+    return Transformed(found, lambda view: view.mapped(image))
 
 
 def renamed(request: Json) -> Transformed | None:
