@@ -27,7 +27,6 @@ KNOWN: dict[tuple[str, str], str] = {
     ("lagrange-top", "turned about x"): AXES,
     ("precessing-top", "turned about x"): AXES,
     ("spherical-pendulum", "turned about x"): AXES,
-    ("70", "a connection repeated"): "the error of what does not move is compared with rounding",
 }
 """Scenes whose answers are known to differ by a relation, and what is wrong."""
 
