@@ -8,6 +8,7 @@
   - NotApplicable
   - AccuracyUnreachable
   - BudgetExceeded
+  - SelfCheckFailed
 
 Each error carries data besides its message: the path of the faulty field, the rule and a remedy. The service maps the
 classes to HTTP responses in one table; no status code appears here.
@@ -145,3 +146,28 @@ def inside_field(*steps: str | int) -> Iterator[None]:
     except MechanicsError as fault:
         fault.path = (*steps, *fault.path)
         raise
+
+
+class SelfCheckFailed(MechanicsError):
+    """An answer does not keep a law of mechanics within its stated errors: it is wrong, and not the question's fault.
+
+    Parameters
+    ----------
+    law : str
+    connection : str
+        Or body; empty where the law is that of the whole scene.
+    time : float
+        From the start (s).
+    residual, allowed : float
+        What is left over of the law, and what the stated errors allow, in the same unit.
+    """
+
+    def __init__(self, law: str, connection: str, time: float, residual: float, allowed: float) -> None:
+        of = f' of "{connection}"' if connection else ""
+        super().__init__(
+            f"the answer did not pass the check against its description, and is withheld: {law}{of} at {time:.6g} s "
+            f"is off by {residual:.3g}, where its stated errors allow {allowed:.3g}",
+            remedy="the description is not at fault; report the request with its id",
+        )
+        self.law, self.connection, self.time = law, connection, time
+        self.residual, self.allowed = residual, allowed

@@ -76,7 +76,7 @@ class Service(FastAPI):
             *questions,
             *(studies.routes() if any(isinstance(route, StudyRoute) for route in questions) else ()),
             *catalogues(),
-            *operations(ready=lambda: self.warm and self.compute.any_ready, metrics=self.metrics),
+            *operations(ready=lambda: self.warm and self.compute.any_ready, metrics=self.metrics, audit=settings.audit),
             *pages(self.openapi_text),
         )
         self._keys = None if settings.keys_file is None else Keys(settings.keys_file, settings.workers)

@@ -153,6 +153,14 @@ REGISTRY: Mapping[str, ProblemType] = {
             "Not the question's fault. Report the id, under which the failure is logged.",
         ),
         ProblemType(
+            "self-check-failed",
+            500,
+            "The answer did not pass its check",
+            "What was found does not keep a law of mechanics within its stated errors, so that it is wrong and is not "
+            "sent. Not the question's fault. Members law, connection, time, residual and allowed say which; report the "
+            "id of the request.",
+        ),
+        ProblemType(
             "unsupported-transfer-coding",
             501,
             "The body has a transfer coding that is not understood",
@@ -196,6 +204,7 @@ MECHANICS: Mapping[type[errors.MechanicsError], str] = {
     errors.NotApplicable: "not-applicable",
     errors.AccuracyUnreachable: "accuracy-unreachable",
     errors.BudgetExceeded: "budget-exceeded",
+    errors.SelfCheckFailed: "self-check-failed",
 }
 """The one table from errors to problems; a class that is not listed takes its nearest listed ancestor's entry."""
 

@@ -154,6 +154,16 @@ class Settings(BaseSettings):
         default="failures",
         description="Which requests are logged, one JSON line each; failures are answers from 500 upwards.",
     )
+    audit: bool = Field(
+        default=True,
+        description="Whether every answer about a described scene is checked against the laws of mechanics before it "
+        "is sent; where it is not, GET /readyz says so.",
+    )
+    failed_requests: str = Field(
+        default="",
+        description="Folder in which requests are kept whose answers did not pass that check, by their ids; by "
+        "default none is kept.",
+    )
     shutdown_seconds: int = Field(
         default=10, ge=0, le=LONGEST, description="Time that answers in flight are given when the service is stopped."
     )

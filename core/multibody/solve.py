@@ -10,15 +10,17 @@ import numpy as np
 
 from core.arrays import Floats
 from core.balls import precision
-from core.errors import InvalidParameter, SlackAtStart
+from core.errors import InvalidParameter, SelfCheckFailed, SlackAtStart
 from core.multibody.algebra.doubles import error_in_doubles
 from core.multibody.algebra.polynomials import BITS
 from core.multibody.answer import SceneSolution
+from core.multibody.audit.audit import audited
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
 from core.multibody.motion.modelling import modelled
 from core.multibody.parts.joined_answer import answered_by_parts
 from core.multibody.phases.phase_answer import THRESHOLDS, answer_in_phases
+from core.multibody.phases.phased_system import PhasedSystem
 from core.multibody.phases.phases import one_sided
 from core.multibody.start import (
     accelerations_of,
@@ -102,6 +104,8 @@ def solve_scene(
         Where it would take more steps, evaluations or samples than one question may.
     NotApplicable
         Where the method does not exist for scenes.
+    SelfCheckFailed
+        Where the answer that was found does not keep the laws of mechanics: see `core.multibody.audit`.
     """
     budget = budget or Budget()
     check_value("accuracy", Tolerance, accuracy)
@@ -132,11 +136,20 @@ def solve_scene(
             for i, output in enumerate(outputs)
             if isinstance(output, RestOf)
         ]
-        return replace(answered_by_parts(scene, request, _answered), thresholds=tuple(ranges) or None)
+        return replace(answered_by_parts(scene, request, _checked), thresholds=tuple(ranges) or None)
 
 
-def _answered(scene: Scene, request: SceneRequest) -> SceneSolution:
-    """Answer a question about a scene as one part."""
+def _checked(scene: Scene, request: SceneRequest) -> SceneSolution:
+    """Answer a question about a scene as one part, and check the answer against the description."""
+    answer, system = _answered(scene, request)
+    failure = audited(scene, answer, system.sampled, request.times) if request.budget.audited else None
+    if failure is not None:
+        raise SelfCheckFailed(failure.law, failure.connection, failure.time, failure.residual, failure.allowed)
+    return answer
+
+
+def _answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, DescribedSystem | PhasedSystem]:
+    """Return the answer to a question about a scene as one part, and the motion that it is from."""
     if one_sided(scene):
         return answer_in_phases(scene, request)
     try:
@@ -162,7 +175,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneSolution:
     motions, outputs = found.whole.parts, request.outputs
     periods = [motion.period for _, motion in motions if motion.name != "rest"]
     single = periods[0] if len(periods) == 1 else None
-    return SceneSolution(
+    answer = SceneSolution(
         model,
         accelerations_of(found.described, found.whole.acceleration) if "accelerations" in outputs else None,
         forces_of_start(found.described, forces) if "forces" in outputs else None,
@@ -175,6 +188,7 @@ def _answered(scene: Scene, request: SceneRequest) -> SceneSolution:
         next((event for event in events if event.time >= 0.0), None),
         *((None, None) if searched is None else searched),
     )
+    return answer, system
 
 
 def _has_phases(scene: Scene, request: SceneRequest) -> bool:

@@ -24,11 +24,14 @@ class Budget:
         Rows of the answer.
     members : int
         Questions of a study.
+    audited : bool
+        Whether answers about described scenes are checked against the description before they are given.
     """
 
     evaluations: Count = 20_000_000
     samples: Count = 1_000_000
     members: Count = 10_000_000
+    audited: bool = True
 
     def __post_init__(self) -> None:
         check(self)

@@ -96,7 +96,12 @@ def terms_of(settings: Settings, table: str) -> Terms:
     """Return what processes need to know of the settings."""
     return Terms(
         table,
-        Budget(samples=settings.max_samples, evaluations=settings.max_evaluations, members=settings.max_study_members),
+        Budget(
+            samples=settings.max_samples,
+            evaluations=settings.max_evaluations,
+            members=settings.max_study_members,
+            audited=settings.audit,
+        ),
         Limits(bytes=settings.max_body_bytes),
     )
 

@@ -18,6 +18,7 @@ from service.http.etag import JSON, Header, Representation, etag_of
 from service.http.keys import Keys
 from service.http.limits import Bodies, ClientGone, negotiated, parameters_of, refuse_parameters, require_readable
 from service.http.request_context import VARY, RequestContext
+from service.observability.failed_checks import FailedChecks
 from service.observability.logs import LOG
 from service.observability.metrics import Metrics
 from service.observability.request_records import Records
@@ -65,6 +66,7 @@ class Dispatcher:
         self._turns = asyncio.Lock()
         self._cache = ResponseCache(settings.cached_answers)
         self._records = Records(metrics, settings.log_requests)
+        self._failed = FailedChecks(settings.failed_requests)
         self.bodies = Bodies(
             settings.max_body_bytes, settings.max_held_bytes, settings.body_seconds, lambda: compute.held
         )
@@ -130,7 +132,12 @@ class Dispatcher:
             self._metrics.cache_hits.inc()
         else:
             sender = Sender(context.client, context.key, context.gone)
-            document = await self._executor.answer(route, body, npz, media, sender)
+            try:
+                document = await self._executor.answer(route, body, npz, media, sender)
+            except (Refusal, MechanicsError) as error:
+                problem = error.problem if isinstance(error, Refusal) else problem_of(error)
+                self._failed.record(context.id, route.operation_id, body, problem)
+                raise
             if media == archive.MEDIA_TYPE:
                 await self._stream(document, _etag_of_answer(route, body, media), context, _NPZ)
                 return

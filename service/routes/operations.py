@@ -16,15 +16,21 @@ class Status(View):
     """State of the service."""
 
     status: str = Field(description="alive, or ready.")
+    audit: str | None = Field(
+        default=None,
+        description='"off" where answers are not checked against the laws of mechanics before they are sent.',
+    )
 
 
 _ALIVE = Reply(b'{"status":"alive"}')
 _READY = Reply(b'{"status":"ready"}')
+_READY_WITHOUT_AUDIT = Reply(b'{"status":"ready","audit":"off"}')
 
 
-def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[GetRoute, ...]:
+def operations(*, ready: Callable[[], bool], metrics: Metrics, audit: bool) -> tuple[GetRoute, ...]:
     """Return the routes for operation."""
     preparing = Problem(REGISTRY["not-ready"], "kernels are being compiled and compute processes started")
+    prepared = _READY if audit else _READY_WITHOUT_AUDIT
     waiting = Reply(preparing.body(), MEDIA_TYPE.encode(), 503)
 
     return (
@@ -42,7 +48,7 @@ def operations(*, ready: Callable[[], bool], metrics: Metrics) -> tuple[GetRoute
             "get_readiness",
             "Whether every kernel is compiled and the compute processes are up",
             "operations",
-            lambda: _READY if ready() else waiting,
+            lambda: prepared if ready() else waiting,
             Status,
             example=lambda: {"status": "ready"},
         ),

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from core.errors import AccuracyUnreachable, MechanicsError, UnphysicalInertia
+from core.errors import AccuracyUnreachable, MechanicsError, SelfCheckFailed, UnphysicalInertia
 from core.notices import Notice
 from core.quantities import AngularVelocity, Mass, Position, Quantity, TaggedBy, check
 from core.systems.budget import Budget
@@ -61,7 +61,7 @@ class Ask(Request):
     body: ToyBody
     angular_velocity: AngularVelocity
     times: Times
-    behaviour: Literal["well", "nan", "fail", "unreachable", "sleep", "die", "warn"] = "well"
+    behaviour: Literal["well", "nan", "fail", "unreachable", "sleep", "die", "warn", "wrong"] = "well"
 
 
 class Told(Envelope):
@@ -76,6 +76,8 @@ def handle(question: Ask, budget: Budget) -> dict[str, Any]:
         raise RuntimeError("secret of the service")
     if behaviour == "unreachable":
         raise AccuracyUnreachable(1e-30, 1e-15, "double precision")
+    if behaviour == "wrong":
+        raise SelfCheckFailed("energy", "rod", 1.5, 1e-3, 1e-12)
     if behaviour == "sleep":
         time.sleep(abs(question.angular_velocity[0]))
     if behaviour == "die":

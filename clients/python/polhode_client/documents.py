@@ -2946,6 +2946,7 @@ class Status(TypedDict):
     """State of the service."""
 
     status: str
+    audit: NotRequired[str | None]
 
 
 class ProblemDocument(TypedDict):

@@ -67,10 +67,14 @@ class Reader:
 
     def number(self, value: Any, path: Path) -> float:
         """Return a number as the nearest double."""
-        return float(self.numerals.number(value, path))
+        # The double that was sent is the one nearest to its decimal.
+        plain = type(value) in (int, float)
+        return float(value) if plain else float(self.numerals.number(value, path))
 
     def vector(self, value: Any, path: Path) -> tuple[float, ...]:
         """Return a vector of the dimension of the scene."""
+        if isinstance(value, (list, tuple)):
+            return tuple(self.number(x, (*path, i)) for i, x in enumerate(value))
         return tuple(float(x) for x in self.numerals.vector(value, path, self.dimension))
 
     def unit(self, value: Any, path: Path) -> tuple[float, ...]:
@@ -105,15 +109,15 @@ class Reader:
 
     def _body(self, name: str) -> RigidBody:
         body, path = self.scene.bodies[name], ("bodies", name)
-        mass, inertia = inertia_of(name, body, self.numerals, self.dimension)
+        mass, inertia = self._inertia(name)
         position = np.array(self.vector(body.at, (*path, "at")))
         tensor, start = None, Pose(position)
         if inertia is not None and self.dimension == 2:
-            tensor = np.array(float(inertia))
+            tensor = np.array(inertia)
             turn = np.array(0.0 if body.angle is None else self.number(body.angle, (*path, "angle")))
             start = Pose(position, turned(turn), turn)
         elif inertia is not None:
-            tensor = np.array([[float(x) for x in row] for row in inertia])
+            tensor = np.array(inertia)
             start = Pose(position, self._attitude(body.axes, (*path, "axes")))
         omega: Any = body.angular_velocity
         if omega is not None:
@@ -121,7 +125,7 @@ class Reader:
             omega = np.array(self.number(omega, where) if self.dimension == 2 else self.vector(omega, where))
         return RigidBody(
             name,
-            float(mass),
+            mass,
             tensor,
             None if body.radius is None else self.number(body.radius, (*path, "radius")),
             start,
@@ -129,6 +133,16 @@ class Reader:
             omega,
             {spot: self.vector(value, (*path, "places", spot)) for spot, value in body.places.items()},
         )
+
+    def _inertia(self, name: str) -> tuple[float, Any]:
+        body, path = self.scene.bodies[name], ("bodies", name)
+        if body.body is not None or body.tensor is not None or body.mass is None:
+            mass, tensor = inertia_of(name, body, self.numerals, self.dimension)
+            return float(mass), None if tensor is None else [[float(x) for x in row] for row in tensor]
+        own = self.number(body.mass, (*path, "mass"))
+        if body.inertia is not None:
+            return own, self.number(body.inertia, (*path, "inertia"))
+        return own, None if body.moments is None else np.diag(self.vector(body.moments, (*path, "moments")))
 
     def _attitude(self, axes: Sequence[Any] | None, path: Path) -> Numbers:
         if axes is None:

@@ -71,7 +71,9 @@ def rolling_of(reader: Reader, name: str, connection: Any, path: Path) -> Defini
         first, second = reader.rim(connection.a), reader.rim(connection.b)
         around = Round(a, b, (first, -second if connection.inside else second))
         return RollingOnRound(name, (*a.bodies, *b.bodies), around)
-    place, radius, on = reader.place(connection.place, (*path, "place")), reader.rim(connection.place), connection.on
+    # In space a ball may roll whose centre is a place of it, and not its centre of mass.
+    place, on = reader.place(connection.place, (*path, "place")), connection.on
+    radius = reader.rim(place.body)
     where = (*path, "on")
     at = reader.place(on["at"], (*where, "at"))
     bodies = (*place.bodies, *at.bodies)

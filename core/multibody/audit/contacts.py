@@ -102,6 +102,20 @@ class OnFace(Definition):
     face: Face
     touch: Touch
 
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return self.touch.static > 0.0
+
+    @property
+    def coefficients(self) -> Touch | None:
+        """See `Definition.coefficients`."""
+        return self.touch
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return self.radius
+
     def gap(self, placement: Placement) -> Numbers:
         """Return the gap (m), shape ()."""
         return self.face.height(placement, self.place) - self.radius
@@ -129,6 +143,20 @@ class OnRound(Definition):
     kind: ClassVar[str] = "contact"
     round: Round
     touch: Touch
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return self.touch.static > 0.0
+
+    @property
+    def coefficients(self) -> Touch | None:
+        """See `Definition.coefficients`."""
+        return self.touch
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return sum(abs(radius) for radius in self.round.radii)
 
     def gaps(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.gaps`."""
@@ -168,6 +196,16 @@ class Stop(Definition):
     sense: int
     touch: Touch
 
+    @property
+    def coefficients(self) -> Touch | None:
+        """See `Definition.coefficients`."""
+        return self.touch
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return abs(self.limit)
+
     def gap(self, placement: Placement) -> Numbers:
         """Return how far it may still turn (rad), shape ()."""
         return self.sense * (turn_between(placement, self.a, self.b) - self.limit)
@@ -198,6 +236,15 @@ class RollingOnFace(Definition):
     radius: float
     face: Face
     turning: float = 0.0
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return self.turning != 0.0
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return self.radius
 
     def gap(self, placement: Placement) -> Numbers:
         """Return the gap (m), shape ()."""
@@ -232,6 +279,11 @@ class RollingOnRound(Definition):
     kind: ClassVar[str] = "rolling"
     round: Round
 
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return sum(abs(radius) for radius in self.round.radii)
+
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
         return {"gap": self.round.gap(placement)}
@@ -264,6 +316,11 @@ class RollingOnCylinder(Definition):
     at: Place
     axis: tuple[float, ...]
     cylinder: float
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return self.radius + abs(self.cylinder)
 
     def gap(self, placement: Placement) -> Numbers:
         """Return (d^2 - r^2)/(2r) with d the distance from the axis and r the reach (m), as `Round.gap`."""
@@ -307,6 +364,11 @@ class RollingOnBall(Definition):
     kind: ClassVar[str] = "rolling"
     round: Round
 
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return sum(abs(radius) for radius in self.round.radii)
+
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.held`."""
         return {"gap": self.round.gap(placement)}
@@ -319,6 +381,11 @@ class RollingOnBall(Definition):
         """See `Definition.efforts`."""
         slip = self._slip(placement, motion)
         return {f"{self.name}.{axis}": slip[..., i] for i, axis in enumerate(AXES)}
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """See `Definition.forces`."""
+        return tuple(f"{self.name}.{axis}" for axis in AXES)
 
     def derived(self, placement: Placement, motion: Motion, forces: Mapping[str, Numbers]) -> Mapping[str, Numbers]:
         """See `Definition.derived`."""

@@ -7,13 +7,14 @@ power of all forces is that of the rates of momentum and spin in every virtual m
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
-from core.multibody.audit.placement import Motion, Numbers, Placement
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement
 
 NOTHING: Mapping[str, Numbers] = {}
 
@@ -36,6 +37,96 @@ class Definition:
     kind: ClassVar[str] = ""
     name: str
     bodies: tuple[str, ...]
+
+    @cached_property
+    def arm(self) -> float:
+        """Largest offset of its places from centres of mass, or component of a place of the ground (m)."""
+        return max((abs(x) for place in self.places() for x in place.offset), default=0.0)
+
+    @property
+    def rolls(self) -> bool:
+        """Whether it holds combinations of rates that are no rate of a measure."""
+        return type(self).held_rates is not Definition.held_rates
+
+    @property
+    def derives(self) -> bool:
+        """Whether some of its forces follow from others."""
+        return type(self).derived is not Definition.derived
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """Names of the forces from which others follow."""
+        return ()
+
+    def own_rest(
+        self, placement: Placement, motion: Motion, gains: Motion, forces: Mapping[str, Numbers]
+    ) -> Numbers | None:
+        """Return what is left over of the equation of motion of what has mass in it (N); None where nothing has.
+
+        Parameters
+        ----------
+        gains : mapping of str to Twist
+            Accelerations of the bodies.
+        """
+        return None
+
+    @property
+    def coefficients(self) -> Touch | None:
+        """Those of what is one-sided; None of what is held."""
+        return None
+
+    def steps(self, force: str) -> tuple[float, ...]:
+        """Return by how much a gap may be off because whole turns are not counted (m)."""
+        return ()
+
+    def closed(self, state: Numbers | None, count: int) -> Numbers | None:
+        """Return at which of some samples a gap is closed, by its state; None where the answer does not say.
+
+        Parameters
+        ----------
+        state : ndarray of str, shape (count,), or None
+        """
+        return None if state is None else state != "open"
+
+    @property
+    def reach(self) -> float:
+        """Length of what it has by itself: radii, the length of a rod or string (m)."""
+        return 0.0
+
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """Return the largest rate of motion that its law makes (rad/s).
+
+        Parameters
+        ----------
+        masses : mapping of str to float
+            Of the bodies that have any (kg).
+        least : float
+            The smallest of them.
+        """
+        return self.driven
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """Return how large the terms of `laws` are whose difference its force is (N, N m).
+
+        Parameters
+        ----------
+        size, speed : float
+            Sizes of the places and the rates of its bodies (m, m/s).
+        """
+        return 0.0
+
+    @property
+    def driven(self) -> float:
+        """Speed or rate that it prescribes (m/s, rad/s)."""
+        return 0.0
+
+    def works(self) -> bool:
+        """Return whether it takes or brings energy beside its potential."""
+        return False
+
+    def places(self) -> Iterator[Place]:
+        """Yield the places that it names."""
+        yield from _places(self)
 
     def held(self, placement: Placement) -> Mapping[str, Numbers]:
         """Return the measures that stay zero, in m or rad, by a name each; of several numbers, the last axis is theirs.
@@ -88,9 +179,24 @@ class Definition:
         """Return the power, in a virtual motion, of forces that the answer does not name but the description gives."""
         return np.zeros(())
 
+    def kinetic(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return the kinetic energy of what has mass in it (J)."""
+        return np.zeros(())
+
     def potential(self, placement: Placement) -> Numbers:
         """Return the potential energy (J)."""
         return np.zeros(())
+
+
+def _places(value: object) -> Iterator[Place]:
+    if isinstance(value, Place):
+        yield value
+    elif isinstance(value, tuple):
+        for entry in value:
+            yield from _places(entry)
+    elif is_dataclass(value):
+        for own in fields(value):
+            yield from _places(getattr(value, own.name))
 
 
 @dataclass(frozen=True)

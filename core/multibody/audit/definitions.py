@@ -40,7 +40,7 @@ from core.multibody.audit.laws import (
     TorsionSpring,
     TurnDamper,
 )
-from core.multibody.audit.placement import Place, Placement, Undefined, length
+from core.multibody.audit.placement import LARGEST, LEAST, Place, Placement, Undefined, length
 from core.multibody.audit.strings import Chain, Knot, Run, String, run_of
 from core.multibody.language.connections import GROUND
 from core.multibody.language.scene import Scene
@@ -68,6 +68,14 @@ class Description:
     connections: tuple[Definition, ...]
     undefined: dict[str, str]
     start: Placement
+
+    @property
+    def moderate(self) -> bool:
+        """Whether its numbers are of sizes for which rates are formed to all digits."""
+        numbers = [abs(float(x)) for body in self.bodies.values() for x in (body.mass, *body.start.position) if x]
+        numbers.extend(connection.reach for connection in self.connections if connection.reach)
+        numbers.extend(abs(x) for x in self.gravity if x)
+        return all(LEAST < x < LARGEST for x in numbers)
 
 
 def description_of(scene: Scene) -> Description:
@@ -257,8 +265,9 @@ def _chain(reader: Reader, name: str, connection: Any, path: Path) -> Definition
     size = sum(sizes) if given is None else reader.number(given, (*path, "length"))
     density = reader.number(connection.density, (*path, "density"))
     bodies = (*first.bodies, *last.bodies)
+    fall = float(np.dot(reader.gravity, peg.offset))
     ends, both = (first, last), (ways[0], ways[1])
-    return Chain(name, bodies, ends, peg.offset, both, density, size, (pulls[0], pulls[1]))
+    return Chain(name, bodies, ends, peg.offset, both, density, size, (pulls[0], pulls[1]), fall)
 
 
 def kinds(connections: Sequence[Definition]) -> frozenset[str]:

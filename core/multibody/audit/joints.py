@@ -109,6 +109,11 @@ class Rod(Definition):
     b: Place
     length: float
 
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return self.length
+
     def distance(self, placement: Placement) -> Numbers:
         """Return the distance of the places (m), shape ()."""
         return length(self.b.at(placement) - self.a.at(placement))
@@ -130,7 +135,7 @@ class Weld(Definition):
     ----------
     carrier : int
         Which of the two carries the vector between the places: 0 or 1.
-    arm : tuple of float
+    between : tuple of float
         From the place of the carrier to the other, in the axes of the carrier (m).
     attitude : ndarray or None
         See `attitude_to`; None where one of them is a particle.
@@ -140,17 +145,17 @@ class Weld(Definition):
     a: Place
     b: Place
     carrier: int
-    arm: tuple[float, ...]
+    between: tuple[float, ...]
     attitude: Numbers | None
 
     def apart(self, placement: Placement) -> Numbers:
         """Return how far the places are from where they are welded (m), shape (d,)."""
         ends = (self.a, self.b)
         carrier, other = ends[self.carrier], ends[1 - self.carrier]
-        arm = np.array(self.arm)
-        if any(self.arm) and carrier.body is not None:
+        arm = np.array(self.between)
+        if any(self.between) and carrier.body is not None:
             pose = placement[carrier.body]
-            arm = arm if pose.rotation is None else carried(pose, self.arm)
+            arm = arm if pose.rotation is None else carried(pose, self.between)
         found: Numbers = other.at(placement) - carrier.at(placement) - arm
         return found if self.carrier == 1 else -found
 
@@ -235,6 +240,11 @@ class OnCircle(Definition):
     centre: Place
     radius: float
 
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return self.radius
+
     def distance(self, placement: Placement) -> Numbers:
         """Return the distance from the centre (m), shape ()."""
         return length(self.place.at(placement) - self.centre.at(placement))
@@ -246,6 +256,11 @@ class OnCircle(Definition):
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
         return {f"{self.name}.normal": rate(self.distance, placement, motion)}
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """See `Definition.forces`."""
+        return (f"{self.name}.normal",)
 
     def derived(self, placement: Placement, motion: Motion, forces: Mapping[str, Numbers]) -> Mapping[str, Numbers]:
         """See `Definition.derived`."""
@@ -290,6 +305,11 @@ class OnParabola(Definition):
     vertex: Place
     tangent: tuple[float, ...]
     curvature: float
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`: the radius of curvature at the vertex."""
+        return 1.0 / abs(self.curvature) if self.curvature else 0.0
 
     def height(self, placement: Placement) -> Numbers:
         """Return how far the place is above the curve, along its axis (m), shape ()."""

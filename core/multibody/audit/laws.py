@@ -43,6 +43,14 @@ class Spring(Pull):
         """See `Definition.laws`."""
         return {f"{self.name}.force": self.stiffness * (self.distance(placement) - self.rest_length)}
 
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        return float(np.sqrt(self.stiffness / least)) if least > 0.0 else 0.0
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        return self.stiffness * (size + self.rest_length)
+
     def potential(self, placement: Placement) -> Numbers:
         """See `Definition.potential`."""
         return self.stiffness / 2.0 * (self.distance(placement) - self.rest_length) ** 2
@@ -71,6 +79,14 @@ class SpringWithoutLength(Definition):
         pull = self.stiffness * self.between(placement)
         return {f"{self.name}.{axis}": pull[..., i] for i, axis in zip(range(pull.shape[-1]), AXES, strict=False)}
 
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        return float(np.sqrt(self.stiffness / least)) if least > 0.0 else 0.0
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        return self.stiffness * size
+
     def potential(self, placement: Placement) -> Numbers:
         """See `Definition.potential`."""
         d = self.between(placement)
@@ -84,9 +100,21 @@ class Damper(Pull):
     kind: ClassVar[str] = "damper"
     coefficient: float
 
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return True
+
     def laws(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.laws`."""
         return {f"{self.name}.force": self.coefficient * rate(self.distance, placement, motion)}
+
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        return self.coefficient / least if least > 0.0 else 0.0
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        return self.coefficient * speed
 
 
 @dataclass(frozen=True)
@@ -99,6 +127,16 @@ class Attraction(Pull):
     def laws(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.laws`."""
         return {f"{self.name}.force": self.strength / self.distance(placement) ** 2}
+
+    def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
+        """See `Definition.quickness`."""
+        distance = np.min(self.distance(placement))
+        return float(np.sqrt(abs(self.strength) / least / distance**3)) if least > 0.0 else 0.0
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        found: Numbers = 2.0 * abs(self.strength) * size / self.distance(placement) ** 3
+        return found
 
     def potential(self, placement: Placement) -> Numbers:
         """See `Definition.potential`."""
@@ -137,6 +175,10 @@ class TorsionSpring(Twisting):
         """See `Definition.laws`."""
         return {f"{self.name}.torque": -self.stiffness * (self.turn(placement) - self.rest_angle)}
 
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        return self.stiffness * (np.abs(self.turn(placement)) + abs(self.rest_angle))
+
     def potential(self, placement: Placement) -> Numbers:
         """See `Definition.potential`."""
         return self.stiffness / 2.0 * (self.turn(placement) - self.rest_angle) ** 2
@@ -149,9 +191,17 @@ class TurnDamper(Twisting):
     kind: ClassVar[str] = "damper"
     coefficient: float
 
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return True
+
     def laws(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.laws`."""
         return {f"{self.name}.torque": -self.coefficient * self.turning(motion)}
+
+    def law_size(self, placement: Placement, size: float, speed: float) -> Numbers | float:
+        """See `Definition.law_size`."""
+        return self.coefficient * speed
 
 
 @dataclass(frozen=True)
@@ -160,6 +210,15 @@ class Motor(Twisting):
 
     kind: ClassVar[str] = "motor"
     rate: float
+
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return self.rate != 0.0
+
+    @property
+    def driven(self) -> float:
+        """See `Definition.driven`."""
+        return abs(self.rate)
 
     def held_rates(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.held_rates`."""
@@ -191,6 +250,10 @@ class ConstantTorque(Definition):
     body: str
     torque: float | tuple[float, ...]
 
+    def works(self) -> bool:
+        """See `Definition.works`."""
+        return isinstance(self.torque, tuple)
+
     def load(self, placement: Placement, motion: Motion, virtual: Motion) -> Numbers:
         """See `Definition.load`."""
         spin = np.asarray(spin_of(virtual, self.body))
@@ -218,6 +281,11 @@ class SpinningFrame(Definition):
     at: tuple[float, ...]
     across: tuple[float, ...] | None
     parts: tuple[RigidBody, ...]
+
+    @property
+    def driven(self) -> float:
+        """See `Definition.driven`."""
+        return abs(self.rate)
 
     def load(self, placement: Placement, motion: Motion, virtual: Motion) -> Numbers:
         """See `Definition.load`."""

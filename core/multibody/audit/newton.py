@@ -91,15 +91,27 @@ class Balance:
         Sum of the sizes of its terms.
     free : ndarray, shape (freedoms, freedoms, samples) or None
         Projection on what is not held by unanswered forces; None where nothing is.
+    unsure : ndarray
+        What the stated errors of the forces change them by.
     """
 
     rest: Numbers
     size: Numbers
     free: Numbers | None
+    unsure: Numbers
 
     def left(self) -> Numbers:
         """Return what is left over apart from what unanswered forces may do, shape (freedoms, samples)."""
         return self.rest if self.free is None else np.einsum("ijt,jt->it", self.free, self.rest)
+
+    def allowed(self, of_inertia: Numbers, rounding: float) -> Numbers:
+        """Return what may be left over, from the errors of the inertial terms, of forces and of rounding."""
+        found = of_inertia + self.unsure + rounding * self.size
+        if self.free is not None:
+            found = np.einsum("ijt,jt->it", np.abs(self.free), found)
+        # Directions are known to rounding: a large force leaves some of it at right angles to its line.
+        known: Numbers = found + rounding * self.size.max(axis=0, initial=0.0)
+        return known
 
 
 def balance(
@@ -108,6 +120,7 @@ def balance(
     motion: Motion,
     accelerations: Mapping[str, Acceleration],
     forces: Forces,
+    force_errors: Mapping[str, float] | None = None,
 ) -> Balance:
     """Return what is left over of the equations of motion at some samples.
 
@@ -120,7 +133,7 @@ def balance(
     """
     freedoms = Freedoms(description)
     samples = next(iter(placement.values())).position.shape[0]
-    rest, size = np.zeros((freedoms.count, samples)), np.zeros((freedoms.count, samples))
+    rest, size, unsure = (np.zeros((freedoms.count, samples)) for _ in range(3))
     for name, body in description.bodies.items():
         _add_inertia(rest, size, freedoms, body, description.gravity, placement, motion, accelerations[name])
     held: list[Numbers] = []
@@ -131,6 +144,7 @@ def balance(
             if name in forces:
                 rest[numbers] -= row * forces[name]
                 size[numbers] += np.abs(row * forces[name])
+                unsure[numbers] += np.abs(row) * (force_errors or {}).get(name, 0.0)
             else:
                 held.append(_spread(row, numbers, freedoms.count))
         for line in connection.unanswered(placement, virtual):
@@ -138,7 +152,7 @@ def balance(
         load = np.broadcast_to(connection.load(placement, motion, virtual), (len(numbers), samples))
         rest[numbers] -= load
         size[numbers] += np.abs(load)
-    return Balance(rest, size, _free(held))
+    return Balance(rest, size, _free(held), unsure)
 
 
 def _add_inertia(

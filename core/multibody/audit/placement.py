@@ -21,8 +21,12 @@ from numpy.typing import NDArray
 Numbers = NDArray[Any]
 """Doubles, or complex numbers where a rate is formed."""
 
-STEP = 2.0**-200
-"""Imaginary step: its square vanishes beside one, and times 1e-200 it is still a normal double."""
+STEP = 2.0**-450
+"""Imaginary step (s): its square vanishes beside that of any length above 1e-120 at a speed of one, and its product
+with such a length is still a normal double."""
+
+LEAST, LARGEST = 1e-100, 1e100
+"""Sizes of numbers between which rates are formed by imaginary steps."""
 
 
 @dataclass(frozen=True)
@@ -170,12 +174,10 @@ def angle(x: Numbers, y: Numbers) -> Numbers:
 
 def moved(placement: Placement, motion: Motion) -> Placement:
     """Return a placement moved by an imaginary step along a motion."""
-    return {name: _moved(pose, motion.get(name)) for name, pose in placement.items()}
+    return {**placement, **{name: _moved(placement[name], twist) for name, twist in motion.items()}}
 
 
-def _moved(pose: Pose, twist: Twist | None) -> Pose:
-    if twist is None:
-        return pose
+def _moved(pose: Pose, twist: Twist) -> Pose:
     step = 1j * STEP
     position = pose.position + step * twist.velocity
     if twist.spin is None:

@@ -147,6 +147,25 @@ class String(Definition):
     runs: tuple[Run, ...]
     touch: Touch
 
+    @property
+    def coefficients(self) -> Touch | None:
+        """See `Definition.coefficients`."""
+        return self.touch
+
+    def steps(self, force: str) -> tuple[float, ...]:
+        """See `Definition.steps`."""
+        return next(run.steps() for run in self.runs if f"{run.name}.tension" == force)
+
+    def closed(self, state: Numbers | None, count: int) -> Numbers | None:
+        """See `Definition.closed`: where there are no phases, a string is taut all the time."""
+        return np.ones(count, dtype=bool) if state is None else state != "open"
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        radii = [knot.radius for run in self.runs for part in run.parts for knot in (part.a, part.b)]
+        return max(max(radii), *(abs(run.length) for run in self.runs))
+
     def gaps(self, placement: Placement) -> Mapping[str, Numbers]:
         """See `Definition.gaps`.
 
@@ -203,6 +222,8 @@ class Chain(Definition):
         Directions of the sides from the peg.
     pulls : tuple of two floats
         Components of gravity along them (m/s^2).
+    peg_pull : float
+        Scalar product of gravity and the place of the peg (m^2/s^2).
     """
 
     kind: ClassVar[str] = "chain"
@@ -212,6 +233,12 @@ class Chain(Definition):
     density: float
     length: float
     pulls: tuple[float, float]
+    peg_pull: float
+
+    @property
+    def reach(self) -> float:
+        """See `Definition.reach`."""
+        return self.length
 
     def sides(self, placement: Placement) -> tuple[Numbers, Numbers]:
         """Return the lengths of the two sides (m)."""
@@ -229,6 +256,23 @@ class Chain(Definition):
         rates = rate(lambda where: np.stack(self.sides(where), axis=-1), placement, motion)
         return {f"{self.name}.{i + 1}.tension": -rates[..., i] for i in range(2)}
 
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """See `Definition.forces`."""
+        return f"{self.name}.1.tension", f"{self.name}.2.tension"
+
+    def own_rest(
+        self, placement: Placement, motion: Motion, gains: Motion, forces: Mapping[str, Numbers]
+    ) -> Numbers | None:
+        """See `Definition.own_rest`: that of the chain along itself, between its ends."""
+        if any(any(end.offset) for end in self.ends) or any(name not in forces for name in self.forces):
+            return None
+        first, last = self.sides(placement)
+        gain = rate(lambda where: self.sides(where)[0], placement, gains)
+        drawn = self.density * (self.pulls[0] * first - self.pulls[1] * last)
+        tensions = [forces[name] for name in self.forces]
+        return self.density * self.length * gain - drawn - tensions[0] + tensions[1]
+
     def derived(self, placement: Placement, motion: Motion, forces: Mapping[str, Numbers]) -> Mapping[str, Numbers]:
         """See `Definition.derived`: the tension at the peg, and how hard the chain presses on it."""
         z, speed = with_rate(lambda where: self.sides(where)[0], placement, motion)
@@ -244,11 +288,16 @@ class Chain(Definition):
         rates = rate(lambda where: np.stack(self._beside(where), axis=-1), placement, motion)
         return tuple(rates[..., i] for i in range(2))
 
+    def kinetic(self, placement: Placement, motion: Motion) -> Numbers:
+        """See `Definition.kinetic`."""
+        speed = rate(lambda where: self.sides(where)[0], placement, motion)
+        return self.density * self.length / 2.0 * speed**2
+
     def potential(self, placement: Placement) -> Numbers:
         """See `Definition.potential`."""
         first, last = self.sides(placement)
         fall = -(self.pulls[0] * first * first + self.pulls[1] * last * last) / 2.0
-        return self.density * fall
+        return self.density * (fall - self.length * self.peg_pull)
 
     def _beside(self, placement: Placement) -> tuple[Numbers, Numbers]:
         first, last = (dot(end.at(placement) - np.array(self.peg), across(np.array(way))) for end, way in self._both)

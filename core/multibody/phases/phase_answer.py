@@ -39,8 +39,8 @@ THRESHOLDS = "thresholds"
 """Place of a question about rest among the outputs: it is answered apart from the motion."""
 
 
-def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneSolution:
-    """Answer a question about a scene with contacts, or with strings that are slack at times.
+def answer_in_phases(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, PhasedSystem]:
+    """Answer a question about a scene with contacts, or with strings that are slack at times, by its motion.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneSolution:
     occurrences, extremes = (None, None) if trajectory is None else system.searched(end)
     model, accelerations, forces = _start_of(motion, end)
     outputs = request.outputs
-    return SceneSolution(
+    answer = SceneSolution(
         model,
         accelerations if "accelerations" in outputs else None,
         forces if "forces" in outputs else None,
@@ -78,6 +78,7 @@ def answer_in_phases(scene: Scene, request: SceneRequest) -> SceneSolution:
         ),
         problem=_problem(motion),
     )
+    return answer, system
 
 
 def _require_answerable(request: SceneRequest) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from flint import arb
 
 from core.arrays import Floats
-from core.errors import MechanicsError
+from core.errors import AccuracyUnreachable, MechanicsError
 from core.multibody.answer import (
     Occurrence,
     SceneExtremes,
@@ -24,7 +24,7 @@ from core.multibody.phases.sums_in_phases import SumsInPhases
 from core.multibody.trajectory.column_errors import require_reached, scaled, worst
 from core.multibody.trajectory.inherited import with_inherited
 from core.multibody.trajectory.occurrences import ExtremesOf, When
-from core.multibody.trajectory.trajectories import ONLY_SUMS, require_affordable
+from core.multibody.trajectory.trajectories import ONLY_SUMS, PLACES_AND_FORCES, require_affordable
 from core.systems.methods.closed_form import ClosedFormEvaluation
 from core.systems.question import MotionQuestion
 from core.systems.trajectory import HORIZON, Accuracy, Column, How, Trajectory, Work
@@ -77,6 +77,17 @@ class PhasedSystem:
             if worst(_merged(pieces[: k + 1], len(times), self.motion.fastest)) > accuracy:
                 return float(times[pieces[k][0][0]]) if k else None
         return None
+
+    def sampled(self, times: Floats) -> dict[str, Column]:
+        """Return places, rates and forces at some times; without forces where they are not known."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            try:
+                return PhasedSystem(self.scene, self.motion, PLACES_AND_FORCES)._sampled(times)
+            except AccuracyUnreachable:
+                return PhasedSystem(self.scene, self.motion, PLACES_AND_FORCES[:1])._sampled(times)
+
+    def _sampled(self, times: Floats) -> dict[str, Column]:
+        return _merged(self._pieces(self.motion, times)[0], len(times), self.motion.fastest)
 
     def _sums(self, times: Floats, how: How) -> dict[str, Column]:
         """Return the columns of what is summed up along the motion."""

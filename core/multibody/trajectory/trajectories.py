@@ -56,6 +56,9 @@ MOST_NUMBERS = 5_000_000
 ONLY_SUMS = "it is not propagated to what is summed up along the motion, and there is nothing else"
 """Why nothing is inherited where only works and paths are answered."""
 
+PLACES_AND_FORCES = ("trajectory", "forces-in-time")
+"""Outputs that an audit compares."""
+
 Output = str | When | ExtremesOf
 
 
@@ -161,6 +164,12 @@ class DescribedSystem:
     def how(self) -> How:
         """How the errors of the motion itself are known."""
         return "closed form" if self.closed else "measured against pairs"
+
+    def sampled(self, times: Floats) -> dict[str, Column]:
+        """Return places, rates and forces at some times."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            states = self.whole.states(times, finer=self.finer)
+            return Columns(self.whole, times, states, self.how).chosen(PLACES_AND_FORCES, self.determined)
 
     def _until(self, times: Floats) -> tuple[Integers, tuple[MotionEvent, ...]]:
         """Return the rows of the times that the motion reaches, and the events that end it."""

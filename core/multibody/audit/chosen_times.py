@@ -1,0 +1,100 @@
+"""At which times an audit asks for the motion beside those of the answer."""
+
+from __future__ import annotations
+
+from zlib import crc32
+
+import numpy as np
+
+from core.multibody.answer import SceneSolution
+from core.multibody.audit.definitions import Description
+from core.multibody.audit.placement import Numbers
+from core.multibody.audit.samples import Samples
+
+WIDTH = 0.05
+"""Half of the width of a window, in radians of the quickest motion that the scene is known to have."""
+
+MOST_WINDOWS = 2
+"""Windows in which rates are compared, one in a smooth motion: with the start they ask for 15 times at most."""
+
+TOUCHING = 100.0
+"""How much more often a time is chosen in a phase in which something touches than in free flight."""
+
+MOST_ROWS = 200
+"""Rows of a long trajectory that are compared."""
+
+
+def generator(description: Description, times: Numbers) -> np.random.Generator:
+    """Return random numbers that depend on the question alone."""
+    seed = crc32(np.ascontiguousarray(times).tobytes())
+    for pose in description.start.values():
+        seed = crc32(np.ascontiguousarray(pose.position).tobytes(), seed)
+    return np.random.default_rng(seed)
+
+
+def rows_of(random: np.random.Generator, count: int) -> Numbers:
+    """Return which rows of an answer are compared: all, or the first, the last and a random subset."""
+    if count <= MOST_ROWS:
+        return np.arange(count)
+    inner = random.choice(np.arange(1, count - 1), MOST_ROWS - 2, replace=False)
+    return np.concatenate([[0], np.sort(inner), [count - 1]])
+
+
+def quickness(description: Description, samples: Samples) -> float:
+    """Return the largest rate that the scene is known to change at (rad/s), 0 where none is known.
+
+    Spins and what is prescribed, speeds and forces over lengths, and stiffness over masses.
+    """
+    found, masses = 0.0, {name: body.mass for name, body in description.bodies.items() if body.mass > 0.0}
+    for twist in samples.motion.values():
+        if twist.spin is not None:
+            found = max(found, float(np.max(np.abs(twist.spin), initial=0.0)))
+    for body in description.bodies.values():
+        if body.angular_velocity is not None:
+            found = max(found, float(np.max(np.abs(body.angular_velocity))))
+    least = min(masses.values(), default=0.0)
+    lengths = [connection.reach for connection in description.connections if connection.reach > 0.0]
+    if not lengths:
+        lengths = [max(float(np.abs(pose.position).max()) for pose in samples.placement.values())]
+    if min(lengths) > 0.0:
+        length = min(lengths)
+        speed = max(float(np.max(np.abs(twist.velocity), initial=0.0)) for twist in samples.motion.values())
+        found = max(found, speed / length, float(np.sqrt(np.linalg.norm(description.gravity) / length)))
+    for connection in description.connections:
+        found = max(found, connection.quickness(samples.placement, masses, least))
+    return found
+
+
+def windows(
+    random: np.random.Generator, answer: SceneSolution, begin: float, end: float, rate: float
+) -> list[tuple[float, float]]:
+    """Return middles and half widths of windows within the motion that an answer samples, each in another phase."""
+    parts = [(begin, end, 1.0)]
+    if answer.phases is not None:
+        parts = [
+            (
+                max(phase.start, begin),
+                end if phase.end is None else min(phase.end, end),
+                1.0 if set(phase.states.values()) == {"open"} else TOUCHING,
+            )
+            for phase in answer.phases
+            if phase.model != "accumulating bounces"
+        ]
+    parts = [part for part in parts if part[1] > part[0]]
+    if not parts:
+        return []
+    weights = np.array([(last - first) * weight for first, last, weight in parts])
+    count = min(MOST_WINDOWS, len(parts))
+    chosen = random.choice(len(parts), count, replace=False, p=weights / weights.sum())
+    placed = [_window(random, *parts[int(k)][:2], rate) for k in chosen]
+    return [one for one in placed if one is not None]
+
+
+def _window(random: np.random.Generator, first: float, last: float, rate: float) -> tuple[float, float] | None:
+    """Return middle and half width of a window between two times, None where it has no room."""
+    # Phases are known to rounding: a window stays inside.
+    room = (last - first) * (1.0 - 1e-6) / 2.0
+    half = min(room, WIDTH / rate if rate > 0.0 else room)
+    middle = float(random.uniform(first + half * (1.0 + 1e-6), last - half * (1.0 + 1e-6)))
+    # Times of doubles are too coarse where the window is next to nothing beside them.
+    return (middle, half) if half > 2.0**-26 * max(abs(first), abs(last)) else None

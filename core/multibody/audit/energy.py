@@ -1,0 +1,84 @@
+"""Energy: what the answer states of it, and that it stays the same where nothing takes or brings any."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from core.multibody.audit.definitions import Description
+from core.multibody.audit.failure import Ledger
+from core.multibody.audit.placement import Numbers
+from core.multibody.audit.samples import Samples
+
+
+def kinetic(description: Description, samples: Samples) -> Numbers:
+    """Return the kinetic energy (J), shape (n,)."""
+    total: Numbers = np.zeros(())
+    for name, body in description.bodies.items():
+        pose, twist = samples.placement[name], samples.motion[name]
+        total = total + body.mass / 2.0 * (twist.velocity**2).sum(axis=-1)
+        if body.inertia is None or twist.spin is None:
+            continue
+        if description.dimension == 2:
+            total = total + body.inertia / 2.0 * twist.spin**2
+            continue
+        assert pose.rotation is not None, "a body with a spin has an attitude"
+        own = np.einsum("...ji,...j->...i", pose.rotation, twist.spin)
+        total = total + np.einsum("...i,ij,...j->...", own, body.inertia, own) / 2.0
+    for connection in description.connections:
+        total = total + connection.kinetic(samples.placement, samples.motion)
+    return total
+
+
+def potential(description: Description, samples: Samples) -> Numbers:
+    """Return the potential energy (J), that of gravity from the origin, shape (n,)."""
+    total: Numbers = np.zeros(())
+    for name, body in description.bodies.items():
+        total = total - body.mass * (samples.placement[name].position * np.array(description.gravity)).sum(axis=-1)
+    for connection in description.connections:
+        total = total + connection.potential(samples.placement)
+    return total
+
+
+def size_of(description: Description, samples: Samples) -> Numbers:
+    """Return the sum of the sizes of all energies (J), shape (n,)."""
+    total = np.abs(kinetic(description, samples))
+    for name, body in description.bodies.items():
+        fall = samples.placement[name].position * np.array(description.gravity)
+        total = total + body.mass * np.abs(fall).sum(axis=-1)
+    for connection in description.connections:
+        total = total + np.abs(connection.potential(samples.placement))
+    return total
+
+
+def check_energy(
+    ledger: Ledger,
+    description: Description,
+    samples: Samples,
+    at_start: Samples,
+    losses: Sequence[tuple[float, float]],
+) -> None:
+    """Require the energy to be that of the start, less what events have taken.
+
+    Parameters
+    ----------
+    samples, at_start : Samples
+    losses : sequence of (float, float)
+        Times of events and what they take (J).
+    """
+    if any(not samples.spun(name) for name, body in description.bodies.items() if body.inertia is not None):
+        return
+    taken = np.zeros(samples.times.shape)
+    for time, loss in losses:
+        # What an impact at the start takes is gone from the motion before its first sample.
+        taken = taken + np.where((samples.times >= time) & (time > 0.0), loss, 0.0)
+    start = kinetic(description, at_start)[0] + potential(description, at_start)[0]
+
+    def change(at: Samples) -> Numbers:
+        found: Numbers = kinetic(description, at) + potential(description, at) + taken - start
+        return found
+
+    size = size_of(description, samples)
+    size = size + size_of(description, at_start)[0] + sum(abs(loss) for _, loss in losses)
+    ledger.hold("energy", "", samples, change, 4.0 * size, bodies=tuple(description.bodies))

@@ -1,0 +1,248 @@
+"""Samples of an answer as placements, motions and forces, each with the error that the answer states."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.multibody.audit.bodies import RigidBody
+from core.multibody.audit.definitions import Description
+from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, cross, turned
+from core.systems.trajectory import Column
+
+Columns = Mapping[str, Column]
+
+
+@dataclass(frozen=True)
+class BodyErrors:
+    """Stated errors of a body, of vectors of their length (m, rad, m/s, rad/s)."""
+
+    position: float
+    attitude: float
+    velocity: float
+    spin: float
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Some rows of an answer.
+
+    Attributes
+    ----------
+    times : ndarray, shape (n,)
+    placement, motion : mapping
+        With the samples as leading axis. Bodies of which the attitude is not answered have no rotation, and those of
+        which the spin is not answered no spin.
+    forces : mapping of str to ndarray, shape (n,)
+    errors : mapping of str to BodyErrors
+    force_errors : mapping of str to float
+    placed : set of str
+        Bodies of which the attitude is answered, of tops that of the axis.
+    """
+
+    times: Numbers
+    placement: Placement
+    motion: Motion
+    forces: Mapping[str, Numbers]
+    errors: Mapping[str, BodyErrors]
+    force_errors: Mapping[str, float]
+    placed: frozenset[str] = frozenset()
+
+    @property
+    def leading(self) -> int:
+        """How many axes the samples have: 1, or 2 where they are perturbed."""
+        return max(pose.position.ndim for pose in self.placement.values()) - 1
+
+    def at(self, rows: Numbers) -> Samples:
+        """Return some of the samples, by a mask or their numbers."""
+        placement = {
+            name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn)))  # type: ignore[arg-type]
+            for name, pose in self.placement.items()
+        }
+        motion = {
+            name: Twist(twist.velocity[rows], None if twist.spin is None else twist.spin[rows])
+            for name, twist in self.motion.items()
+        }
+        forces = {name: values[rows] for name, values in self.forces.items()}
+        return Samples(self.times[rows], placement, motion, forces, self.errors, self.force_errors, self.placed)
+
+    def flattened(self) -> Samples:
+        """Return perturbed samples with their two axes in one."""
+
+        def flat(x: Numbers | None) -> Numbers | None:
+            return None if x is None else x.reshape(-1, *x.shape[2:])
+
+        placement = {
+            name: Pose(flat(pose.position), flat(pose.rotation), flat(pose.turn))  # type: ignore[arg-type]
+            for name, pose in self.placement.items()
+        }
+        motion = {
+            name: Twist(flat(twist.velocity), flat(twist.spin))  # type: ignore[arg-type]
+            for name, twist in self.motion.items()
+        }
+        return Samples(self.times, placement, motion, self.forces, self.errors, self.force_errors)
+
+    def of(self, bodies: Iterable[str]) -> Motion:
+        """Return the motion of some bodies."""
+        return {name: self.motion[name] for name in bodies}
+
+    def spun(self, name: str) -> bool:
+        """Return whether all that turns of a body is known."""
+        return self.motion[name].spin is not None
+
+    def perturbed(self, bodies: Iterable[str], forces: Iterable[str] = ()) -> Samples:
+        """Return the samples with one input after another changed by its stated error.
+
+        Arrays get a first axis, of which entry 0 is without any change.
+        """
+        bodies, forces = tuple(bodies), tuple(forces)
+        changes = [change for name in bodies for change in self._changes(name)] + [
+            (name, "force", 0) for name in forces
+        ]
+        count = len(changes) + 1
+        placement, motion = dict(self.placement), dict(self.motion)
+        for name in bodies:
+            placement[name], motion[name] = self._changed(name, changes, count)
+        moved = dict(self.forces)
+        for name in forces:
+            values = np.repeat(self.forces[name][None], count, axis=0)
+            values[1 + changes.index((name, "force", 0))] += self.force_errors[name]
+            moved[name] = values
+        return Samples(self.times, placement, motion, moved, self.errors, self.force_errors)
+
+    def _changes(self, name: str) -> list[tuple[str, str, int]]:
+        pose, twist = self.placement[name], self.motion[name]
+        d = pose.position.shape[-1]
+        found = [(name, what, i) for what in ("position", "velocity") for i in range(d)]
+        spins = 1 if d == 2 else 3
+        if pose.rotation is not None:
+            found.extend((name, "attitude", i) for i in range(spins))
+        if twist.spin is not None:
+            found.extend((name, "spin", i) for i in range(spins))
+        return found
+
+    def _changed(self, name: str, changes: Sequence[tuple[str, str, int]], count: int) -> tuple[Pose, Twist]:
+        pose, twist, error = self.placement[name], self.motion[name], self.errors[name]
+        position, velocity, rotation, turn, spin = (
+            None if x is None else np.repeat(x[None], count, axis=0)
+            for x in (pose.position, twist.velocity, pose.rotation, pose.turn, twist.spin)
+        )
+        assert position is not None, "every body has a position"
+        assert velocity is not None, "every body has a velocity"
+        plane = position.shape[-1] == 2
+        for p, (body, what, i) in enumerate(changes, start=1):
+            if body != name:
+                continue
+            if what == "position":
+                position[p, ..., i] += error.position
+            elif what == "velocity":
+                velocity[p, ..., i] += error.velocity
+            elif what == "spin" and spin is not None:
+                spin[(p, ..., i) if not plane else p] += error.spin
+            elif what == "attitude" and rotation is not None:
+                if turn is not None:
+                    turn[p] += error.attitude
+                rotation[p] += error.attitude * _tilted(rotation[p], i)
+        return Pose(position, rotation, turn), Twist(velocity, spin)
+
+
+def _tilted(rotation: Numbers, i: int) -> Numbers:
+    """Return the rate of a rotation that turns about axis i of space, in the plane about its normal."""
+    if rotation.shape[-1] == 2:
+        return np.stack([-rotation[..., 1, :], rotation[..., 0, :]], axis=-2)
+    axis = np.eye(3)[i]
+    return np.swapaxes(cross(np.broadcast_to(axis, rotation.shape), np.swapaxes(rotation, -1, -2)), -1, -2)
+
+
+def samples_of(description: Description, times: Numbers, columns: Columns, rows: Numbers | slice) -> Samples:
+    """Return rows of the columns of an answer.
+
+    Raises
+    ------
+    KeyError
+        Where the columns are not those of a trajectory.
+    """
+    placement, motion, errors = {}, {}, {}
+    for name, body in description.bodies.items():
+        placement[name], motion[name], errors[name] = _body(body, description, columns, rows)
+    forces: dict[str, Numbers] = {}
+    force_errors: dict[str, float] = {}
+    for key, column in columns.items():
+        if column.unit in ("N", "N m") and column.values.ndim == 1:
+            forces[key], force_errors[key] = column.values[rows], column.error
+    placed = frozenset(name for name in placement if {f"{name}.attitude", f"{name}.axis"} & columns.keys())
+    return Samples(times[rows], placement, motion, forces, errors, force_errors, placed)
+
+
+def _body(
+    body: RigidBody, description: Description, columns: Columns, rows: Numbers | slice
+) -> tuple[Pose, Twist, BodyErrors]:
+    name = body.name
+    where, speed = columns[f"{name}.position"], columns[f"{name}.velocity"]
+    position, velocity = where.values[rows], speed.values[rows]
+    if body.inertia is None:
+        return Pose(position), Twist(velocity), BodyErrors(where.error, 0.0, speed.error, 0.0)
+    if description.dimension == 2:
+        angle, rate = columns[f"{name}.angle"], columns[f"{name}.angular_velocity"]
+        turn = angle.values[rows]
+        return (
+            Pose(position, turned(turn), turn),
+            Twist(velocity, rate.values[rows]),
+            BodyErrors(where.error, angle.error, speed.error, rate.error),
+        )
+    if f"{name}.attitude" in columns:
+        attitude, rate = columns[f"{name}.attitude"], columns[f"{name}.angular_velocity"]
+        rotation = rotation_of(attitude.values[rows])
+        spin = np.einsum("tij,tj->ti", rotation, rate.values[rows])
+        # A quaternion that is wrong by e turns by 2e; the spin, which is given in body axes, turns with it.
+        tilt = 2.0 * attitude.error
+        off = rate.error + tilt * float(np.max(np.linalg.norm(spin, axis=1), initial=0.0))
+        return Pose(position, rotation), Twist(velocity, spin), BodyErrors(where.error, tilt, speed.error, off)
+    if f"{name}.axis" in columns:
+        axis = columns[f"{name}.axis"]
+        rotation = _around(axis.values[rows], axis_of_top(body, description))
+        return Pose(position, rotation), Twist(velocity), BodyErrors(where.error, axis.error, speed.error, 0.0)
+    rate = columns[f"{name}.angular_velocity_in_space"]
+    # A ball with equal moments: its attitude is not answered, and its tensor is the same in all.
+    still = np.broadcast_to(np.eye(3), (len(position), 3, 3))
+    return (
+        Pose(position, still),
+        Twist(velocity, rate.values[rows]),
+        BodyErrors(where.error, 0.0, speed.error, rate.error),
+    )
+
+
+def rotation_of(quaternion: Numbers) -> Numbers:
+    """Return the rotation of a unit quaternion (w, x, y, z), shape (n, 3, 3)."""
+    w, x, y, z = (quaternion[:, i] for i in range(4))
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def axis_of_top(body: RigidBody, description: Description) -> int:
+    """Return the body axis about which a body is symmetric, and on which its places are that connections use."""
+    assert body.inertia is not None, "a top has moments"
+    moments = np.diag(body.inertia)
+    used = {place.offset for one in description.connections for place in one.places() if place.body == body.name}
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        if moments[i] == moments[j] and all(offset[i] == 0.0 == offset[j] for offset in used):
+            return k
+    raise AssertionError("the axis of a body is answered where it has one")
+
+
+def _around(axis: Numbers, k: int) -> Numbers:
+    """Return rotations whose axis k has a direction, shape (n, 3, 3); the others are any that complete it."""
+    size = np.linalg.norm(axis, axis=1, keepdims=True)
+    n = axis / size
+    away = np.eye(3)[np.argmin(np.abs(n), axis=1)]
+    first = cross(n, away)
+    first = first / np.linalg.norm(first, axis=1, keepdims=True)
+    columns = [n, first, cross(n, first)]
+    return np.stack([columns[(i - k) % 3] for i in range(3)], axis=-1)

@@ -1,0 +1,32 @@
+"""What is kept of answers that did not pass their check: a line in the log and, where it is set, the request."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from service.observability.logs import LOG
+from service.problems import Problem
+
+CODE = "self-check-failed"
+
+
+class FailedChecks:
+    """Records answers that were withheld; `folder` is the setting failed_requests, empty where none is kept."""
+
+    def __init__(self, folder: str) -> None:
+        self._folder = Path(folder) if folder else None
+
+    def record(self, request_id: str, operation: str, body: bytes, problem: Problem) -> None:
+        """Log a failed check, and keep the body of the request; other problems leave no trace here."""
+        if problem.type.code != CODE:
+            return
+        about = {f"check_{name}": value for name, value in problem.extra.items()}
+        LOG.error("answer withheld", extra={"request_id": request_id, "operation": operation, **about})
+        if self._folder is None:
+            return
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            # Ids are short and plain: see `Records.id_of`.
+            (self._folder / f"{request_id}.json").write_bytes(body)
+        except OSError:
+            LOG.exception("a request cannot be kept", extra={"request_id": request_id})

@@ -1,0 +1,122 @@
+"""Spoiled answers are refused, and right ones are not.
+
+Each way of spoiling is tried on twenty worked scenes, or on all that have what it spoils. What changes an answer by no
+more than its stated errors is no fault; so a spoiled answer counts where it differs by more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+
+from core.errors import InvalidParameter
+from core.multibody.solve import solve_scene
+from tests.core.multibody.audit.spoiled import (
+    COLUMNS,
+    MOTIONS,
+    OF_OTHERS,
+    OUTPUTS,
+    Audited,
+    another,
+    answered,
+    worked,
+)
+from tests.core.multibody.random_scenes import any_scene
+from tests.core.multibody.worked_examples import read
+
+MOST = 20
+"""Scenes on which each way of spoiling is tried."""
+
+
+@cache
+def right_answers() -> dict[str, Audited]:
+    return {name: answered(description) for name, description in worked().items()}
+
+
+def test_right_answers_pass() -> None:
+    for name, one in right_answers().items():
+        assert one.failure() is None, name
+
+
+def differs(one: Audited, other: Audited, times: float = 30.0) -> bool:
+    """Return whether two answers differ by more than their errors, in the motion or at the start."""
+    motions = (one.answer.trajectory, other.answer.trajectory)
+    assert motions[0] is not None
+    assert motions[1] is not None
+    if motions[0].columns.keys() != motions[1].columns.keys():
+        # Another kind of body.
+        return False
+    for name, column in motions[0].columns.items():
+        apart = float(np.max(np.abs(column.values - motions[1].columns[name].values), initial=0.0))
+        size = float(np.max(np.abs(column.values), initial=0.0))
+        if apart > times * column.error + 1e-9 * size:
+            return True
+    first, second = figures(one), figures(other)
+    return bool(np.any(np.abs(first - second) > 1e-9 * np.maximum(1.0, np.abs(first))))
+
+
+def figures(one: Audited) -> np.ndarray:
+    """Return all numbers that are answered about the start."""
+    answer = one.answer
+    assert answer.energy is not None
+    found = [answer.energy.kinetic, answer.energy.potential]
+    for body in (answer.accelerations or {}).values():
+        found.extend(body.linear)
+        found.extend(np.atleast_1d([] if body.angular is None else body.angular))
+    found.extend(0.0 if force.value is None else force.value for force in (answer.forces or {}).values())
+    return np.array(found)
+
+
+def caught(spoil: Callable[[Audited], Audited]) -> int:
+    """Require all of the spoiled answers to be refused, and return how many there were."""
+    count = 0
+    for name, one in right_answers().items():
+        spoiled = spoil(one)
+        if not differs(one, spoiled):
+            continue
+        count += 1
+        assert spoiled.failure() is not None, name
+        if count == MOST:
+            break
+    return count
+
+
+@pytest.mark.parametrize("kind", COLUMNS)
+def test_a_motion_with_a_wrong_column_is_refused(kind: str) -> None:
+    assert caught(lambda one: one.with_columns(COLUMNS[kind])) >= 4
+
+
+@pytest.mark.parametrize("kind", MOTIONS)
+def test_a_wrong_motion_is_refused(kind: str) -> None:
+    assert caught(MOTIONS[kind]) == MOST
+
+
+@pytest.mark.parametrize("key", OF_OTHERS)
+def test_the_answer_to_another_scene_is_refused(key: str) -> None:
+    count = 0
+    for name, description in worked().items():
+        other = another(description, key)
+        if other is None:
+            continue
+        try:
+            wrong = answered(other)
+        except InvalidParameter:
+            # What else was written does not agree with the number any more.
+            continue
+        right = right_answers()[name]
+        if not differs(right, wrong):
+            continue
+        count += 1
+        spoiled = Audited(right.scene, wrong.answer, wrong.sampler, right.times)
+        assert spoiled.failure() is not None, name
+        if count == MOST:
+            break
+    assert count >= 1
+
+
+@pytest.mark.parametrize("seed", range(0, 66, 3))
+def test_random_scenes_pass(seed: int) -> None:
+    solve_scene(read(any_scene(seed)), np.linspace(0.0, 2.0, 9), OUTPUTS)
