@@ -112,7 +112,8 @@ def _check_held(ledger: Ledger, description: Description, start: Samples, gains:
     fastest = max(float(np.abs(twist.velocity).max()) for twist in start.motion.values())
     steepest = max(float(np.abs(twist.velocity).max()) for twist in gains.values())
     rate = quickness(description, start)
-    step = SHORT / max(rate, 1e-30)
+    # Without a rate of its own, in the time that it takes to gain its speed, or in any time.
+    step = SHORT * (1.0 / rate if rate > 0.0 else fastest / steepest if fastest > 0.0 < steepest else 1.0)
     for connection in description.connections:
         own = start.of(connection.bodies)
         known = all(start.spun(name) or start.placement[name].rotation is None for name in connection.bodies)
