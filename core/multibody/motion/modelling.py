@@ -20,6 +20,7 @@ from core.multibody.motion.kepler import keplerian
 from core.multibody.motion.modes import Modes
 from core.multibody.motion.motion import Motion, Rest
 from core.multibody.motion.numerical import Numerical
+from core.multibody.motion.pendulum import LATE, plane_pendulum
 from core.multibody.motion.periods import repeating
 from core.multibody.motion.turning import turning
 from core.multibody.motion.turning_body import turning_body
@@ -203,7 +204,9 @@ def _motion(piece: Piece) -> Motion:
             return about
     found: Motion | None = None
     if not rubs:
-        found = keplerian(part) or repeating(part, gain, chosen) or precessing(part, gain, chosen)
+        returning = repeating(part, gain, chosen)
+        closed = plane_pendulum(part, chosen) if returning is None or returning.late > LATE else None
+        found = keplerian(part) or closed or returning or precessing(part, gain, chosen)
     if found is not None:
         return found
     free = piece.freedom

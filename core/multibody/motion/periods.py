@@ -76,6 +76,11 @@ class Periodic:
         """The period in seconds, as wide as two runs differ in it."""
         return (arb(self.length[0], self.uncertainty[0]) + arb(self.length[1])) * arb(2) ** self.units.time
 
+    @property
+    def late(self) -> float:
+        """Share of the period by which two runs differ in it."""
+        return self.uncertainty[0] / float(self.length[0])
+
     def states(self, times: Floats, *, finer: bool = False) -> States:
         """Return the states: the time within the period, the step in which it lies, and its series in pairs."""
         n = len(self.table.names)
