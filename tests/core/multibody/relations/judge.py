@@ -23,7 +23,7 @@ from typing import Any
 from tests.core.multibody.relations.comparison import Difference, differences
 from tests.core.multibody.relations.hard_scenes import hard_scenes
 from tests.core.multibody.relations.numbers import Json
-from tests.core.multibody.relations.relations import NAMES, RELATIONS, answered, checked
+from tests.core.multibody.relations.relations import NAMES, RELATIONS, answered, checked, checked_by_digits
 from tests.core.multibody.relations.sources import catalogue, random_scene, side_by_side
 from tests.core.multibody.relations.views import Refusal, View, viewed
 
@@ -64,6 +64,12 @@ def of_random_scenes(first: int, count: int) -> Iterator[Found]:
         # Five sources take turns as well: consecutive rounds of them meet every relation.
         relation = NAMES[(seed + seed // len(NAMES)) % len(NAMES)]
         yield f"seed {seed}", relation, limited(checked, random_scene(seed), relation, seed)
+
+
+def of_digits(first: int, count: int) -> Iterator[Found]:
+    """Yield the differences of random scenes from their proven digits, where there are any."""
+    for seed in range(first, first + count):
+        yield f"seed {seed}", "with proven digits", limited(checked_by_digits, random_scene(seed))
 
 
 def of_all_relations(scenes: Mapping[str, Json]) -> Iterator[Found]:
@@ -146,7 +152,7 @@ def summary(results: Iterator[Found]) -> dict[str, Any]:
 def main() -> None:
     count = int(sys.argv[1])
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    parts = sys.argv[3].split(",") if len(sys.argv) > 3 else ["hard", "random", "catalogue", "pairs"]
+    parts = sys.argv[3].split(",") if len(sys.argv) > 3 else ["hard", "random", "catalogue", "pairs", "digits"]
     target = Path(sys.argv[4]) if len(sys.argv) > 4 else TARGET
     found: dict[str, Any] = {"first_seed": first, "seeds": count}
     sources = {
@@ -154,6 +160,7 @@ def main() -> None:
         "catalogue": lambda: of_all_relations(catalogue()),
         "hard": lambda: of_all_relations(hard_scenes()),
         "pairs": of_pairs,
+        "digits": lambda: of_digits(first, max(1, count // 20)),
     }
     for part in parts:
         began = time.process_time()

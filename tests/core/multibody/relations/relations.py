@@ -5,17 +5,23 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from core.errors import MechanicsError
 from core.multibody.answer import SceneSolution
+from core.multibody.language.scene import Scene
+from core.multibody.proven.proven_answer import proven_answer
 from core.multibody.solve import solve_scene
 from core.multibody.trajectory.occurrences import ExtremesOf, When
 from tests.core.multibody.relations import additions, geometry, writing
 from tests.core.multibody.relations.comparison import Difference, differences
 from tests.core.multibody.relations.geometry import Transformed, dimension
 from tests.core.multibody.relations.numbers import Json
+from tests.core.multibody.relations.sources import without_search
 from tests.core.multibody.relations.views import Figure, Refusal, View, viewed
 from tests.core.multibody.worked_examples import read
 
@@ -26,9 +32,13 @@ OF_OUTPUTS = ("gravity", "let", "bodies", "connections", "numbers")
 Relation = Callable[[Json], Transformed | None]
 
 
+def _scene(request: Json) -> Scene:
+    return read(json.loads(json.dumps({key: request[key] for key in OF_OUTPUTS if key in request})))
+
+
 def answered(request: Json, input_uncertainty: float | None = None) -> SceneSolution:
     """Return the answer to a request, which is not changed by being read."""
-    scene = read(json.loads(json.dumps({key: request[key] for key in OF_OUTPUTS if key in request})))
+    scene = _scene(request)
     outputs: list[Any] = list(request.get("outputs", ["trajectory"]))
     if "searched" in request and max(request.get("times", [0.0])) > 0.0:
         body, speed = request["searched"]
@@ -66,6 +76,9 @@ RELATIONS: dict[str, Relation] = {
 """Relations that hold within the stated errors of both answers."""
 MOVED_A_LITTLE = "a number moved by 1e-12"
 NAMES = (*RELATIONS, MOVED_A_LITTLE)
+PROVEN_DIGITS = 22
+PROVEN_TIME = Fraction(5, 16)
+"""One time (s), to which most motions can be proven in a second."""
 
 
 def checked(request: Json, name: str, seed: int = 0, original: View | Refusal | None = None) -> list[Difference] | None:
@@ -126,3 +139,28 @@ def _checked_by_condition(request: Json, random: np.random.Generator) -> list[Di
     # Which model suffices hangs on numbers that are exact.
     exempt = ("model", "degrees of freedom", "period in one form")
     return [one for one in differences(wide(own), wide(found)) if one.kind not in exempt]
+
+
+def checked_by_digits(request: Json) -> list[Difference] | None:
+    """Compare the samples with their proven digits; None where none are proven."""
+    scene = _scene(request)
+    try:
+        proven = proven_answer(scene, PROVEN_DIGITS, [PROVEN_TIME])
+    except MechanicsError:
+        # Contacts, redundant connections and starts that hold to rounding have no proven digits.
+        return None
+    assert proven.columns is not None
+    found = viewed(lambda: answered({**without_search(request), "times": [float(PROVEN_TIME)]}))
+    if isinstance(found, Refusal):
+        return [Difference("refused in one form", found.detail[:100], np.inf)]
+    figures: dict[str, Figure] = {}
+    for name, column in proven.columns.items():
+        owner, _, what = name.rpartition(".")
+        values = np.array(column.values, dtype=float)
+        figures[f"column:{name}"] = Figure(values, column.unit, 0.0, what, owner)
+    for body, one in (proven.accelerations or {}).items():
+        values = np.array([[float(x) for x in one.linear]])
+        figures[f"start:{body}.acceleration"] = Figure(values, "m/s^2", 0.0, "acceleration", body)
+    if (proven.rows == []) != (found.ended is not None):
+        return [Difference("how it ends", f"{proven.ended} / {found.ended}", np.inf)]
+    return differences(replace(found, figures=figures), found)

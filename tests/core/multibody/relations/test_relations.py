@@ -9,7 +9,7 @@ import pytest
 
 from tests.core.multibody.relations.hard_scenes import hard_scenes
 from tests.core.multibody.relations.numbers import Json
-from tests.core.multibody.relations.relations import NAMES, RELATIONS, checked
+from tests.core.multibody.relations.relations import NAMES, RELATIONS, checked, checked_by_digits
 from tests.core.multibody.relations.sources import catalogue, random_scene, without_search
 
 SLOW = ("block whose string reaches its pulley", "two stones on humps with a string")
@@ -59,6 +59,11 @@ def of_seed(seed: int) -> object:
 def test_random_scenes(seed: str, relation: str) -> None:
     request = random_scene(int(seed))
     assert not checked(without_search(request) if int(seed) % SEARCHED else request, relation, int(seed))
+
+
+@pytest.mark.parametrize("seed", range(300, 309))
+def test_samples_have_their_proven_digits(seed: int) -> None:
+    assert not checked_by_digits(random_scene(seed))
 
 
 @pytest.mark.parametrize(("scene", "relation"), in_turn(HARD, 3))
