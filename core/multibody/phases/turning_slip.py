@@ -257,7 +257,7 @@ def turning_model(
         if row is not None and table.rows[row].slide is not None
         for i, axis in enumerate(COMPONENTS)
     }
-    small = Reduced(table, identity(len(table.names)))
+    small = Reduced(table, identity(len(table.names)), table.names)
     whole = TurningWhole(found.measures, small, gain, gain, [(everything, motion)], turning=turning)
     return Modelled(found, whole, [Piece(everything, table, gain, chosen)], start.moved, start.fitted)
 

@@ -39,7 +39,7 @@ _MOST_FACTORED = 8
 
 def reduced(table: Table, *, pinning: bool) -> Reduced:
     """Apply the passes to a table until none of them finds anything."""
-    return further(Reduced(table, identity(len(table.names))), pinning=pinning)
+    return further(Reduced(table, identity(len(table.names)), table.names), pinning=pinning)
 
 
 def further(state: Reduced, *, pinning: bool) -> Reduced:

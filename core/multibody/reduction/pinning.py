@@ -43,12 +43,14 @@ def pin(state: Reduced) -> bool:
         lost = massless.intersection(undetermined(table, pinned, [row.line(table.q) for row in table.rows]))
         if lost:
             raise weightless(table, lost, ())
-    state.pinned.extend(table.names[i] for i in sorted(pinned))
+    moved = [any(expression) for expression in state.expressions]
     state.steps.append(f"constant throughout the motion: {', '.join(table.names[i] for i in sorted(pinned))}")
     expressions: list[Poly | None] = [None] * len(table.names)
     for i in pinned:
         expressions[i] = constant(table.q[i])
     substitute(state, expressions)
+    stays = (was and not any(now) for was, now in zip(moved, state.expressions, strict=True))
+    state.pinned.extend(name for name, still in zip(state.names, stays, strict=True) if still)
     return True
 
 

@@ -17,14 +17,17 @@ class Reduced:
     ----------
     expressions : list of affine polynomials
         Every coordinate of the original table.
+    names : list of str
+        Of the coordinates of the original table.
     pinned : list of str
-        Coordinates found never to move.
+        Coordinates of the original table that nothing ever moves, though the connections would let it.
     steps : list of str
         What each pass did.
     """
 
     table: Table
     expressions: list[Poly]
+    names: list[str]
     pinned: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
 

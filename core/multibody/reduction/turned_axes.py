@@ -75,7 +75,9 @@ def turned_to(table: Table, vectors: Sequence[Sequence[int]], axes: Sequence[Vec
             made.names[new] = f"{table.names[vector[0]].rpartition('.')[0]}'.{name}"
             for numbers, before in ((made.q, table.q), (made.v, table.v)):
                 numbers[new] = sum((x * before[old] for x, old in zip(axis, vector, strict=True)), ZERO)
-    return Reduced(made, expressions, steps=["the axes are turned to the vertical and the plane of the motion"])
+    return Reduced(
+        made, expressions, table.names, steps=["the axes are turned to the vertical and the plane of the motion"]
+    )
 
 
 def _normal(vectors: Sequence[Vector]) -> list[Ball] | None:

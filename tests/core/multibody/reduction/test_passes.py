@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import fields
+
+import numpy as np
+import pytest
 from flint import arb
 
 from core.balls import precision
 from core.multibody.algebra.polynomials import BITS, Poly, evaluated
+from core.multibody.answer import SceneSolution
+from core.multibody.language.scene import Scene
 from core.multibody.reduction.passes import reduced
+from core.multibody.solve import solve_scene
 from core.multibody.table.table import Row, Table
+from tests.core.multibody.relations.sources import catalogue
+from tests.core.multibody.worked_examples import read
 
 ONE, ZERO = arb(1), arb(0)
 
@@ -97,3 +107,47 @@ def test_the_table_itself_is_left_as_it_was() -> None:
     reduced(made, pinning=True)
     assert len(made.rows) == 1
     assert made.names == ["b.q0", "b.q1"]
+
+
+def stays(answer: SceneSolution, name: str) -> bool:
+    """Return whether a coordinate of a body has one value at all times of an answer."""
+    assert answer.trajectory is not None
+    body, _, part = name.partition(".")
+    if part == "angle":
+        values = np.asarray(answer.trajectory.columns[name].values)
+    elif part in ("x", "y", "z"):
+        values = np.asarray(answer.trajectory.columns[f"{body}.position"].values)[:, "xyz".index(part)]
+    else:
+        return True
+    return bool(np.all(np.abs(values - values[0]) <= 1e-12 * np.max(np.abs(values))))
+
+
+LANGUAGE = {entry.name for entry in fields(Scene)}
+STILL = (
+    *("asymmetric-top", "atwood-machine", "ball-in-bowl", "ball-on-ball-dropped", "blocks-on-incline"),
+    *("damped-oscillator", "disc-leaves-cylinder", "dumbbell-dropped-in-space", "four-legged-table", "massive-pulley"),
+    *("sphere-on-turntable", "swinging-atwood-machine", "weight-lands", "weight-under-table", "yo-yo"),
+)
+"""Worked scenes in which something is said never to move."""
+
+
+@pytest.mark.parametrize("name", STILL)
+def test_what_is_said_never_to_move_does_not(name: str) -> None:
+    scene = {key: value for key, value in catalogue()[name].items() if key in LANGUAGE}
+    answer = solve_scene(read(scene), np.linspace(0.0, 0.5, 9), ("trajectory",))
+    said = [text for text in answer.model.noticed if "constant throughout" in text or "nothing moves" in text]
+    assert said
+    for text in said:
+        names = re.findall(r"[\w-]+\.[\w.']+", text.partition("moves" if "moves" in text else ":")[2])
+        assert names
+        assert all(stays(answer, name) for name in names), text
+
+
+def test_a_wheel_in_oblique_space_is_said_to_stay_by_the_names_of_the_description() -> None:
+    body = {"mass": 1, "moments": [0.1, 0.2, 0.3], "at": [0, 0, 0], "places": {"p": [0.5, 0, 0]}}
+    body |= {"axes": [[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]]}
+    pin = {"kind": "pin", "a": "b.p", "b": [0.3, 0.4, 0]}
+    scene = {"gravity": [0, 0, -10], "bodies": {"b": body}, "connections": [pin]}
+    answer = solve_scene(read(scene), [0.5], ("trajectory",))
+    assert answer.model.name == "one period"
+    assert not any("'" in text for text in answer.model.noticed)
