@@ -127,7 +127,7 @@ def key_of(
 def figures_within(document: Any, path: Path = ()) -> Iterator[Path]:
     """Yield the paths of an answer's numbers, truth values, strings, nulls and small arrays, those inside of these too.
 
-    The signature and the warnings are no part of an answer's figures.
+    The signature and the warnings are no part of an answer's figures, nor are the bounds of their errors.
     """
     if hasattr(document, "_asdict"):
         document = document._asdict()
@@ -135,7 +135,7 @@ def figures_within(document: Any, path: Path = ()) -> Iterator[Path]:
         document = {name: getattr(document, name) for name in document.__dataclass_fields__}
     if isinstance(document, Mapping):
         for name, entry in document.items():
-            if path or name not in ("signature", "warnings"):
+            if name != "errors" and (path or name not in ("signature", "warnings")):
                 yield from figures_within(entry, (*path, name))
     elif isinstance(document, (list, tuple, np.ndarray)):
         array = _numbers(document)

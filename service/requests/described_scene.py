@@ -196,7 +196,9 @@ class DescribedSceneRequest(SceneDescription):
     """Bodies, what connects them, and what is requested of them."""
 
     times: Times | None = Field(
-        default=None, description="Measured from the given state, of either sign, in any order; none: no motion."
+        default=None,
+        description="Measured from the given state, of either sign, in any order; none: no motion. Doubles, also "
+        "where numbers of the description are decimals: 1000.1 stands for the double nearest to it, in the answer too.",
     )
     accuracy: Tolerance = Field(
         default=1e-9,
