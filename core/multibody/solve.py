@@ -13,7 +13,7 @@ from core.balls import precision
 from core.errors import InvalidParameter, SelfCheckFailed, SlackAtStart
 from core.multibody.algebra.doubles import error_in_doubles
 from core.multibody.algebra.polynomials import BITS
-from core.multibody.answer import SceneSolution
+from core.multibody.answer import PartErrors, PartModel, SceneSolution
 from core.multibody.audit.audit import audited
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
@@ -175,6 +175,9 @@ def _answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descr
     motions, outputs = found.whole.parts, request.outputs
     periods = [motion.period for _, motion in motions if motion.name != "rest"]
     single = periods[0] if len(periods) == 1 else None
+    if single is not None and system.ends_within(float(single)):
+        # What would repeat comes to an end, or its strings to another phase, before it does.
+        single, model = None, replace(model, apart=tuple(map(_without_period, model.apart)))
     answer = SceneSolution(
         model,
         accelerations_of(found.described, found.whole.acceleration) if "accelerations" in outputs else None,
@@ -189,6 +192,10 @@ def _answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descr
         *((None, None) if searched is None else searched),
     )
     return answer, system
+
+
+def _without_period(part: PartModel) -> PartModel:
+    return replace(part, period=None, precession=None, errors=PartErrors(None, None))
 
 
 def _has_phases(scene: Scene, request: SceneRequest) -> bool:

@@ -184,6 +184,17 @@ class DescribedSystem:
                 rows = rows[~beyond]
         return rows, tuple(sorted(events, key=lambda event: event.time))
 
+    def ends_within(self, time: float) -> bool:
+        """Return whether the motion ends before a time after the start, or whether it does is not known."""
+        watched = [limit for limit in self.whole.measures.limits if self._watches(limit)]
+        if not watched:
+            return False
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                return first_event(self.whole, watched, time) is not None
+        except MechanicsError:
+            return True
+
     def _watches(self, limit: Limit) -> bool:
         return limit.force is None or self.determined[limit.force]
 

@@ -398,3 +398,16 @@ SWINGING = {
     "p0": {"mass": 1, "at": ["sin(2)", "-cos(2)"]},
     "p1": {"mass": 1, "at": ["sin(2) + sin(2.5)", "-cos(2) - cos(2.5)"]},
 }
+
+
+@pytest.mark.parametrize(("square", "repeats"), [("1.9", True), ("2.1", False), ("4.9", False), ("5.1", True)])
+def test_a_swing_on_a_string_has_a_period_only_where_the_string_stays_taut(square: str, repeats: bool) -> None:
+    """From the bottom with v^2 between 2 g l and 5 g l the string becomes slack, whether or not times are requested."""
+    scene = {
+        "gravity": GRAVITY,
+        "bodies": {"bob": {"mass": 1, "at": [0, -1], "velocity": [f"sqrt({square}*9.81)", 0]}},
+        "connections": [{"kind": "string", "through": ["bob", [0, 0]]}],
+    }
+    found = solve_scene(read(scene))
+    assert (found.period is not None) is repeats
+    assert [part.period is not None for part in found.model.apart] == [repeats]
