@@ -16,6 +16,7 @@ import numpy as np
 from core.multibody.audit.bodies import Reader
 from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition
+from core.multibody.audit.joints import Rod
 from core.multibody.audit.laws import Pull
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement
 from core.multibody.audit.strings import Chain, Straight, String
@@ -26,7 +27,7 @@ _STENCIL = np.array([4.0, 3.0, 2.0, 1.0, -1.0, -2.0, -3.0, -4.0])
 _WEIGHTS = np.array([-1 / 280, 4 / 105, -1 / 5, 4 / 5, -4 / 5, 1 / 5, -4 / 105, 1 / 280])
 """Central difference of eighth order for a first derivative (B. Fornberg, Math. Comp. 51 (1988) 699, table 1)."""
 REACH = 2.0**-7
-"""Part of a length (m) and of a radian by which the outermost but three places of the stencil are moved: the truncated
+"""Part of the shortest length and of a radian by which the innermost places of the stencil are moved: the truncated
 term is some 1e-15 of the rates, and rounding some 1e-14."""
 
 
@@ -126,6 +127,10 @@ class Mechanism:
         self.one_sided = [entry for one in self.definitions for entry in _one_sided(one, placement, still, reader)]
         self.acting = [one for one in self.definitions if _acts(one)]
         self.chains = [one for one in self.definitions if isinstance(one, Chain)]
+        self.every_straight = [
+            part for one in self.definitions if isinstance(one, String) for run in one.runs for part in run.parts
+        ]
+        self.shortest_rod = min([1.0, *(one.length for one in self.definitions if isinstance(one, Rod))])
         self.pulls = [one for one in self.definitions if isinstance(one, Pull)]
         self.straights = [
             (run.name, part)
@@ -150,7 +155,7 @@ class Mechanism:
         n = coordinates.size
         velocity, spin = coordinates.spread(u)
         fastest = max(float(np.max(np.abs(velocity), initial=0.0)), float(np.max(np.abs(spin), initial=0.0)))
-        h = REACH / fastest if fastest > 0.0 else 1.0
+        h = REACH * self._shortest(state) / fastest if fastest > 0.0 else 1.0
         motions = np.concatenate([np.eye(n), np.zeros((1, n)), np.tile(u, (9, 1))])
         times = np.concatenate([np.zeros(n + 2), h * _STENCIL])
         placements = coordinates.placement(state, motions, times)
@@ -176,6 +181,14 @@ class Mechanism:
         driven = rates[n]
         lines = (rates[:n] - driven).T
         return Rows(lines, values, rates[n + 1], (_WEIGHTS @ rates[n + 2 :]) / h, driven)
+
+    def _shortest(self, state: State) -> float:
+        """Return the length (m) of the shortest rod or straight part, whose direction turns most for a move."""
+        found = self.shortest_rod
+        if self.every_straight:
+            placement = self.coordinates.placement(state)
+            found = min(found, *(float(np.real(_span(part, placement))) for part in self.every_straight))
+        return max(found, 1e-6)
 
     def loads(self, state: State) -> Floats:
         """Return the forces that places and rates alone give, shape (n,)."""

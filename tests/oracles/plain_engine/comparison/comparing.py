@@ -8,6 +8,7 @@ events, the motion is compared up to the first of them that differs.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -85,7 +86,7 @@ def compared(scene: Json, times: Sequence[float]) -> Verdict:
     try:
         solution = solve_scene(scene_from(scene), times, ("trajectory", "forces-in-time"))
     except MechanicsError as fault:
-        verdict.differences.append(Difference("refused", reason_of(fault), _events_shown(first), str(fault)))
+        verdict.differences.append(Difference("refused", reason_of(fault, scene), _events_shown(first), str(fault)))
         return verdict
     _compare(verdict, solution, first, moved, times)
     return verdict
@@ -95,14 +96,12 @@ LIMITS = ("no-motion", "several-motions", "no-impact", "several-impacts", "undet
 """What the plain engine, too, finds undecided at the start."""
 
 
-def reason_of(fault: Exception) -> str:
-    """Return a refusal without its numbers and names."""
-    text = getattr(fault, "detail", None) or str(fault)
-    return f"{type(fault).__name__}: {' '.join('#' if _has_digit(word) else word for word in str(text).split())}"[:160]
-
-
-def _has_digit(word: str) -> bool:
-    return any(c.isdigit() for c in word)
+def reason_of(fault: Exception, scene: Json) -> str:
+    """Return a refusal without its numbers and the names of the scene."""
+    names = {*scene["bodies"], *(one.get("name", "") for one in scene["connections"])}
+    words = re.sub(r'"[^"]*"', "#", str(getattr(fault, "detail", None) or fault)).replace(",", "").split()
+    kept = ["#" if word in names or re.search(r"\d", word) else word for word in words]
+    return f"{type(fault).__name__}: {re.sub('(# )+#', '#', ' '.join(kept))}"[:160]
 
 
 def _events_shown(motion: Motion) -> list[str]:
@@ -220,7 +219,9 @@ def _samples(verdict: Verdict, solution: SceneSolution, first: Motion, moved: Mo
             verdict.compared += 1
             if not float(np.max(np.abs(shown - value))) <= allowed:
                 what = "place" if name.rsplit(".", 1)[1] in ("position", "angle", "attitude") else "rate"
-                verdict.differences.append(Difference(what, name, [t, value.tolist(), allowed], shown.tolist()))
+                verdict.differences.append(
+                    Difference(what, name.rsplit(".", 1)[1], [t, name, value.tolist(), allowed], shown.tolist())
+                )
                 return
         forces, others = first.forces[t], moved.forces[t]
         largest = max([abs(x) for x in forces.values()] + [first.weight])
