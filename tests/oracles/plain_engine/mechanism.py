@@ -142,9 +142,9 @@ class Mechanism:
             if part.a.place.body is not None or part.b.place.body is not None
         ]
 
-    def spend(self) -> None:
-        """Count one evaluation of accelerations, and give up where there are too many."""
-        self.spent += 1
+    def spend(self, evaluations: int = 1) -> None:
+        """Count evaluations of accelerations, and give up where there are too many."""
+        self.spent += evaluations
         if self.spent > MOST_SPENT:
             raise NotSupported("more evaluations than one motion may take")
 

@@ -53,6 +53,10 @@ class Mode:
 OPEN, CLOSED, STICK = Mode(Kind.OPEN), Mode(Kind.CLOSED), Mode(Kind.STICK)
 
 
+PROGRAMME = 5
+"""Evaluations of accelerations that take as long as a linear programme."""
+
+
 class Inconsistent(Exception):
     """No accelerations go with these states."""
 
@@ -252,6 +256,8 @@ class Conditions:
             if cone is not None:
                 rub = float(np.linalg.norm(found.forces[cone])) / found.scale
                 self.determined["cone", i] = one.static * push - rub
+        if cones:
+            phase.mechanism.spend(PROGRAMME)
         self.share = best_share(found.forces / found.scale, found.free, cones) if cones else None
 
     @property
