@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from tests.oracles.plain_engine.comparison import units_in_plane, units_in_space
+from tests.oracles.plain_engine.comparison import units_in_plane, units_in_space, units_of_other_kinds
 from tests.oracles.plain_engine.comparison.drawing import Draw, Json, Unit
 
 ENDS = (0.3, 0.5, 0.8)
 """Last times asked for (s)."""
+OTHER = 10_000
+"""Seed from which on scenes are drawn from the units of other kinds, too."""
 APART = 5.0
 """How far units stand from one another (m)."""
 
@@ -21,6 +23,8 @@ def scene_of(seed: int) -> tuple[Json, list[float]]:
     draw = Draw(random, "", 0.0)
     space = draw.chance(0.3)
     kinds: Any = units_in_space.UNITS if space else units_in_plane.UNITS
+    if seed >= OTHER:
+        kinds = (*kinds, *(2 * (units_of_other_kinds.SPACE if space else units_of_other_kinds.PLANE)))
     first = draw.one(kinds)
     start = random.bit_generator.state
     units: list[Unit] = [first(Draw(random, "", 0.0))]
