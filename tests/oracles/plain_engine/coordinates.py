@@ -150,7 +150,7 @@ class Coordinates:
         if self.dimension == 3:
             _, spin = self.spread(state.rates)
             momentum = np.einsum("bij,bjk,blk,bl->bi", state.turn, self.inertias, state.turn, spin)
-            full[:, 3:] = -np.cross(spin, momentum)
+            full[:, 3:] = -(skew(spin) @ momentum[..., None])[..., 0]
         return full[self.alive]
 
     def weights(self, gravity: Floats) -> Floats:
@@ -182,16 +182,18 @@ class Coordinates:
             return np.concatenate([velocity.ravel(), spin, accelerations])
         q = vector[3 * b : 7 * b].reshape(b, 4)
         w, v = q[:, :1], q[:, 1:]
-        rate = 0.5 * np.concatenate([-(spin * v).sum(axis=1)[:, None], w * spin + np.cross(spin, v)], axis=1)
+        rate = 0.5 * np.concatenate(
+            [-(spin * v).sum(axis=1)[:, None], w * spin + (skew(spin) @ v[..., None])[..., 0]], axis=1
+        )
         return np.concatenate([velocity.ravel(), rate.ravel(), accelerations])
 
 
 def skew(v: Floats) -> Floats:
     """Return the matrices of vector products, shape (..., 3, 3)."""
-    zero = np.zeros(v.shape[:-1])
-    x, y, z = v[..., 0], v[..., 1], v[..., 2]
-    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    found = np.zeros((*v.shape, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[..., i, j], found[..., j, i] = -v[..., k], v[..., k]
+    return found
 
 
 def rotations_by(vector: Floats) -> Floats:
@@ -202,8 +204,11 @@ def rotations_by(vector: Floats) -> Floats:
 
 
 def _rotations(turn: Floats) -> Floats:
-    c, s = np.cos(turn), np.sin(turn)
-    return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+    found = np.empty((*turn.shape, 2, 2), dtype=turn.dtype)
+    found[..., 0, 0] = found[..., 1, 1] = np.cos(turn)
+    found[..., 1, 0] = np.sin(turn)
+    found[..., 0, 1] = -found[..., 1, 0]
+    return found
 
 
 def _matrices(q: Floats) -> Floats:

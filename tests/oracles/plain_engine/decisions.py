@@ -36,7 +36,6 @@ class Candidate:
 
     phase: Phase
     solution: Solution
-    sure: bool
 
 
 def time_scale(solution: Solution, state: State) -> float:
@@ -172,7 +171,7 @@ def _candidate(
     doubtful = [key for key, x in figures.items() if x <= NEARLY]
     if doubtful and not _lasts(phase, state, active, solution, doubtful, probe):
         return None
-    return Candidate(phase, solution, not doubtful)
+    return Candidate(phase, solution)
 
 
 def _lasts(

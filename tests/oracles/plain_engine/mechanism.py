@@ -20,7 +20,6 @@ from core.multibody.audit.joints import Rod
 from core.multibody.audit.laws import Pull
 from core.multibody.audit.placement import STEP, Motion, Numbers, Placement
 from core.multibody.audit.strings import Chain, Straight, String
-from core.multibody.language.scene import Scene
 from tests.oracles.plain_engine.coordinates import Coordinates, Floats, State
 
 _STENCIL = np.array([4.0, 3.0, 2.0, 1.0, -1.0, -2.0, -3.0, -4.0])
@@ -112,8 +111,7 @@ class Mechanism:
         For kinds without a definition.
     """
 
-    def __init__(self, scene: Scene, reader: Reader, definitions: Iterable[Definition]) -> None:
-        self.scene, self.reader = scene, reader
+    def __init__(self, reader: Reader, definitions: Iterable[Definition]) -> None:
         self.coordinates = Coordinates(reader)
         self.definitions = list(definitions)
         self.gravity = np.array(reader.gravity)
@@ -214,10 +212,6 @@ class Mechanism:
             line = self._gradient(state, lambda placement, chain=chain: chain.sides(placement)[0])  # type: ignore[misc]
             found = found + chain.density * chain.length * np.outer(line, line)
         return found
-
-    def gap(self, state: State, one: OneSided) -> float:
-        """Return a gap (m, rad)."""
-        return float(one.definition.gaps(self.coordinates.placement(state))[one.key])
 
     def gap_rates(self, state: State) -> tuple[Floats, Floats]:
         """Return all gaps and their rates, shape (k,) each."""

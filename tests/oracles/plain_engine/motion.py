@@ -84,7 +84,7 @@ def mechanism_of(scene: Scene) -> Mechanism:
     found = description_of(scene)
     if found.undefined:
         raise NotSupported("; ".join(sorted(set(found.undefined.values()))))
-    return Mechanism(scene, Reader(scene), found.connections)
+    return Mechanism(Reader(scene), found.connections)
 
 
 def follow(

@@ -107,9 +107,7 @@ class Phase:
         One for each one-sided measure.
     """
 
-    def __init__(
-        self, mechanism: Mechanism, modes: Sequence[Mode], references: dict[int, Floats] | None = None
-    ) -> None:
+    def __init__(self, mechanism: Mechanism, modes: Sequence[Mode]) -> None:
         self.mechanism, self.modes = mechanism, list(modes)
         every = mechanism.one_sided
         self.closed = [i for i, mode in enumerate(modes) if mode.kind is not Kind.OPEN]
@@ -119,7 +117,6 @@ class Phase:
         self.slips: list[OneSided] = [every[i] for i in (*self.sticking, *self.sliding)]
         # In space what slides turns the direction of its friction with it; from rest it begins along this one.
         self.along = {i: np.array(modes[i].along) for i in self.sliding}
-        self.along.update(references or {})
 
     def rows(self, state: State) -> tuple[Rows, dict[int, int], dict[int, slice], int]:
         """Return all rows, where the normal and the slip of each closed measure are, and how many rows hold."""
@@ -259,8 +256,3 @@ class Conditions:
         if cones:
             phase.mechanism.spend(PROGRAMME)
         self.share = best_share(found.forces / found.scale, found.free, cones) if cones else None
-
-    @property
-    def least(self) -> float:
-        """The least of all conditions."""
-        return min([*self.determined.values(), *(() if self.share is None else (self.share,))], default=1.0)
