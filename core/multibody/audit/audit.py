@@ -11,6 +11,7 @@ R. M. McConnell, K. Mehlhorn, S. Näher, P. Schweitzer, "Certifying algorithms",
 from __future__ import annotations
 
 from collections.abc import Callable
+from random import Random
 
 import numpy as np
 
@@ -21,7 +22,9 @@ from core.multibody.audit.definitions import Description, description_of
 from core.multibody.audit.energy import check_energy
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
 from core.multibody.audit.laws_at_samples import States, check_samples
+from core.multibody.audit.newton import Freedoms
 from core.multibody.audit.placement import Numbers
+from core.multibody.audit.repetition import check_period, period_of, times_of_period
 from core.multibody.audit.samples import Columns, Samples, samples_of
 from core.multibody.audit.start import check_start
 from core.multibody.audit.windows import NODES, check_window, nodes
@@ -67,9 +70,7 @@ def _was_rounded(answer: SceneSolution) -> bool:
 class _Audit:
     """One audit, with what its laws share."""
 
-    def __init__(
-        self, ledger: Ledger, description: Description, answer: SceneSolution, random: np.random.Generator
-    ) -> None:
+    def __init__(self, ledger: Ledger, description: Description, answer: SceneSolution, random: Random) -> None:
         self.ledger, self.description, self.answer, self.random = ledger, description, answer, random
         found = answer.trajectory
         self.samples: Samples | None = None
@@ -85,25 +86,28 @@ class _Audit:
     def run(self, sampler: Sampler) -> None:
         """Compare everything."""
         known = self._asked(sampler)
-        fastest = max(
-            (_fastest(one) for one in (self.samples, None if known is None else known[0]) if one), default=0.0
-        )
+        near = None if known is None else known[0].at(slice(0, 1 + len(known[1]) * NODES))
+        fastest = max((_fastest(one) for one in (self.samples, near) if one), default=0.0)
         complete = self.samples is not None and len(self.samples.forces) > 0
-        for one in (self.samples, None if known is None or complete else known[0]):
+        for one in (self.samples, None if complete else near):
             if one is not None:
                 states = states_of(self.description, self.answer, one.times)
                 check_samples(self.ledger, self.description, one, states, fastest)
-        if known is None:
+        if known is None or near is None:
             return
         extra, halves = known
-        start = extra.at(np.arange(1))
-        check_start(self.ledger, self.description, self.answer, start)
+        freedoms = Freedoms(self.description)
+        start = extra.at(slice(0, 1))
+        check_start(self.ledger, self.description, freedoms, self.answer, start)
         for number, half in enumerate(halves):
             first = 1 + number * NODES
-            check_window(self.ledger, self.description, extra.at(np.arange(first, first + NODES)), half)
+            check_window(self.ledger, self.description, freedoms, extra.at(slice(first, first + NODES)), half)
+        if self.own and period_of(self.answer) is not None:
+            later = extra.at(slice(1 + len(halves) * NODES, None))
+            check_period(self.ledger, self.description, self.answer, start, later)
         losses = _losses(self.description, self.answer)
         if losses is not None:
-            check_energy(self.ledger, self.description, self.samples or extra, start, losses)
+            check_energy(self.ledger, self.description, self.samples or near, start, losses)
 
     def _asked(self, sampler: Sampler) -> tuple[Samples, list[float]] | None:
         """Return samples of the motion at the start and in windows, with half of the width of each of these.
@@ -117,7 +121,9 @@ class _Audit:
             placed: list[tuple[float, float]] = []
             if self.own and self.end > self.begin:
                 placed = windows(self.random, self.answer, self.begin, self.end, quickness(self.description, rated))
-            asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed)])
+            period = period_of(self.answer) if self.own else None
+            repeated = [] if period is None else [times_of_period(period)]
+            asked = np.concatenate([np.zeros(1), *(nodes(*one) for one in placed), *repeated])
             return samples_of(self.description, asked, sampler(asked), slice(None)), [half for _, half in placed]
         except MechanicsError:
             return None

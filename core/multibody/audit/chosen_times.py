@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import log
+from random import Random
 from zlib import crc32
 
 import numpy as np
@@ -24,20 +26,19 @@ MOST_ROWS = 200
 """Rows of a long trajectory that are compared."""
 
 
-def generator(description: Description, times: Numbers) -> np.random.Generator:
+def generator(description: Description, times: Numbers) -> Random:
     """Return random numbers that depend on the question alone."""
     seed = crc32(np.ascontiguousarray(times).tobytes())
     for pose in description.start.values():
         seed = crc32(np.ascontiguousarray(pose.position).tobytes(), seed)
-    return np.random.default_rng(seed)
+    return Random(seed)
 
 
-def rows_of(random: np.random.Generator, count: int) -> Numbers:
+def rows_of(random: Random, count: int) -> Numbers:
     """Return which rows of an answer are compared: all, or the first, the last and a random subset."""
     if count <= MOST_ROWS:
         return np.arange(count)
-    inner = random.choice(np.arange(1, count - 1), MOST_ROWS - 2, replace=False)
-    return np.concatenate([[0], np.sort(inner), [count - 1]])
+    return np.array([0, *sorted(random.sample(range(1, count - 1), MOST_ROWS - 2)), count - 1])
 
 
 def quickness(description: Description, samples: Samples) -> float:
@@ -65,9 +66,7 @@ def quickness(description: Description, samples: Samples) -> float:
     return found
 
 
-def windows(
-    random: np.random.Generator, answer: SceneSolution, begin: float, end: float, rate: float
-) -> list[tuple[float, float]]:
+def windows(random: Random, answer: SceneSolution, begin: float, end: float, rate: float) -> list[tuple[float, float]]:
     """Return middles and half widths of windows within the motion that an answer samples, each in another phase."""
     parts = [(begin, end, 1.0)]
     if answer.phases is not None:
@@ -83,18 +82,18 @@ def windows(
     parts = [part for part in parts if part[1] > part[0]]
     if not parts:
         return []
-    weights = np.array([(last - first) * weight for first, last, weight in parts])
-    count = min(MOST_WINDOWS, len(parts))
-    chosen = random.choice(len(parts), count, replace=False, p=weights / weights.sum())
-    placed = [_window(random, *parts[int(k)][:2], rate) for k in chosen]
+    # Without replacement, with chances by length (P. S. Efraimidis, P. G. Spirakis, Inf. Process. Lett. 97, 2006).
+    keys = [log(1.0 - random.random()) / ((last - first) * weight) for first, last, weight in parts]
+    chosen = sorted(range(len(parts)), key=keys.__getitem__, reverse=True)[:MOST_WINDOWS]
+    placed = [_window(random, *parts[k][:2], rate) for k in chosen]
     return [one for one in placed if one is not None]
 
 
-def _window(random: np.random.Generator, first: float, last: float, rate: float) -> tuple[float, float] | None:
+def _window(random: Random, first: float, last: float, rate: float) -> tuple[float, float] | None:
     """Return middle and half width of a window between two times, None where it has no room."""
     # Phases are known to rounding: a window stays inside.
     room = (last - first) * (1.0 - 1e-6) / 2.0
     half = min(room, WIDTH / rate if rate > 0.0 else room)
-    middle = float(random.uniform(first + half * (1.0 + 1e-6), last - half * (1.0 + 1e-6)))
+    middle = random.uniform(first + half * (1.0 + 1e-6), last - half * (1.0 + 1e-6))
     # Times of doubles are too coarse where the window is next to nothing beside them.
     return (middle, half) if half > 2.0**-26 * max(abs(first), abs(last)) else None

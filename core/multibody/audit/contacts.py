@@ -11,7 +11,6 @@ import numpy as np
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.joints import AXES
 from core.multibody.audit.placement import (
-    Measure,
     Motion,
     Numbers,
     Place,
@@ -47,7 +46,7 @@ class Face:
     def slip(self, placement: Placement, motion: Motion, place: Place, radius: float) -> Numbers:
         """Return the rate of slip of a rim or ball around a place (m/s): along the face in the plane, else a vector."""
         n = self.normal_in(placement)
-        relative = rate(lambda where: place.at(where) - self.at.at(where), placement, motion)
+        relative = place.velocity(placement, motion) - self.at.velocity(placement, motion)
         spin = spin_of(motion, place.body) if radius else 0.0
         if n.shape[-1] == 2:
             # The points of a face move along it as one, so that its turning does not enter.
@@ -73,6 +72,15 @@ class Round:
         """Return the vector from the first centre to the second (m), shape (d,)."""
         return self.b.at(placement) - self.a.at(placement)
 
+    def departure(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return the rate of the vector between the centres (m/s), shape (d,)."""
+        return self.b.velocity(placement, motion) - self.a.velocity(placement, motion)
+
+    def gap_rate(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return the rate of `gap` (m/s)."""
+        found: Numbers = dot(self.between(placement), self.departure(placement, motion)) / self.reach
+        return found
+
     def gap(self, placement: Placement) -> Numbers:
         """Return (d^2 - r^2)/(2r) with d the distance and r the reach (m).
 
@@ -84,7 +92,7 @@ class Round:
     def slip(self, placement: Placement, motion: Motion) -> Numbers:
         """Return the rate of slip in the plane (m/s): of the second along the normal turned counter-clockwise."""
         d = self.between(placement)
-        along = dot(across(d) / self.reach, rate(self.between, placement, motion))
+        along = dot(across(d) / self.reach, self.departure(placement, motion))
         return along - sum(
             radius * spin_of(motion, place.body)
             for place, radius in zip((self.a, self.b), self.radii, strict=True)
@@ -171,7 +179,7 @@ class OnRound(Definition):
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
         slips = self.slips(placement, motion).values()
-        return {f"{self.name}.normal": rate(self.round.gap, placement, motion), **_rubbing(self.touch.friction, slips)}
+        return {f"{self.name}.normal": self.round.gap_rate(placement, motion), **_rubbing(self.touch.friction, slips)}
 
 
 def _rubbing(names: tuple[str, ...], slips: Iterable[Numbers]) -> Mapping[str, Numbers]:
@@ -295,7 +303,7 @@ class RollingOnRound(Definition):
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
         return {
-            f"{self.name}.normal": rate(self.round.gap, placement, motion),
+            f"{self.name}.normal": self.round.gap_rate(placement, motion),
             f"{self.name}.friction": self.round.slip(placement, motion),
         }
 
@@ -352,7 +360,7 @@ class RollingOnCylinder(Definition):
 
     def _slips(self, placement: Placement, motion: Motion) -> tuple[Numbers, Numbers]:
         n, a = self._away(placement) / (self.radius + self.cylinder), np.array(self.axis)
-        relative = rate(lambda where: self.place.at(where) - self.at.at(where), placement, motion)
+        relative = self.place.velocity(placement, motion) - self.at.velocity(placement, motion)
         slip = relative - self.radius * cross(np.asarray(spin_of(motion, self.place.body)), n)
         return dot(a, slip), dot(cross(a, n), slip)
 
@@ -396,5 +404,4 @@ class RollingOnBall(Definition):
         # The first is the ball, so that the normal from the surface is against the vector between the centres.
         n = -self.round.between(placement) / self.round.reach
         spin = np.asarray(spin_of(motion, self.round.a.body))
-        between: Measure = self.round.between
-        return -rate(between, placement, motion) - self.round.radii[0] * cross(spin, n)
+        return -self.round.departure(placement, motion) - self.round.radii[0] * cross(spin, n)

@@ -55,6 +55,12 @@ def carried_axes(pose: Pose | None) -> Numbers:
     return np.stack([carried(pose, tuple(row)) for row in np.eye(3).tolist()], axis=-1)
 
 
+def approach(a: Place, b: Place, placement: Placement, motion: Motion) -> Numbers:
+    """Return the rate of the distance of two places in a motion, which may be a virtual one (m/s)."""
+    d = b.at(placement) - a.at(placement)
+    return dot(d / length(d)[..., None], b.velocity(placement, motion) - a.velocity(placement, motion))
+
+
 @dataclass(frozen=True)
 class Coincidence(Definition):
     """A pin or a ball joint: two places coincide; the force is that on the first.
@@ -81,7 +87,7 @@ class Coincidence(Definition):
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
-        rates = rate(self.apart, placement, motion)
+        rates = self.a.velocity(placement, motion) - self.b.velocity(placement, motion)
         return {f"{self.name}.{axis}": rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
 
     def unanswered(self, placement: Placement, motion: Motion) -> tuple[Numbers, ...]:
@@ -124,7 +130,7 @@ class Rod(Definition):
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
-        return {f"{self.name}.force": -rate(self.distance, placement, motion)}
+        return {f"{self.name}.force": -approach(self.a, self.b, placement, motion)}
 
 
 @dataclass(frozen=True)
@@ -327,7 +333,7 @@ class OnParabola(Definition):
         """See `Definition.efforts`."""
         if self.vertex.body is not None:
             return {}
-        rates = rate(self.place.at, placement, motion)
+        rates = self.place.velocity(placement, motion)
         return {f"{self.name}.{axis}": rates[..., i] for i, axis in enumerate("xy")}
 
     def unanswered(self, placement: Placement, motion: Motion) -> tuple[Numbers, ...]:

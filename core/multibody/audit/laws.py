@@ -11,8 +11,8 @@ import numpy as np
 from core.multibody.audit.bodies import RigidBody
 from core.multibody.audit.contacts import turn_between
 from core.multibody.audit.definition import Definition
-from core.multibody.audit.joints import AXES
-from core.multibody.audit.placement import Motion, Numbers, Place, Placement, cross, dot, length, rate, spin_of
+from core.multibody.audit.joints import AXES, approach
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, cross, dot, length, spin_of
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Pull(Definition):
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
-        return {f"{self.name}.force": -rate(self.distance, placement, motion)}
+        return {f"{self.name}.force": -approach(self.a, self.b, placement, motion)}
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class SpringWithoutLength(Definition):
 
     def efforts(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.efforts`."""
-        rates = rate(self.between, placement, motion)
+        rates = self.b.velocity(placement, motion) - self.a.velocity(placement, motion)
         return {f"{self.name}.{axis}": -rates[..., i] for i, axis in zip(range(rates.shape[-1]), AXES, strict=False)}
 
     def laws(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
@@ -106,7 +106,7 @@ class Damper(Pull):
 
     def laws(self, placement: Placement, motion: Motion) -> Mapping[str, Numbers]:
         """See `Definition.laws`."""
-        return {f"{self.name}.force": self.coefficient * rate(self.distance, placement, motion)}
+        return {f"{self.name}.force": self.coefficient * approach(self.a, self.b, placement, motion)}
 
     def quickness(self, placement: Placement, masses: Mapping[str, float], least: float) -> float:
         """See `Definition.quickness`."""
@@ -235,7 +235,7 @@ class ConstantForce(Definition):
 
     def load(self, placement: Placement, motion: Motion, virtual: Motion) -> Numbers:
         """See `Definition.load`."""
-        return dot(rate(self.place.at, placement, virtual), np.array(self.force))
+        return dot(self.place.velocity(placement, virtual), np.array(self.force))
 
     def potential(self, placement: Placement) -> Numbers:
         """See `Definition.potential`."""

@@ -10,7 +10,7 @@ anything along the rates of what it holds: that part of the equations is taken o
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,9 +58,15 @@ class Freedoms:
             self.where[name] = (self.count, self.count + self.dimension if turns else -1)
             self.count += self.dimension + (spins if turns else 0)
         self.spins = spins
+        self._virtual: dict[tuple[str, ...], tuple[list[int], Motion]] = {}
 
-    def virtual(self, bodies: Collection[str]) -> tuple[list[int], Motion]:
+    def virtual(self, bodies: tuple[str, ...]) -> tuple[list[int], Motion]:
         """Return the components of some bodies, and the unit virtual motions along each; they are the first axis."""
+        if bodies not in self._virtual:
+            self._virtual[bodies] = self._made(bodies)
+        return self._virtual[bodies]
+
+    def _made(self, bodies: tuple[str, ...]) -> tuple[list[int], Motion]:
         numbers: list[int] = []
         for name in bodies:
             first, spin = self.where[name]
@@ -121,6 +127,7 @@ def balance(
     accelerations: Mapping[str, Acceleration],
     forces: Forces,
     force_errors: Mapping[str, float] | None = None,
+    freedoms: Freedoms | None = None,
 ) -> Balance:
     """Return what is left over of the equations of motion at some samples.
 
@@ -131,7 +138,7 @@ def balance(
     forces : mapping of str to ndarray, shape (samples,)
         Those of the answer. Those that it does not determine are left out, and projected out.
     """
-    freedoms = Freedoms(description)
+    freedoms = freedoms or Freedoms(description)
     samples = next(iter(placement.values())).position.shape[0]
     rest, size, unsure = (np.zeros((freedoms.count, samples)) for _ in range(3))
     for name, body in description.bodies.items():

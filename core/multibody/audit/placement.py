@@ -106,6 +106,19 @@ class Place:
         pose = placement[self.body]
         return pose.position + self.arm(pose) if any(self.offset) else pose.position
 
+    def velocity(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return its velocity in a motion, which may be a virtual one (m/s), shape (d,): v + w x r."""
+        twist = None if self.body is None else motion.get(self.body)
+        if twist is None:
+            return np.zeros(len(self.offset))
+        if twist.spin is None or not any(self.offset):
+            return twist.velocity
+        assert self.body is not None, "the ground does not move"
+        arm = self.arm(placement[self.body])
+        turning = twist.spin[..., None] * across(arm) if len(self.offset) == 2 else cross(twist.spin, arm)
+        found: Numbers = twist.velocity + turning
+        return found
+
     def arm(self, pose: Pose) -> Numbers:
         """Return the vector from the centre of mass to the place, shape (d,)."""
         return carried(pose, self.offset)

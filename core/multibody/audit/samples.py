@@ -55,8 +55,8 @@ class Samples:
         """How many axes the samples have: 1, or 2 where they are perturbed."""
         return max(pose.position.ndim for pose in self.placement.values()) - 1
 
-    def at(self, rows: Numbers) -> Samples:
-        """Return some of the samples, by a mask or their numbers."""
+    def at(self, rows: Numbers | slice) -> Samples:
+        """Return some of the samples, by a mask, their numbers or a slice."""
         placement = {
             name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn)))  # type: ignore[arg-type]
             for name, pose in self.placement.items()

@@ -22,7 +22,9 @@ HELD = 1e-7
 """Share of the terms to which an acceleration is known from that: the square of that time, and rounding over it."""
 
 
-def check_start(ledger: Ledger, description: Description, answer: SceneSolution, start: Samples) -> None:
+def check_start(
+    ledger: Ledger, description: Description, freedoms: Freedoms, answer: SceneSolution, start: Samples
+) -> None:
     """Compare what is answered about the start with the description and with the laws of motion.
 
     Parameters
@@ -40,7 +42,7 @@ def check_start(ledger: Ledger, description: Description, answer: SceneSolution,
             off = np.broadcast_to(of(description, start), (1,)) - stated
             ledger.compare(f"{name} energy at the start", "", start.times, off, size)
     if answer.accelerations and answer.forces is not None and spun and not description.undefined:
-        _check_balance(ledger, description, answer.accelerations, answer, start)
+        _check_balance(ledger, description, freedoms, answer.accelerations, answer, start)
 
 
 def _check_places(ledger: Ledger, description: Description, start: Samples) -> None:
@@ -68,6 +70,7 @@ def _check_places(ledger: Ledger, description: Description, start: Samples) -> N
 def _check_balance(
     ledger: Ledger,
     description: Description,
+    freedoms: Freedoms,
     given: Mapping[str, BodyAcceleration],
     answer: SceneSolution,
     start: Samples,
@@ -87,7 +90,7 @@ def _check_balance(
     _check_held(ledger, description, start, gains)
     forces = {name: np.array([one.value]) for name, one in answer.forces.items() if one.value is not None}
     try:
-        found = balance(description, start.placement, start.motion, accelerations, forces)
+        found = balance(description, start.placement, start.motion, accelerations, forces, freedoms=freedoms)
     except Undefined:
         return
     for connection in description.connections:
@@ -97,7 +100,6 @@ def _check_balance(
             ledger.compare(
                 "equation of the chain at the start", connection.name, start.times, rest, ledger.rounding * size
             )
-    freedoms = Freedoms(description)
     left = np.abs(found.left())
     allowed = found.allowed(np.zeros_like(left), ledger.rounding)
     worst = int(np.argmax(left[:, 0] - allowed[:, 0]))

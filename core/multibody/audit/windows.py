@@ -89,12 +89,11 @@ class Window:
         return Rate((self.differences @ flat).reshape(values.shape), self.weights * noise + left_out)
 
 
-def check_window(ledger: Ledger, description: Description, samples: Samples, half: float) -> None:
+def check_window(ledger: Ledger, description: Description, freedoms: Freedoms, samples: Samples, half: float) -> None:
     """Compare rates with velocities, and accelerations with forces, in a window."""
     window = Window(samples.times, half, ledger.rounding)
     accelerations: dict[str, Acceleration] = {}
     motion = dict(samples.motion)
-    freedoms = Freedoms(description)
     unsure = np.zeros((freedoms.count, NODES))
     for name, body in description.bodies.items():
         pose, twist, error = samples.placement[name], samples.motion[name], samples.errors[name]
@@ -120,7 +119,7 @@ def check_window(ledger: Ledger, description: Description, samples: Samples, hal
             _check_attitude(ledger, samples, name, window)
         accelerations[name] = Acceleration(gain.value, angular.value)
     try:
-        _balance(ledger, description, samples, motion, accelerations, unsure)
+        _balance(ledger, description, freedoms, samples, motion, accelerations, unsure)
     except Undefined:
         return
 
@@ -170,12 +169,15 @@ def _of_top(description: Description, samples: Samples, name: str, window: Windo
 def _balance(
     ledger: Ledger,
     description: Description,
+    freedoms: Freedoms,
     samples: Samples,
     motion: dict[str, Twist],
     accelerations: dict[str, Acceleration],
     unsure: Numbers,
 ) -> None:
-    found = balance(description, samples.placement, motion, accelerations, samples.forces, samples.force_errors)
+    found = balance(
+        description, samples.placement, motion, accelerations, samples.forces, samples.force_errors, freedoms
+    )
     left, allowed = np.abs(found.left()), found.allowed(unsure, ledger.rounding)
     if np.all(left <= allowed):
         ledger.checked += 1
@@ -185,7 +187,7 @@ def _balance(
     worst = np.argmax(left - allowed, axis=0)
     rows = np.arange(len(ratio))
     k = int(np.argmax(ratio))
-    where = Freedoms(description).where
+    where = freedoms.where
     name = max((name for name in where if where[name][0] <= worst[k]), key=lambda name: where[name][0])
     ledger.compare("Newton and Euler", name, samples.times, left[worst, rows], allowed[worst, rows])
 

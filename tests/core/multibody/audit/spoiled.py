@@ -184,6 +184,11 @@ def _with_energy(self: Audited, name: str) -> Audited:
     )
 
 
+def _with_period(self: Audited, factor: float) -> Audited:
+    period = self.answer.period
+    return self if period is None else replace(self, answer=replace(self.answer, period=factor * period))
+
+
 def _turned_faster(self: Audited) -> Audited:
     given = self.answer.accelerations
     assert given is not None
@@ -209,6 +214,10 @@ MOTIONS: dict[str, Callable[[Audited], Audited]] = {
     "a force at the start is off": lambda one: _with_figures(
         one, "forces", lambda x: x if x.value is None else replace(x, value=x.value + 1e-6)
     ),
+    "the period is twice as long": lambda one: _with_period(one, 2.0),
+    "the period is three times as long": lambda one: _with_period(one, 3.0),
+    "the period is half as long": lambda one: _with_period(one, 0.5),
+    "the period is off by a millionth": lambda one: _with_period(one, 1.0 + 1e-6),
     "the kinetic energy at the start is off": lambda one: _with_energy(one, "kinetic"),
     "the potential energy at the start is off": lambda one: _with_energy(one, "potential"),
 }

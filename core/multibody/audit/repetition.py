@@ -1,0 +1,88 @@
+"""The period of an answer: the state returns after it, and not after a half, a third or a fifth of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.multibody.answer import SceneSolution
+from core.multibody.audit.definitions import Description
+from core.multibody.audit.failure import Ledger
+from core.multibody.audit.placement import Numbers
+from core.multibody.audit.samples import Samples
+
+FRACTIONS = (1, 2, 3, 5)
+"""Parts of the period at which the state is compared with that of the start."""
+
+TOLD_APART = 1e3
+"""How many times larger than what is known of it a motion is at least of which parts of the period are compared."""
+
+
+def period_of(answer: SceneSolution) -> float | None:
+    """Return the period (s) after which all of the state repeats; None where there is none, or up to a turn alone."""
+    if answer.period is None or any(part.precession is not None for part in answer.model.apart):
+        return None
+    return answer.period
+
+
+def times_of_period(period: float) -> Numbers:
+    """Return the times at which the state is compared."""
+    return period / np.array(FRACTIONS)
+
+
+def check_period(
+    ledger: Ledger, description: Description, answer: SceneSolution, start: Samples, later: Samples
+) -> None:
+    """Compare the state after a period, and after parts of it, with that of the start.
+
+    Parameters
+    ----------
+    start, later : Samples
+        One sample, and those at the times of `times_of_period`.
+    """
+    period = period_of(answer)
+    assert period is not None, "the caller knows the period"
+    late = max(answer.period_error or 0.0, ledger.rounding * period)
+    away, allowed = _apart(description, start, later, late, ledger.rounding)
+    ledger.compare("the state returns after the period", "", later.times[:1], away[:1], allowed[:1])
+    if away.max() < TOLD_APART:
+        # The motion is hardly larger than what is known of it.
+        return
+    for k, part in enumerate(FRACTIONS[1:], start=1):
+        if away[k] <= allowed[k]:
+            # How far it should be away at least has no other measure than what can be told apart.
+            ledger.compare(
+                f"the state differs after 1/{part} of the period", "", later.times[k : k + 1], np.ones(1), 0.0
+            )
+
+
+def _apart(
+    description: Description, start: Samples, later: Samples, late: float, rounding: float
+) -> tuple[Numbers, Numbers]:
+    """Return how many times further apart than is allowed the states are in their worst quantity, and one."""
+    worst = np.zeros(later.times.shape)
+    for name in description.bodies:
+        error = later.errors[name]
+        first, then = start.placement[name], later.placement[name]
+        moving, moved = start.motion[name], later.motion[name]
+        speed = float(np.abs(moved.velocity).max())
+        spin = 0.0 if moved.spin is None else float(np.abs(moved.spin).max())
+        pairs: list[tuple[Numbers, Numbers, float]] = [
+            (first.position, then.position, error.position + late * speed),
+            (moving.velocity, moved.velocity, error.velocity + late * _gain(later, name)),
+        ]
+        if first.rotation is not None and then.rotation is not None:
+            pairs.append((first.rotation, then.rotation, error.attitude + late * spin))
+        if moving.spin is not None and moved.spin is not None:
+            pairs.append((moving.spin, moved.spin, error.spin + late * _gain(later, name) + late * spin * spin))
+        for one, other, known in pairs:
+            off = np.abs(other - one).reshape(len(later.times), -1).max(axis=1)
+            size = rounding * float(np.abs(other).max()) + 4.0 * known
+            worst = np.maximum(worst, off / size if size > 0.0 else np.where(off > 0.0, np.inf, 0.0))
+    return worst, np.ones(later.times.shape)
+
+
+def _gain(samples: Samples, name: str) -> float:
+    """Return a size of the acceleration of a body: a hundred times its speed in the time between samples (m/s^2)."""
+    speed = float(np.abs(samples.motion[name].velocity).max())
+    span = float(np.ptp(samples.times))
+    return speed * 100.0 / span if span > 0.0 else 0.0
