@@ -15,6 +15,7 @@ from core.errors import AccuracyUnreachable, NotApplicable
 from core.notices import Notice
 from core.rotation.attitude.free_attitude import FreeAttitude
 from core.rotation.free_rotation import FreeRotation
+from core.rotation.self_check import check_rotation
 from core.rotation.torque_free import TorqueFree
 from core.systems.budget import Budget
 from core.systems.methods import ClosedFormEvaluation
@@ -124,6 +125,8 @@ def sample_rotation(
         As `solve`, and if the bound of the attitude's closed form is larger than `accuracy`.
     NotApplicable
         For attitudes beside a method that is not the closed form.
+    SelfCheckFailed
+        If the samples break a conservation law beyond their stated errors.
     """
     system = TorqueFree(body, np.array(angular_velocity))
     wanted = wanted_outputs(outputs, attitude)
@@ -142,6 +145,17 @@ def sample_rotation(
         require_closed_form(method)
         free = FreeAttitude(exact, np.array(attitude or IDENTITY))
         turned = _attitude(free, times, accuracy, input_uncertainty, digits)
+    if budget is None or budget.audited:
+        stated = solved.accuracy
+        check_rotation(
+            system.tensor,
+            system.angular_velocity,
+            solved.time,
+            solved.state,
+            stated.error * (stated.largest_norm or 0.0),
+            None if turned is None else turned.quaternions,
+            0.0 if turned is None else turned.error,
+        )
     tilt = exact.middle_axis_tilt
     least = None if tilt is None else in_range("middle_axis_tilt", tilt.least, notices)
     return SampledRotation(
