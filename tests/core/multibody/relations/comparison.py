@@ -16,6 +16,8 @@ NOTHING = 2.0**-90
 """Share of the largest figure of a unit below which pairs of doubles hold nothing."""
 SAME_TIME = 1e-9
 """Share of a time within which events are at one instant, and their order means nothing."""
+COMPARED_BOUNCES = 8
+"""Bounces of one contact in a row that are compared: how many of those that accumulate are listed may differ."""
 SLIGHT = 1e-9
 """Share of the largest impulse of an answer below which impacts are not compared one by one."""
 
@@ -104,9 +106,15 @@ def _events(expected: View, found: View) -> list[Difference]:
 def _compared(events: list[Event], until: float) -> list[Event]:
     """Return the events before the motion ends in either answer, without the slightest impacts."""
     largest = max((abs(event.impulse) for event in events), default=0.0)
+    bounces: Counter[str] = Counter()
+    first: list[Event] = []
+    for event in events:
+        bounces[event.name] = bounces[event.name] + 1 if event.kind == "touch" else 0
+        if bounces[event.name] <= COMPARED_BOUNCES:
+            first.append(event)
     return [
         event
-        for event in events
+        for event in first
         if event.time < until * (1.0 - SAME_TIME) and not 0.0 < abs(event.impulse) <= SLIGHT * largest
     ]
 

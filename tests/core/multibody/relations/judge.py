@@ -121,7 +121,7 @@ def summary(results: Iterator[Found]) -> dict[str, Any]:
     kinds: dict[str, Counter[str]] = defaultdict(Counter)
     shown: dict[str, list[str]] = defaultdict(list)
     worst: dict[str, float] = defaultdict(float)
-    for scene, relation, found in results:
+    for scene, relation, found in _until_stopped(results):
         if found is None:
             continue
         tried[relation] += 1
@@ -147,6 +147,16 @@ def summary(results: Iterator[Found]) -> dict[str, Any]:
             for kind, counts in sorted(kinds.items())
         },
     }
+
+
+def _until_stopped(results: Iterator[Found]) -> Iterator[Found]:
+    """Yield results until the process is asked to end: what is found so far is written then."""
+    stopped: list[int] = []
+    signal.signal(signal.SIGTERM, lambda number, _: stopped.append(number))
+    for entry in results:
+        yield entry
+        if stopped:
+            return
 
 
 def main() -> None:
