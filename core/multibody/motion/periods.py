@@ -29,7 +29,7 @@ from core.multibody.motion.numerical import (
     FINE_TOLERANCE,
     Run,
 )
-from core.multibody.motion.returns import Passage, Section, added, distance, followed
+from core.multibody.motion.returns import PLACES, POWER, RATES, Passage, Section, added, distance, followed
 from core.multibody.motion.series_pairs import moved_pairs
 from core.multibody.table.table import Table
 
@@ -139,7 +139,10 @@ def repeating(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int])
     normal[free] = pull[free] / max(np.max(np.abs(pull)), 1e-300) if slow else v[free, 0]
     if not np.any(normal):
         return None
-    section = Section(normal, v if slow else q, slow, 1.0)
+    section = Section(normal, v if slow else q, RATES if slow else PLACES, 1.0)
+    if at_rest:
+        # Where it turns back its rate may be at right angles to that at the start.
+        section = Section((normal != 0.0).astype(np.float64), v, POWER, 1.0)
 
     def returned(passages: list[Passage]) -> bool:
         end, rate = passages[-1].q, passages[-1].v

@@ -11,7 +11,8 @@ import numpy as np
 
 from core.arrays import Floats
 from core.compiled import kernel
-from core.double_double import Pair, dd_add, dd_mul, dd_mul_d
+from core.double_double import dd_add, dd_mul, dd_mul_d
+from core.multibody.algebra.bernstein import FALLING, MOST_SEGMENTS, NEGATIVE, POSITIVE, RISING, decided, zero_between
 from core.multibody.algebra.pair_arrays import gathered, settled
 from core.multibody.equations.packed import Packed
 from core.multibody.motion.numerical import Run
@@ -21,26 +22,36 @@ from core.multibody.motion.series_pairs import advance_pairs, moved_pairs
 MOST_STEPS = 400
 """Steps within which a motion has to return to count as one that repeats."""
 
+PLACES, RATES, POWER = 0, 1, 2
+"""Functions of a section."""
+
 _CHUNK = 6
-_PARTS = 8
+_MOST_ZEROS = 64
+"""Of one step."""
+_ROUNDED = 2.0**-96
+"""Share of its terms that a function is wrong by: a thousand roundings of pairs."""
+_LEFT_OUT = 2.0**-6
+"""Share of the last coefficient but two that the powers left out are at most, as coefficients fall by eight."""
 
 
 @dataclass(frozen=True)
 class Section:
-    """Where a motion is looked for again: the zeros of normal . (q - origin), or of normal . (q' - origin).
+    """Where a motion is looked for again.
 
     Attributes
     ----------
     normal : ndarray, shape (n,)
     origin : ndarray, shape (n, 2)
-    of_rates : bool
+    kind : {PLACES, RATES, POWER}
+        The zeros of normal . (q - origin), of normal . (q' - origin), or of q' . q'' of the coordinates whose normal is
+        not zero. What turns back on its path does so at a simple zero of the last, wherever the path has turned to.
     sign : float
         Sign of the function just after the start.
     """
 
     normal: Floats
     origin: Floats
-    of_rates: bool
+    kind: int
     sign: float
 
 
@@ -66,7 +77,7 @@ def followed(
     starts: list[Floats] = []
     series: list[Floats] = []
     passages: list[Passage] = []
-    sign, zeros = section.sign, np.empty((_PARTS, 2))
+    sign, zeros = section.sign, np.empty((_MOST_ZEROS, 2))
     while len(series) * _CHUNK < MOST_STEPS:
         chunk_starts, chunk = np.empty((_CHUNK + 1, 2)), np.empty((_CHUNK, len(q), order + 1, 2))
         ended, count = advance_pairs(arrays, q, v, clock, 1e300, tolerance, chunk_starts, chunk)
@@ -74,7 +85,9 @@ def followed(
             return None
         for step in range(count):
             width = (chunk_starts[step + 1, 0] - chunk_starts[step, 0]) + chunk_starts[step + 1, 1]
-            found, sign = _zeros(chunk[step], width, section.origin, section.normal, section.of_rates, sign, zeros)
+            first = step == 0 and not starts
+            function = (section.origin, section.normal, section.kind)
+            found, sign = _zeros(chunk[step], width, *function, sign, first, zeros)
             for local in zeros[:found]:
                 end, rate = np.empty_like(q), np.empty_like(v)
                 moved_pairs(chunk[step], local[0], local[1], end, rate)
@@ -90,75 +103,107 @@ def followed(
 
 
 @kernel()
-def _along(series: Floats, origin: Floats, normal: Floats, of_rates: bool, curve: Floats) -> None:
-    """Fill in the section's function of the time within a step, a polynomial of shape (order + 1, 2)."""
+def _along(series: Floats, origin: Floats, normal: Floats, kind: int, curve: Floats, sizes: Floats) -> None:
+    """Fill in the section's function of the time within a step, pairs of shape (order + 1, 2), and its terms' sizes."""
     n, order = series.shape[0], series.shape[1] - 1
-    lowest = 1 if of_rates else 0
-    curve[:] = 0.0
+    lowest = 1 if kind == RATES else 0
+    for k in range(order + 1):
+        curve[k, 0], curve[k, 1], sizes[k] = 0.0, 0.0, 0.0
+    if kind == POWER:
+        for i in range(n):
+            if normal[i] == 0.0:
+                continue
+            for k in range(order - 1):
+                sh, sl, size = curve[k, 0], curve[k, 1], 0.0
+                for a in range(k + 1):
+                    # (a + 1) q_{a+1} (b + 1) (b + 2) q_{b+2}
+                    b = k - a
+                    factor = (a + 1.0) * (b + 1.0) * (b + 2.0)
+                    rh, rl = dd_mul_d(series[i, a + 1, 0], series[i, a + 1, 1], factor)
+                    ph, pl = dd_mul(rh, rl, series[i, b + 2, 0], series[i, b + 2, 1])
+                    sh, sl = dd_add(sh, sl, ph, pl)
+                    size += abs(ph)
+                curve[k, 0], curve[k, 1] = sh, sl
+                sizes[k] += size
+        return
     for k in range(lowest, order + 1):
-        sh, sl = 0.0, 0.0
+        sh, sl, size = 0.0, 0.0, 0.0
         for i in range(n):
             ch, cl = series[i, k, 0], series[i, k, 1]
+            size += abs(ch * normal[i])
             if k == lowest:
                 ch, cl = dd_add(ch, cl, -origin[i, 0], -origin[i, 1])
             sh, sl = gathered(sh, sl, ch, cl, normal[i], 0.0)
         sh, sl = settled(sh, sl)
-        if of_rates:
+        if kind == RATES:
             sh, sl = dd_mul_d(sh, sl, float(k))
-        curve[k - lowest, 0], curve[k - lowest, 1] = sh, sl
-
-
-@kernel()
-def _value(curve: Floats, hh: float, hl: float) -> Pair:
-    sh, sl = 0.0, 0.0
-    for k in range(curve.shape[0] - 1, 0, -1):
-        sh, sl = dd_add(sh, sl, curve[k, 0], curve[k, 1])
-        sh, sl = dd_mul(sh, sl, hh, hl)
-    return dd_add(sh, sl, curve[0, 0], curve[0, 1])
-
-
-@kernel()
-def _slope(curve: Floats, time: float) -> float:
-    slope = 0.0
-    for k in range(curve.shape[0] - 1, 0, -1):
-        slope = slope * time + k * curve[k, 0]
-    return slope
-
-
-@kernel()
-def _root(curve: Floats, low: float, high: float, before: float) -> Pair:
-    """Return a zero between two times: bisection in doubles, then Newton's method in pairs."""
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        if _value(curve, middle, 0.0)[0] * before > 0.0:
-            low = middle
-        else:
-            high = middle
-    th, tl = 0.5 * (low + high), 0.0
-    slope = _slope(curve, th)
-    if slope != 0.0:
-        for _ in range(4):
-            left, tail = _value(curve, th, tl)
-            th, tl = dd_add(th, tl, -left / slope, -tail / slope)
-    return th, tl
+            size *= k
+        curve[k - lowest, 0], curve[k - lowest, 1], sizes[k - lowest] = sh, sl, size
 
 
 @kernel()
 def _zeros(
-    series: Floats, width: float, origin: Floats, normal: Floats, of_rates: bool, sign: float, times: Floats
+    series: Floats, width: float, origin: Floats, normal: Floats, kind: int, sign: float, start: bool, times: Floats
 ) -> tuple[int, float]:
-    """Fill in the zeros in a step as pairs, shape (parts, 2); return how many they are, and the sign at its end."""
-    curve = np.empty((series.shape[1], 2))
-    _along(series, origin, normal, of_rates, curve)
-    count, last, parts = 0, 0.0, times.shape[0]
-    for part in range(1, parts + 1):
-        time = width * part / parts
-        value = _value(curve, time, 0.0)[0]
-        if sign * value < 0.0:
-            times[count, 0], times[count, 1] = _root(curve, last, time, sign)
+    """Fill in where the sign changes in a step, as pairs of shape (zeros, 2); return how often, and the last sign.
+
+    At the start of the motion the function is zero by construction, which counts for none.
+    """
+    order = series.shape[1] - 1
+    curve, sizes = np.empty((order + 1, 2)), np.empty(order + 1)
+    _along(series, origin, normal, kind, curve, sizes)
+    # Powers of two change no digit of a pair.
+    length, factor = 2.0 ** math.ceil(math.log2(width)), 1.0
+    for k in range(order + 1):
+        curve[k, 0], curve[k, 1], sizes[k] = curve[k, 0] * factor, curve[k, 1] * factor, sizes[k] * factor
+        factor *= length
+    for k in range(order - 1, -1, -1):
+        # What is even in time has odd powers of rounding alone.
+        sizes[k] = max(sizes[k], sizes[k + 1])
+    shift = 0
+    if start:
+        while shift <= order and abs(curve[shift, 0]) <= _ROUNDED * sizes[shift]:
+            shift += 1
+        if shift > order:
+            return 0, sign
+        for k in range(order + 1):
+            inside = k + shift <= order
+            curve[k, 0] = curve[k + shift, 0] if inside else 0.0
+            curve[k, 1] = curve[k + shift, 1] if inside else 0.0
+            sizes[k] = sizes[k + shift] if inside else 0.0
+    left_out = max(sizes[order - shift], sizes[max(order - shift - 2, 0)] * _LEFT_OUT)
+    band = sizes * _ROUNDED
+    ends, signs = np.empty(MOST_SEGMENTS), np.empty(MOST_SEGMENTS, dtype=np.int64)
+    segments = decided(curve, band, left_out, order + 1 - shift, width / length, ends, signs, False)
+    count, low, since = 0, 0.0, 0.0
+    for segment in range(segments):
+        end, what = ends[segment], signs[segment]
+        crosses = what in (FALLING, RISING)
+        before = sign
+        if low * length >= width:
+            break
+        if what in (POSITIVE, FALLING):
+            before = 1.0
+        elif what in (NEGATIVE, RISING):
+            before = -1.0
+        if before != sign and count < len(times):
+            # It changed where it is too small to be told from zero.
+            times[count, 0], times[count, 1] = 0.5 * (since + low), 0.0
             count += 1
-        if value != 0.0:
-            sign, last = math.copysign(1.0, value), time
+        sign = before
+        if crosses:
+            zh, zl = zero_between(curve, low, end)
+            if zh * length > width:
+                break
+            if count < len(times):
+                times[count, 0], times[count, 1] = zh, zl
+                count += 1
+            sign = -sign
+        low = end
+        if what in (POSITIVE, NEGATIVE) or crosses:
+            since = end
+    for k in range(count):
+        times[k, 0], times[k, 1] = dd_mul_d(times[k, 0], times[k, 1], length)
     return count, sign
 
 

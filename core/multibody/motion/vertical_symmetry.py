@@ -20,7 +20,7 @@ from core.multibody.equations.packed import packed, pair, state, two_to, units_o
 from core.multibody.motion.motion import States
 from core.multibody.motion.numerical import CHECK_ORDER, CHECK_TOLERANCE, FINE_ORDER, FINE_TOLERANCE
 from core.multibody.motion.periods import UNCERTAIN, Periodic
-from core.multibody.motion.returns import Passage, Section, distance, followed
+from core.multibody.motion.returns import RATES, Passage, Section, distance, followed
 from core.multibody.table.table import Table
 
 
@@ -146,7 +146,7 @@ def precessing(table: Table, acceleration: Sequence[Ball], chosen: Sequence[int]
     # The height turns back at an extreme, and there again a period later.
     resting = is_zero(z_rate)
     sign = math.copysign(1.0, float(z_gain if resting else z_rate))
-    section = Section(np.array([0.0, 0.0, 1.0]), np.zeros((3, 2)), True, sign)
+    section = Section(np.array([0.0, 0.0, 1.0]), np.zeros((3, 2)), RATES, sign)
     count = 2 if resting else 3
 
     def returned(passages: list[Passage]) -> bool:

@@ -171,11 +171,14 @@ class Whole:
                 z[:, list(indices)], w[:, list(indices)] = own
         return z, w
 
-    def in_doubles(self, times: Floats) -> tuple[Floats, Floats, bool]:
-        """Return the states as `in_pairs`, or faster to a few roundings of doubles, and whether it is the latter."""
+    @property
+    def is_faster_in_doubles(self) -> bool:
+        """Whether a part has a closed form that is evaluated faster in doubles."""
+        return bool(self._evaluated_in_doubles)
+
+    def reduced_in_doubles(self, times: Floats, kind: str = "fine") -> tuple[Floats, Floats]:
+        """Return the states as `reduced_in_pairs`, where that is faster to a few roundings of doubles."""
         found = {k: motion.in_doubles(times) for k, motion in self._evaluated_in_doubles}
-        if all(one is None for one in found.values()):
-            return *self.in_pairs(times), False
         shape = (len(times), len(self.reduced.table.names), 2)
         z, w = np.zeros(shape), np.zeros(shape)
         for k, (indices, motion) in enumerate(self.parts):
@@ -183,12 +186,11 @@ class Whole:
             if fast is not None:
                 z[:, where, 0], w[:, where, 0] = fast
             elif isinstance(motion, Numerical):
-                z[:, where], w[:, where] = motion.by("fine", times)
+                z[:, where], w[:, where] = motion.by(kind, times)
             else:
                 states = motion.states(times)
                 z[:, where], w[:, where] = states.q, states.v
-        slopes, offsets = self.affine
-        return spread(slopes, offsets, z), spread(slopes, np.zeros_like(offsets), w), True
+        return z, w
 
     def places(self, times: Floats) -> Floats:
         """Return every coordinate at times of one sign, shape (t, n), to a few roundings of the answer's."""

@@ -35,7 +35,7 @@ class ExpandedInBalls:
         table = self.whole.measures.table
         group = np.array([GROUPS[unit] for unit in table.units], dtype=np.int64)
         n, rows = len(table.names), len(table.rows)
-        lengths = np.zeros(len(times))
+        lengths, natural = np.zeros(len(times)), np.zeros(len(times))
         places, multipliers = np.zeros((len(times), n, ORDER + 1, 2)), np.zeros((len(times), rows, COEFFICIENTS, 2))
         sizes, others = np.zeros(places.shape[:-1]), np.zeros(multipliers.shape[:-1])
         q, v = self.whole.in_pairs(times, self.kind)
@@ -43,7 +43,7 @@ class ExpandedInBalls:
             places_now, rates_now = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
             motion = expansion(replace(table, q=places_now, v=rates_now), ORDER)
             step = step_size(np.array([[float(x) for x in series] for series in motion.places]), group, TOLERANCE)
-            exponent = math.ceil(math.log2(reach[s]))
+            natural[s], exponent = step, math.ceil(math.log2(reach[s]))
             if step < reach[s]:
                 exponent = math.floor(math.log2(step))
             lengths[s] = two_to(exponent)
@@ -54,7 +54,7 @@ class ExpandedInBalls:
             for i in range(n):
                 sizes[s, i] = _falling(np.max(np.abs(places[s, group == group[i], :, 0]), axis=0))
             others[s] = _falling(np.max(np.abs(multipliers[s, :, :, 0]), axis=0, initial=0.0))
-        return Pieces(lengths, places, sizes, multipliers, others)
+        return Pieces(lengths, natural, places, sizes, multipliers, others)
 
 
 def _falling(sizes: Floats) -> Floats:

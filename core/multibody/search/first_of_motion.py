@@ -42,15 +42,25 @@ class Watched:
 
 @dataclass(frozen=True)
 class Expansions:
-    """Computations of one motion: of its coordinates and rates, and of these with its multipliers."""
+    """Computations of one motion: of its coordinates and rates, and of these with its multipliers.
+
+    Attributes
+    ----------
+    places, forces : sequence of Expanded
+    coarse : two sequences of Expanded
+        The same to a few roundings of doubles, where that is faster.
+    """
 
     places: Sequence[Expanded]
     forces: Sequence[Expanded]
+    coarse: tuple[Sequence[Expanded], Sequence[Expanded]] = ((), ())
 
     @classmethod
     def of(cls, runs: Sequence[tuple[Whole, str]]) -> Expansions:
         """Return those of a whole motion, by some of its runs."""
-        return cls([ExpandedPlaces(*run) for run in runs], [ExpandedWhole(*run) for run in runs])
+        fast = runs if any(whole.is_faster_in_doubles for whole, _ in runs) else []
+        coarse = [ExpandedPlaces(*run, coarse=True) for run in fast], [ExpandedWhole(*run, coarse=True) for run in fast]
+        return cls([ExpandedPlaces(*run) for run in runs], [ExpandedWhole(*run) for run in runs], coarse)
 
     def by(self, watched: Watched) -> Sequence[Expanded]:
         """Return those that know a quantity."""
@@ -71,8 +81,10 @@ class FirstOfMotion:
     def __init__(self, expansions: Expansions, watched: Sequence[Watched], way: float = 1.0) -> None:
         self._numbers = [[i for i, one in enumerate(watched) if one.of_forces == forces] for forces in (False, True)]
         self._searches = [
-            FirstZero(motions, [watched[i].along for i in numbers], [watched[i].jumps for i in numbers], way)
-            for motions, numbers in zip((expansions.places, expansions.forces), self._numbers, strict=True)
+            FirstZero(motions, [watched[i].along for i in numbers], [watched[i].jumps for i in numbers], way, coarse)
+            for motions, coarse, numbers in zip(
+                (expansions.places, expansions.forces), expansions.coarse, self._numbers, strict=True
+            )
         ]
         self._watched = watched
 

@@ -9,13 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from core.arrays import Floats, Integers
 from core.errors import AccuracyUnreachable, BudgetExceeded
-from core.multibody.search.bernstein import MOST_SEGMENTS, Sign, decided_each, zero_between
+from core.multibody.algebra.bernstein import (
+    FALLING,
+    MOST_SEGMENTS,
+    NEGATIVE,
+    OPEN,
+    POSITIVE,
+    RISING,
+    UNDECIDED,
+    decided_each,
+    zero_between,
+)
 from core.multibody.search.curves import Curve
 from core.multibody.search.pieces import Expanded, Pieces
 
@@ -30,12 +40,13 @@ MOST_PIECES = 60_000
 """Pieces that one search may take."""
 _AT_ONCE = 256
 """Pieces that are expanded at once at most: twice as many each time, as what follows an event is expanded in vain."""
-_LONGER = 4.0
+_COARSE = 2.0**-40
+"""Share of the terms that a quantity is wrong by at most in doubles: thousands of roundings."""
+_USUAL = 0.1
+"""Share of pieces that is shorter than expected: what is left of these is expanded one by one."""
 _CLOSER = 2.0**-4
 """Share of a piece in which it is expanded anew: what is left out then is 2^-84 of what it was."""
-_BELOW = (int(Sign.FALLING), int(Sign.NEGATIVE))
-_NEGATIVE, _UNDECIDED, _POSITIVE = int(Sign.NEGATIVE), int(Sign.UNDECIDED), int(Sign.POSITIVE)
-_FALLING, _RISING, _OPEN = int(Sign.FALLING), int(Sign.RISING), int(Sign.OPEN)
+_BELOW = (FALLING, NEGATIVE)
 _LEFT_OUT = 2.0
 """Sum of what is left out, as a multiple of the last coefficients: they fall by two or more."""
 
@@ -78,6 +89,8 @@ class _Batch:
     Attributes
     ----------
     lengths : ndarray, shape (p,)
+    usual : float
+        How long most of them could be at least.
     plain : ndarray of bool, shape (p,)
         Where everything is above zero.
     of : dict of int to _Signs
@@ -85,18 +98,26 @@ class _Batch:
     """
 
     lengths: Floats
+    usual: float
     plain: np.ndarray
     of: dict[int, _Signs]
 
 
 @dataclass
 class _Interval:
-    """Part of the time that is still to be searched, and, once expanded, its piece."""
+    """Part of the time that is still to be searched, and, once expanded, its piece.
+
+    Attributes
+    ----------
+    closely : bool
+        Whether doubles do not do.
+    """
 
     start: float
     reach: float
     batch: _Batch | None = None
     number: int = 0
+    closely: bool = False
 
 
 @dataclass
@@ -109,6 +130,8 @@ class _Watched:
         Whether it has been above zero.
     since : float or None
         From when on it has been undecided.
+    largest : ndarray
+        Sizes of its terms so far, by powers: what has become small is known no better in doubles.
     """
 
     quantity: Quantity
@@ -116,6 +139,7 @@ class _Watched:
     index: int
     above: bool = True
     since: float | None = None
+    largest: Floats = field(default_factory=lambda: np.zeros(1))
 
 
 class FirstZero:
@@ -131,6 +155,8 @@ class FirstZero:
         same to within its error.
     way : float
         -1 for the time before zero.
+    coarse : sequence of Expanded
+        The same computations in doubles, if they are faster: for where everything is far from zero.
 
     Attributes
     ----------
@@ -139,9 +165,14 @@ class FirstZero:
     """
 
     def __init__(
-        self, motions: Sequence[Expanded], quantities: Sequence[Quantity], jumps: Sequence[bool], way: float = 1.0
+        self,
+        motions: Sequence[Expanded],
+        quantities: Sequence[Quantity],
+        jumps: Sequence[bool],
+        way: float = 1.0,
+        coarse: Sequence[Expanded] = (),
     ) -> None:
-        self.motions, self.way = motions, way
+        self.motions, self.way, self.coarse = motions, way, coarse
         self.watched = [_Watched(*both, i) for i, both in enumerate(zip(quantities, jumps, strict=True))]
         self._left: list[_Interval] = []
         self._reached = 0.0
@@ -169,6 +200,7 @@ class FirstZero:
         while self._left and self.watched:
             if self._left[-1].batch is None:
                 self._expand()
+                continue
             found = self._searched(self._left.pop())
             if found is not None:
                 return found
@@ -177,17 +209,21 @@ class FirstZero:
     def _expand(self) -> None:
         """Expand the next intervals, those that are longer than pieces have been in parts."""
         ahead: list[_Interval] = []
+        closely = self._left[-1].closely or not self.coarse
         # What is zero at the start is divided out of the first piece alone.
         most = 1 if self._left[-1].start == 0.0 else self._at_once
+        closely = closely or self._left[-1].start == 0.0
         while self._left and len(ahead) < most and self._left[-1].batch is None:
+            if ahead and self._left[-1].closely != ahead[0].closely:
+                break
             one = self._left.pop()
             longest = self._last if self._last > 0.0 else one.reach
             while len(ahead) < most and one.reach > longest:
                 following = _later(one.start, longest)
                 if not following > one.start:
                     break
-                ahead.append(_Interval(one.start, longest))
-                one = _Interval(following, one.reach - (following - one.start))
+                ahead.append(_Interval(one.start, longest, closely=one.closely))
+                one = _Interval(following, one.reach - (following - one.start), closely=one.closely)
             if len(ahead) < most:
                 ahead.append(one)
             else:
@@ -198,28 +234,32 @@ class FirstZero:
             what = "pieces of the motion that are searched"
             raise BudgetExceeded(what, needed, MOST_PIECES, path=("times",), remedy="ask for a shorter time")
         self._at_once = min(2 * self._at_once, _AT_ONCE)
-        batch = self._batch([one.start for one in ahead], [one.reach for one in ahead])
+        batch = self._batch(ahead, closely=closely)
         for number, one in enumerate(ahead):
-            one.batch, one.number = batch, number
-        # What is shorter than it might be, beside something that was looked at closely, is followed by longer pieces.
-        limited = batch.lengths[-1] >= ahead[-1].reach
-        self._last = float(batch.lengths[-1]) * (_LONGER if limited else 1.0)
+            if closely or batch.plain[number]:
+                one.batch, one.number = batch, number
+            else:
+                one.closely = True
+        self._last = batch.usual
         self._left.extend(reversed(ahead))
 
-    def _batch(self, starts: Sequence[float], reach: Sequence[float]) -> _Batch:
+    def _batch(self, ahead: Sequence[_Interval], *, closely: bool) -> _Batch:
         """Return pieces, and what every quantity does on them."""
-        times, until = np.array(starts), np.array(reach)
-        pieces = [motion(self.way * times, self.way * until) for motion in self.motions]
+        times, until = np.array([one.start for one in ahead]), np.array([one.reach for one in ahead])
+        pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
         lengths = np.abs(pieces[0].lengths)
         share = np.minimum(until / lengths, 1.0)
         plain, of = np.ones(len(times), dtype=bool), {}
         remaining = []
         for watch in self.watched:
-            values, band, left_out = _with_band(watch.quantity, pieces)
+            values, sizes, band, left_out = _with_band(watch.quantity, pieces)
+            if not closely:
+                watch.largest = np.maximum(watch.largest, np.max(sizes, axis=0))
+                band = band + _COARSE * (sizes + watch.largest)
             if not (np.isfinite(values).all() and np.isfinite(band).all()):
                 raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))
             power = values.shape[1]
-            if starts[0] == 0.0:
+            if times[0] == 0.0:
                 values, band, power = self._divided(watch, values, band)
                 if not power:
                     continue
@@ -227,10 +267,10 @@ class FirstZero:
             counts = np.empty(len(times), dtype=np.int64)
             ends, signs = np.empty((len(times), MOST_SEGMENTS)), np.empty((len(times), MOST_SEGMENTS), dtype=np.int64)
             decided_each(values, band, left_out, power, share, watch.above, counts, ends, signs)
-            plain &= (counts == 1) & (signs[:, 0] == Sign.POSITIVE)
+            plain &= (counts == 1) & (signs[:, 0] == POSITIVE)
             of[watch.index] = _Signs(values, counts, ends, signs)
         self.watched = remaining
-        return _Batch(lengths, plain, of)
+        return _Batch(lengths, _usual(pieces[0].natural, lengths), plain, of)
 
     def _divided(self, watch: _Watched, values: Floats, band: Floats) -> tuple[Floats, Floats, int]:
         """Return the only piece of a quantity at time zero, with what is zero there, as far as is known, divided out.
@@ -263,9 +303,9 @@ class FirstZero:
             own = batch.of[watch.index]
             start = 0.0
             for end, sign in _segments(own, number):
-                if sign == _OPEN:
+                if sign == OPEN:
                     open_from = min(open_from, start)
-                if sign == _OPEN or (watch.above and sign in _BELOW):
+                if sign == OPEN or (watch.above and sign in _BELOW):
                     break
                 start = end
         until = min(open_from, share)
@@ -286,7 +326,7 @@ class FirstZero:
             if start < following < end:
                 self._left.append(_Interval(following, end - following))
             # Where there is no double between two times the rest follows from the same start.
-            self._left.append(_Interval(start, closer))
+            self._left.append(_Interval(start, closer, closely=True))
         elif one.reach > length:
             start = _later(one.start, length)
             if start < end:
@@ -301,22 +341,22 @@ class FirstZero:
             if start >= until:
                 break
             here = one.start + start * length
-            if sign == _UNDECIDED:
+            if sign == UNDECIDED:
                 watch.since = here if watch.since is None else watch.since
             elif watch.since is not None:
                 since, watch.since = watch.since, None
                 if watch.above:
                     middle, width = 0.5 * (since + here), 0.5 * (here - since)
-                    if sign in (_NEGATIVE, _RISING):
+                    if sign in (NEGATIVE, RISING):
                         return Found(watch.index, self.way * middle, 0.0)
                     if watch.jumps:
                         return Found(watch.index, self.way * middle, 0.0, max(width, 2.0**-52 * middle))
-            if watch.above and sign == _FALLING:
+            if watch.above and sign == FALLING:
                 share, tail = zero_between(own.curves[one.number], start, min(end, 1.0))
                 return self._at(one.start, length, watch, share, tail)
-            if watch.above and sign == _NEGATIVE:
+            if watch.above and sign == NEGATIVE:
                 return self._at(one.start, length, watch, start, 0.0)
-            if sign == _POSITIVE:
+            if sign == POSITIVE:
                 watch.above = True
             start = end
         return None
@@ -334,8 +374,8 @@ def _segments(own: _Signs, number: int) -> list[tuple[float, int]]:
     return list(zip(own.ends[number, :count].tolist(), own.signs[number, :count].tolist(), strict=True))
 
 
-def _with_band(quantity: Quantity, pieces: Sequence[Pieces]) -> tuple[Floats, Floats, Floats]:
-    """Return the coefficients of a quantity on some pieces, their errors, and what is left out.
+def _with_band(quantity: Quantity, pieces: Sequence[Pieces]) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return the coefficients of a quantity on some pieces, the sizes of their terms, their errors, what is left out.
 
     The errors are rounding, and the difference of two computations of the motion.
     """
@@ -347,7 +387,15 @@ def _with_band(quantity: Quantity, pieces: Sequence[Pieces]) -> tuple[Floats, Fl
         ratio = (pieces[0].lengths / other.lengths)[:, None] ** np.arange(curve.shape[1])
         apart = (own.values[..., 0] - ratio * curve[..., 0]) + (own.values[..., 1] - ratio * curve[..., 1])
         band = band + SAFETY_FACTOR * np.abs(apart)
-    return own.values, band, _LEFT_OUT * np.max(own.sizes[:, -3:], axis=1)
+    return own.values, own.sizes, band, _LEFT_OUT * np.max(own.sizes[:, -3:], axis=1)
+
+
+def _usual(natural: Floats, lengths: Floats) -> float:
+    """Return a length that most pieces could have at least, a power of two as theirs are."""
+    # What is a polynomial exactly could be followed for ever.
+    longest = 2.0 * float(lengths.max())
+    found = min(float(np.sort(natural)[int(_USUAL * len(natural))]), longest)
+    return float(2.0 ** math.floor(math.log2(found)))
 
 
 def _later(start: float, more: float) -> float:

@@ -10,8 +10,8 @@ from flint import arb
 
 from core.arrays import Floats
 from core.double_double import dd_add, dd_div_d, dd_mul_d
+from core.multibody.algebra.bernstein import horner, slope_at
 from core.multibody.algebra.polynomials import Ball
-from core.multibody.search.bernstein import horner, slope_at
 from core.multibody.search.curves import Curve
 from core.multibody.search.pieces import Expanded, Pieces
 

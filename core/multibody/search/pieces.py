@@ -36,6 +36,8 @@ class Pieces:
     ----------
     lengths : ndarray, shape (p,)
         In seconds, negative where time runs backwards; powers of two.
+    natural : ndarray, shape (p,)
+        How long they could be, were no more of interest.
     places, multipliers : ndarrays, shape (p, n, order + 1, 2) and (p, rows, order - 1, 2)
         Coefficients of powers of time as a share of the length.
     place_sizes, multiplier_sizes : ndarrays, shape (p, n, order + 1) and (p, rows, order - 1)
@@ -43,6 +45,7 @@ class Pieces:
     """
 
     lengths: Floats
+    natural: Floats
     places: Floats
     place_sizes: Floats
     multipliers: Floats
@@ -127,10 +130,13 @@ class ExpandedWhole:
     whole : Whole
     kind : {"fine", "check", "reference", "doubles"}
         Which of the runs of a motion without a closed form.
+    coarse : bool
+        Whether a few roundings of doubles will do for closed forms.
     """
 
     whole: Whole
     kind: str = "fine"
+    coarse: bool = False
 
     def __call__(self, times: Floats, reach: Floats) -> Pieces:
         """Return the pieces.
@@ -141,7 +147,7 @@ class ExpandedWhole:
             At a place where the connections lose their rank.
         """
         arrays, units, chosen = self.whole.arrays
-        lengths, series, sizes = _expanded(arrays, units, self.whole.in_pairs(times, self.kind), reach)
+        lengths, series, sizes = _expanded(arrays, units, self._states(times), reach)
         n, rows = len(units.lengths), len(self.whole.measures.table.rows)
         multipliers = np.zeros((len(times), rows, COEFFICIENTS, 2))
         multiplier_sizes = np.zeros((len(times), rows, COEFFICIENTS))
@@ -149,7 +155,14 @@ class ExpandedWhole:
             factor = two_to(units.multiplier(row))
             multipliers[:, row] = series[:, n + k, :COEFFICIENTS] * factor
             multiplier_sizes[:, row] = sizes[:, n + k, :COEFFICIENTS] * factor
-        return Pieces(lengths, series[:, :n], sizes[:, :n], multipliers, multiplier_sizes)
+        return Pieces(*lengths, series[:, :n], sizes[:, :n], multipliers, multiplier_sizes)
+
+    def _states(self, times: Floats) -> tuple[Floats, Floats]:
+        if not self.coarse:
+            return self.whole.in_pairs(times, self.kind)
+        z, w = self.whole.reduced_in_doubles(times, self.kind)
+        slopes, offsets = self.whole.affine
+        return spread(slopes, offsets, z), spread(slopes, np.zeros_like(offsets), w)
 
 
 @dataclass(frozen=True)
@@ -161,40 +174,39 @@ class ExpandedPlaces:
 
     whole: Whole
     kind: str = "fine"
+    coarse: bool = False
 
     def __call__(self, times: Floats, reach: Floats) -> Pieces:
         """Return the pieces; it raises as `ExpandedWhole` does."""
         arrays, units, _ = self.whole.reduced_arrays
-        lengths, series, sizes = _expanded(arrays, units, self.whole.reduced_in_pairs(times, self.kind), reach)
+        states = self.whole.reduced_in_doubles if self.coarse else self.whole.reduced_in_pairs
+        lengths, series, sizes = _expanded(arrays, units, states(times, self.kind), reach)
         slopes, offsets = self.whole.affine
         n = len(units.lengths)
         # Coefficients of one power after another, of which the first alone has offsets.
         powers = np.moveaxis(series[:, :n], 2, 0)
-        places = np.stack(
-            [
-                spread(slopes, offsets if k == 0 else np.zeros_like(offsets), np.ascontiguousarray(own))
-                for k, own in enumerate(powers)
-            ],
-            axis=2,
-        )
+        count = len(times)
+        mapped = spread(slopes, np.zeros_like(offsets), np.ascontiguousarray(powers).reshape(-1, n, 2))
+        mapped[:count] = spread(slopes, offsets, np.ascontiguousarray(powers[0]))
+        places = np.moveaxis(mapped.reshape(ORDER + 1, count, -1, 2), 0, 2)
         place_sizes = np.einsum("ij,pjk->pik", np.abs(slopes[..., 0]), sizes[:, :n])
         place_sizes[..., 0] += np.abs(offsets[:, 0])
         nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
-        return Pieces(lengths, places, place_sizes, nothing, nothing[..., 0])
+        return Pieces(*lengths, places, place_sizes, nothing, nothing[..., 0])
 
 
 def _expanded(
     arrays: Packed, units: Units, states: tuple[Floats, Floats], reach: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Return lengths of pieces (s), coefficients in SI units, and their sizes; multipliers as in the arrays."""
+) -> tuple[tuple[Floats, Floats], Floats, Floats]:
+    """Return lengths of pieces and how long they could be (s); coefficients, in SI units but for multipliers; sizes."""
     q, v = states
     down = np.array([two_to(-e) for e in units.lengths])[None, :, None]
     count, n = q.shape[:2]
-    exponents = np.zeros(count, dtype=np.int64)
+    exponents, steps = np.zeros(count, dtype=np.int64), np.zeros(count)
     series = np.zeros((count, n + arrays.rate.shape[0], ORDER + 1, 2))
     sizes = np.zeros(series.shape[:-1])
     rates = v * (down * two_to(units.time))
-    done = expand(arrays, q * down, rates, _covering(reach, units.time), exponents, series, sizes)
+    done = expand(arrays, q * down, rates, _covering(reach, units.time), exponents, steps, series, sizes)
     if done < count:
         raise AccuracyUnreachable(None, np.inf, "the connections lose their rank on the way", path=("times",))
     way = np.sign(reach)
@@ -203,7 +215,8 @@ def _expanded(
     up = np.array([two_to(e) for e in units.lengths])
     series[:, :n] *= up[None, :, None, None]
     sizes[:, :n] *= up[None, :, None]
-    return way * np.ldexp(1.0, exponents + units.time), series, sizes
+    lengths = way * np.ldexp(1.0, exponents + units.time), steps * two_to(units.time)
+    return lengths, series, sizes
 
 
 def repeats_after(whole: Whole, coordinates: Sequence[int] | None = None) -> float | None:

@@ -27,7 +27,14 @@ TOLERANCE = 2.0**-50
 
 @kernel()
 def expand(
-    table: Packed, q: Floats, v: Floats, longest: Integers, exponents: Integers, series: Floats, sizes: Floats
+    table: Packed,
+    q: Floats,
+    v: Floats,
+    longest: Integers,
+    exponents: Integers,
+    steps: Floats,
+    series: Floats,
+    sizes: Floats,
 ) -> int:
     """Fill in the series about some states; return how many were done before one where the connections lose their rank.
 
@@ -38,6 +45,8 @@ def expand(
         Exponents of two of the longest times that are of interest.
     exponents : (t,)
         Filled with those of the lengths of the pieces, at most these.
+    steps : (t,)
+        Filled with the times over which the last coefficients are small.
     series : (t, n + m, order + 1, 2)
         Filled with coefficients of powers of time as a share of the length; multipliers have two less.
     sizes : (t, n + m, order + 1)
@@ -64,7 +73,7 @@ def expand(
         step = step_size(own, table.group, TOLERANCE)
         if not step > 0.0:
             return s
-        exponent = longest[s]
+        exponent, steps[s] = longest[s], step
         if step < math.ldexp(1.0, min(exponent, 1000)):
             exponent = math.floor(math.log2(step))
         exponents[s] = exponent

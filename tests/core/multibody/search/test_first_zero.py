@@ -49,7 +49,7 @@ class Circle:
                     places[p, i, k] = float(x * share), float(x * share - float(x * share))
         sizes = np.max(np.abs(places[..., 0]), axis=1, keepdims=True).repeat(2, axis=1)
         nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
-        return Pieces(lengths, places, sizes, nothing, nothing[..., 0])
+        return Pieces(lengths, np.full(len(times), LENGTH), places, sizes, nothing, nothing[..., 0])
 
 
 def level(a: float | str, b: float = 1.0, c: float = 0.0) -> Callable[[Pieces], Curve]:

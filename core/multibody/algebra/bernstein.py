@@ -54,8 +54,9 @@ class Sign(IntEnum):
     """Within the band of what is left out of the polynomial: to be decided on a shorter interval."""
 
 
-_NEGATIVE, _UNDECIDED, _POSITIVE = int(Sign.NEGATIVE), int(Sign.UNDECIDED), int(Sign.POSITIVE)
-_FALLING, _RISING, _OPEN = int(Sign.FALLING), int(Sign.RISING), int(Sign.OPEN)
+NEGATIVE, UNDECIDED, POSITIVE = int(Sign.NEGATIVE), int(Sign.UNDECIDED), int(Sign.POSITIVE)
+FALLING, RISING, OPEN = int(Sign.FALLING), int(Sign.RISING), int(Sign.OPEN)
+"""The same as whole numbers, for compiled code."""
 
 
 @kernel()
@@ -121,18 +122,18 @@ def _sign(own: Floats, band: float, steep: float, left_out: float) -> int:
     for j in range(1, last + 1):
         low, high = min(low, own[j, 0]), max(high, own[j, 0])
     if low > band:
-        return _POSITIVE
+        return POSITIVE
     if high < -band:
-        return _NEGATIVE
+        return NEGATIVE
     if max(-low, high) <= WIDER * band:
-        return _OPEN if 2.0 * left_out > band else _UNDECIDED
+        return OPEN if 2.0 * left_out > band else UNDECIDED
     if (own[0, 0] > band and own[last, 0] < -band) or (own[0, 0] < -band and own[last, 0] > band):
         sense = 1.0 if own[last, 0] > 0.0 else -1.0
         for j in range(last):
             step, _ = dd_add(own[j + 1, 0], own[j + 1, 1], -own[j, 0], -own[j, 1])
             if not sense * step > steep:
                 return MOST_SEGMENTS
-        return _RISING if sense > 0.0 else _FALLING
+        return RISING if sense > 0.0 else FALLING
     return MOST_SEGMENTS
 
 
@@ -167,7 +168,7 @@ def decided(
     """
     count = coefficients.shape[0]
     if _above(coefficients, band, left_out):
-        ends[0], signs[0] = 1.0, _POSITIVE
+        ends[0], signs[0] = 1.0, POSITIVE
         return 1
     stack = np.empty((HALVINGS + 2, count, 2))
     ahead = np.empty((HALVINGS + 2, 2))
@@ -206,18 +207,18 @@ def decided(
                 top += 1
                 continue
             # A zero at the very end of an interval is in the band of both of its sides, however short these are.
-            sign = _UNDECIDED if looked < MOST_NODES and 2.0 * rest <= known else _OPEN
+            sign = UNDECIDED if looked < MOST_NODES and 2.0 * rest <= known else OPEN
         top -= 1
-        crosses = sign in (_FALLING, _RISING)
+        crosses = sign in (FALLING, RISING)
         if found > 0 and signs[found - 1] == sign and not crosses:
             ends[found - 1] = high
         elif found == MOST_SEGMENTS - 1:
-            ends[found], signs[found] = 1.0, _OPEN
+            ends[found], signs[found] = 1.0, OPEN
             return found + 1
         else:
             ends[found], signs[found] = high, sign
             found += 1
-        if first and sign in (_FALLING, _NEGATIVE):
+        if first and sign in (FALLING, NEGATIVE):
             break
     return found
 

@@ -7,7 +7,7 @@ import pytest
 from flint import fmpq, fmpz_poly
 
 from core.arrays import Floats
-from core.multibody.search.bernstein import MOST_SEGMENTS, Sign, decided, zero_between
+from core.multibody.algebra.bernstein import MOST_SEGMENTS, Sign, decided, zero_between
 
 ORDER = 20
 GRIDS = (4099, 4099, 4099, 4096)
