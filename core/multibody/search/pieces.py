@@ -186,9 +186,9 @@ class ExpandedPlaces:
         # Coefficients of one power after another, of which the first alone has offsets.
         powers = np.moveaxis(series[:, :n], 2, 0)
         count = len(times)
-        mapped = spread(slopes, np.zeros_like(offsets), np.ascontiguousarray(powers).reshape(-1, n, 2))
+        mapped = spread(slopes, np.zeros_like(offsets), np.ascontiguousarray(powers).reshape((ORDER + 1) * count, n, 2))
         mapped[:count] = spread(slopes, offsets, np.ascontiguousarray(powers[0]))
-        places = np.moveaxis(mapped.reshape(ORDER + 1, count, -1, 2), 0, 2)
+        places = np.moveaxis(mapped.reshape(ORDER + 1, count, len(offsets), 2), 0, 2)
         place_sizes = np.einsum("ij,pjk->pik", np.abs(slopes[..., 0]), sizes[:, :n])
         place_sizes[..., 0] += np.abs(offsets[:, 0])
         nothing = np.zeros((len(times), 0, COEFFICIENTS, 2))
