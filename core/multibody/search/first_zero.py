@@ -260,7 +260,7 @@ class FirstZero:
                 raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))
             power = values.shape[1]
             if times[0] == 0.0:
-                values, band, power = self._divided(watch, values, band)
+                values, band, power = self._divided(watch, values, FLOOR * sizes, band)
                 if not power:
                     continue
             remaining.append(watch)
@@ -272,13 +272,14 @@ class FirstZero:
         self.watched = remaining
         return _Batch(lengths, _usual(pieces[0].natural, lengths), plain, of)
 
-    def _divided(self, watch: _Watched, values: Floats, band: Floats) -> tuple[Floats, Floats, int]:
-        """Return the only piece of a quantity at time zero, with what is zero there, as far as is known, divided out.
+    def _divided(self, watch: _Watched, values: Floats, rounded: Floats, band: Floats) -> tuple[Floats, Floats, int]:
+        """Return the only piece of a quantity at time zero, with what is zero there but for rounding divided out.
 
-        The power of the first coefficient that is left out follows them; it is zero for what vanishes throughout.
+        How far two computations are apart does not matter for that: each of them has the event that begins there. The
+        power of the first coefficient that is left out follows; it is zero for what vanishes throughout.
         """
         assert len(values) == 1
-        known = np.abs(values[0, :, 0]) > band[0]
+        known = np.abs(values[0, :, 0]) > rounded[0]
         if not known.any():
             return values, band, 0
         zeros, count = int(np.argmax(known)), values.shape[1]
@@ -348,8 +349,9 @@ class FirstZero:
                 if watch.above:
                     middle, width = 0.5 * (since + here), 0.5 * (here - since)
                     if sign in (NEGATIVE, RISING):
-                        return Found(watch.index, self.way * middle, 0.0)
-                    if watch.jumps:
+                        # From below zero Newton's method comes to the last zero, not to that at the start.
+                        return Found(watch.index, self.way * here, 0.0)
+                    if watch.jumps and since > 0.0:
                         return Found(watch.index, self.way * middle, 0.0, max(width, 2.0**-52 * middle))
             if watch.above and sign == FALLING:
                 share, tail = zero_between(own.curves[one.number], start, min(end, 1.0))
