@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from flint import arb
@@ -22,6 +22,7 @@ from core.multibody.phases.shared_friction import first_without_share
 from core.multibody.phases.tracks import SAFETY_FACTOR
 from core.multibody.phases.turning_pieces import ExpandedInBalls
 from core.multibody.phases.turning_slip import TurningSlip
+from core.multibody.phases.uniform_pieces import ExpandedUniform, along_uniform
 from core.multibody.phases.watches import Watch, lengths, watches
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion
 from core.multibody.search.first_zero import Found
@@ -169,7 +170,8 @@ def _while_turning(base: Described, phase: Phase, watched: Sequence[Watch], left
 def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Crossing]:
     """Return the first crossing of a phase on both of its tracks, none where nothing ends it."""
     expansions, period = _expansions(phase), repeats_after(phase.models[0].whole)
-    search = FirstOfMotion(expansions, [watch.watched for watch in watched])
+    along = [partial(along_uniform, watch) if phase.uniform else watch.along for watch in watched]
+    search = FirstOfMotion(expansions, [replace(w.watched, along=a) for w, a in zip(watched, along, strict=True)])
     last = left if period is None else min(left, period)
     reach, singular = min(last, _first_reach(phase)), None
     while True:
@@ -223,6 +225,10 @@ def _expansions(phase: Phase) -> Expansions:
     if phase.turning:
         both = [ExpandedInBalls(first, "fine"), ExpandedInBalls(last, "check")]
         return Expansions(both, both)
+    if phase.uniform:
+        tracks = zip(phase.tables, phase.models, strict=True)
+        uniform = [ExpandedUniform(uniform_motion(table.table, model)) for table, model in tracks]
+        return Expansions(uniform, uniform)
     exact = first is last and all(motion.how == "closed form" for _, motion in first.parts)
     return Expansions.of([(first, "fine")] if exact else [(first, "fine"), (last, "check")])
 

@@ -285,7 +285,9 @@ class FirstZero:
         zeros, count = int(np.argmax(known)), values.shape[1]
         shifted, errors = np.zeros_like(values), np.zeros_like(band)
         shifted[:, : count - zeros], errors[:, : count - zeros] = values[:, zeros:], band[:, zeros:]
-        watch.above = bool(shifted[0, 0, 0] > 0.0)
+        # Of what is left the first that is known decides the sign just after the start.
+        sure = np.abs(values[0, :, 0]) > band[0]
+        watch.above = bool(values[0, int(np.argmax(sure)) if sure.any() else zeros, 0] > 0.0)
         if not watch.above and watch.index not in self.below:
             self.below.append(watch.index)
         return shifted, errors, count - zeros
@@ -358,7 +360,7 @@ class FirstZero:
                 return self._at(one.start, length, watch, share, tail)
             if watch.above and sign == NEGATIVE:
                 return self._at(one.start, length, watch, start, 0.0)
-            if sign == POSITIVE:
+            if sign in (POSITIVE, RISING):
                 watch.above = True
             start = end
         return None
