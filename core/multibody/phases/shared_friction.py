@@ -61,7 +61,7 @@ def first_without_share(
 def _sums_that_are_negative(phase: Phase, cones: SharedCones, times: Floats) -> list[Watch]:
     """Return what holds back the best share at the first of times at which there is none."""
     whole = phase.models[0].whole
-    q, v, _ = whole.in_doubles(times)
+    q, v = whole.in_pairs(times)
     for multipliers in whole.multipliers(q, v):
         margin, held = cones.certificate(multipliers)
         if margin < -MARGINAL:
