@@ -35,7 +35,7 @@ def period(scene: dict[str, Any]) -> float:
     return found
 
 
-@pytest.mark.parametrize("degrees", ["10", "45", "44.9999999", "45.0001", "60", "90", "120", "135", "-45", "170"])
+@pytest.mark.parametrize("degrees", ["10", "45", "44.9999999", "45.0001", "60", "89", "120", "135", "-45", "170"])
 def test_the_period_of_a_pendulum_is_the_elliptic_integral_at_every_angle(degrees: str) -> None:
     """At 45 degrees the path turns by a right angle from one turning point to the other."""
     angle = f"{degrees}*pi/180"
