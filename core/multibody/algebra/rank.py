@@ -70,10 +70,24 @@ class Elimination:
         return [self.pivots[j][1] if j in self.pivots else ZERO for j in unknowns]
 
 
-def independent(lines: Iterable[Mapping[int, Ball]]) -> list[int]:
-    """Return the numbers of the lines that do not depend on those before them."""
+def independent(lines: Iterable[Mapping[int, Ball]], share: float = 0.0) -> list[int]:
+    """Return the numbers of the lines that do not depend on those before them.
+
+    Lines of which no more than a share is left beside those before depend on them, too, where they are known to that
+    share only.
+    """
     elimination = Elimination()
-    return [i for i, line in enumerate(lines) if elimination.add(line, ZERO) is None]
+    found = []
+    for i, line in enumerate(lines):
+        if share > 0.0 and _largest(elimination.reduced(line, ZERO)[0]) <= share * _largest(line):
+            continue
+        if elimination.add(line, ZERO) is None:
+            found.append(i)
+    return found
+
+
+def _largest(line: Mapping[int, Ball]) -> float:
+    return max((abs(float(x.mid())) for x in line.values()), default=0.0)
 
 
 def _subtract(line: Line, key: int, value: Ball) -> None:

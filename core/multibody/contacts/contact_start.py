@@ -44,7 +44,7 @@ def assemble_contacts(base: Described) -> ContactStart:
         For things that overlap, and as `core.multibody.equations.assembly`.
     """
     table, paths, unilateral = base.measures.table, base.paths, base.measures.unilateral
-    moved = assemble_places(table, paths)
+    moved = list(dict.fromkeys([*base.measures.coordinates.rounded, *assemble_places(table, paths)]))
     touching = []
     for i, one in enumerate(unilateral):
         gap, scale = evaluated(one.gap, table.q), size(one.gap, table.q)

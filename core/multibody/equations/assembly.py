@@ -16,6 +16,8 @@ from core.multibody.table.table import Row, Table
 
 CLOSE_RATE = 1e-9
 _ROUNDS = 40
+_APART = 64.0
+"""How much more than places miss their measures lines may differ that depend on one another on them."""
 
 
 def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
@@ -33,10 +35,11 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
     if all(is_zero(x) for x in residuals):
         return []
     moved: list[str] = []
+    extents = _extents(table)
     for row, residual in zip(rows, residuals, strict=True):
         if is_zero(residual):
             continue
-        scale = size(row.measure or {}, table.q)
+        scale = size(row.measure or {}, extents)
         if not abs(residual) < CLOSE * scale:
             raise InvalidParameter(
                 paths.get(row.name, ()),
@@ -50,14 +53,28 @@ def assemble_places(table: Table, paths: Mapping[str, Path]) -> list[str]:
     return moved
 
 
+def _extents(table: Table) -> list[Ball]:
+    """Return for every coordinate the size of the vector of which it is a component: that of a direction is one."""
+    largest: dict[tuple[str, str], Ball] = {}
+    owners = [(name.rpartition(".")[0] or name, unit) for name, unit in zip(table.names, table.units, strict=True)]
+    for owner, q in zip(owners, table.q, strict=True):
+        before: Ball = largest.get(owner, ONE if owner[1] == "1" else ZERO)
+        largest[owner] = before.max(abs(q))
+    return [largest[owner] for owner in owners]
+
+
 def _newton(table: Table, paths: Mapping[str, Path]) -> None:
     rows = [row for row in table.rows if row.measure is not None]
+    extents = _extents(table)
+    sizes = [size(row.measure or {}, extents) for row in rows]
     for _ in range(_ROUNDS):
         table.q = [q.mid() for q in table.q]
         lines = [row.line(table.q) for row in rows]
-        chosen = independent(lines)
-        residuals = [evaluated(rows[i].measure or {}, table.q) for i in chosen]
-        step = least_change(table, [lines[i] for i in chosen], residuals)
+        residuals = [evaluated(row.measure or {}, table.q) for row in rows]
+        # Lines are known as well as the measures are met: rows that are redundant there differ by that much here.
+        missed = max((float(abs(x) / y) for x, y in zip(residuals, sizes, strict=True) if y > 0), default=0.0)
+        chosen = independent(lines, _APART * missed)
+        step = least_change(table, [lines[i] for i in chosen], [residuals[i] for i in chosen])
         table.q = [q - d for q, d in zip(table.q, step, strict=True)]
         scale = max(float(abs(q)) for q in table.q)
         if max(float(abs(d)) for d in step) <= 2.0**-150 * scale:

@@ -102,7 +102,7 @@ def modelled(scene: Scene, numerals: Numerals | None = None) -> Modelled:
             path=("connections", found.paths[found.measures.unilateral[0].name][-1]),
             remedy="leave out the method, or hold what touches by a connection of another kind",
         )
-    moved = assemble_places(table, found.paths)
+    moved = list(dict.fromkeys([*found.measures.coordinates.rounded, *assemble_places(table, found.paths)]))
     fitted = assemble_rates(table, found.measures.coordinates.given, found.paths)
     return models_of(found, moved, fitted)
 

@@ -130,7 +130,18 @@ class Numerical:
         for way in (scaled >= 0.0, scaled < 0.0):
             if np.any(way):
                 chosen = scaled[way]
-                run = self.run(kind, float(chosen[np.argmax(np.abs(chosen))]))
+                farthest = float(chosen[np.argmax(np.abs(chosen))])
+                run = self.run(kind, farthest)
+                if run.singular and abs(farthest) > (1.0 + _SAME_PLACE) * abs(run.end):
+                    # A coarser run steps across a place that this one meets.
+                    raise AccuracyUnreachable(
+                        None,
+                        np.inf,
+                        f"the connections lose their hold at {run.end * two_to(self.units.time):.6g} s, where motions "
+                        "beside this one branch",
+                        path=("times",),
+                        remedy="ask for earlier times",
+                    )
                 q[way], v[way] = evaluate(run, chosen)
         up = np.array([two_to(e) for e in self.units.lengths])[None, :, None]
         return q * up, v * up * two_to(-self.units.time)

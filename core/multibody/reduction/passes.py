@@ -27,7 +27,7 @@ from core.multibody.algebra.polynomials import (
     substituted,
     variables,
 )
-from core.multibody.algebra.rank import Elimination
+from core.multibody.algebra.rank import Elimination, Line
 from core.multibody.reduction.degenerate_rows import resolve
 from core.multibody.reduction.pinning import pin, separate
 from core.multibody.reduction.reduction import Reduced, substitute
@@ -72,38 +72,62 @@ def _integrate(table: Table) -> bool:
 
 
 def _combine(state: Reduced) -> bool:
-    """Find combinations of measures without quadratic terms, and drop measures that follow from others."""
-    leading: dict[tuple[int, ...], Poly] = {}
-    rows: list[Row] = []
-    changed = False
-    for row in state.table.rows:
+    """Find combinations of measures without quadratic terms, and drop measures that follow from others.
+
+    What is replaced or dropped is the measure with the largest part in the combination, so that those that are left
+    determine it well.
+    """
+    leading: dict[tuple[int, ...], tuple[Poly, Line]] = {}
+    given = state.table.rows
+    rows: dict[int, Row] = {}
+    for number, row in enumerate(given):
+        rows[number] = row
         if row.measure is None or degree(row.measure) < 2 or row.drag:
-            rows.append(row)
             continue
-        rest = row.measure
+        rest, weights = row.measure, {number: ONE}
         while True:
             hit = next((key for key in rest if len(key) == 2 and key in leading), None)
             if hit is None:
                 break
-            rest = combined((ONE, rest), (-rest[hit], leading[hit]))
+            rest, weights = _less(rest, weights, rest[hit], leading[hit])
         square = [key for key in rest if len(key) == 2]
         if square:
             pivot = max(square, key=lambda key: abs(float(rest[key].mid())))
-            scaled = combined((1 / rest[pivot], rest))
-            for key, other in leading.items():
+            lead = 1 / rest[pivot]
+            scaled = combined((lead, rest)), {i: lead * x for i, x in weights.items()}
+            for key, (other, combination) in leading.items():
                 if pivot in other:
-                    leading[key] = combined((ONE, other), (-other[pivot], scaled))
+                    leading[key] = _less(other, combination, other[pivot], scaled)
             leading[pivot] = scaled
-            rows.append(row)
+            continue
+        weightiest = max(weights, key=lambda i: abs(float(weights[i].mid())) * _largest(given[i]))
+        name = given[weightiest].name
+        if variables([rest]):
+            rows[weightiest] = Row.held(name, rest)
+            state.steps.append(f"{name}: linear beside other measures")
         else:
-            changed = True
-            if variables([rest]):
-                rows.append(Row.held(row.name, rest))
-                state.steps.append(f"{row.name}: linear beside other measures")
-            else:
-                state.steps.append(f"{row.name}: follows from other measures")
-    state.table.rows = rows
+            del rows[weightiest]
+            state.steps.append(f"{name}: follows from other measures")
+        if weightiest != number:
+            # Combinations in which it has a part are no longer those of the measures.
+            state.table.rows = [*rows.values(), *given[number + 1 :]]
+            return True
+    changed = len(rows) < len(given) or any(rows[i] is not row for i, row in enumerate(given) if i in rows)
+    state.table.rows = list(rows.values())
     return changed
+
+
+def _largest(row: Row) -> float:
+    """Return the largest coefficient of the measure of a row."""
+    return max((abs(float(x.mid())) for x in (row.measure or {}).values()), default=0.0)
+
+
+def _less(poly: Poly, weights: Line, factor: Ball, other: tuple[Poly, Line]) -> tuple[Poly, Line]:
+    """Return a combination of measures, and its weights, less a multiple of another."""
+    left = dict(weights)
+    for i, x in other[1].items():
+        left[i] = entry(left, i) - factor * x
+    return combined((ONE, poly), (-factor, other[0])), left
 
 
 def _factor(state: Reduced) -> bool:

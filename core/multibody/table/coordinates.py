@@ -45,6 +45,7 @@ class Coordinates:
         self.gravity = numerals.vector(gravity, ("gravity",), self.dimension)
         self.frames: dict[str, Frame] = {}
         self.given: list[Given] = []
+        self.rounded: list[str] = []
         faults = FaultsOfParts()
         for name, body in scene.bodies.items():
             with faults.part():
@@ -165,7 +166,7 @@ class Coordinates:
         if self.dimension == 2:
             self._orient_in_plane(frame, body, tensor, seen)
         else:
-            SpatialOrientation(self.table, self.numerals, self.given).orient(frame, body, tensor, seen)
+            SpatialOrientation(self.table, self.numerals, self.given, self.rounded).orient(frame, body, tensor, seen)
 
     def _orient_in_plane(self, frame: Frame, body: SceneBody, inertia: Any, seen: set[str]) -> None:
         path, numerals, table, name = ("bodies", frame.name), self.numerals, self.table, frame.name

@@ -44,3 +44,10 @@ def test_priority_decides_which_unknown_is_determined() -> None:
     elimination = Elimination([0, 1])
     elimination.add({0: arb(100), 1: arb(1)}, arb(0))
     assert list(elimination.pivots) == [1]
+
+
+def test_what_is_left_of_a_line_below_what_is_known_of_it_is_nothing() -> None:
+    lines = [{0: arb(1), 1: arb(1)}, {0: arb(1), 1: arb(1) + arb("1e-9")}, {2: arb("1e-12")}]
+    assert independent(lines) == [0, 1, 2]
+    assert independent(lines, 1e-8) == [0, 2]
+    assert independent(lines, 1e-10) == [0, 1, 2]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -82,3 +83,52 @@ def test_velocities_given_in_part_are_completed() -> None:
     answer = solve_scene(read(scene), [0.0])
     # The centre is on a circle about the corner, and turns against the ladder.
     assert column(answer, "ladder.velocity").values[0] == pytest.approx((0.8, -0.6), rel=1e-15)
+
+
+def turned(vector: list[str], digits: int | None) -> list[str]:
+    """Return a vector turned by acos 5/13 about x and acos 3/5 about z, in fractions or rounded to decimals."""
+    x, y, z = map(Fraction, vector)
+    y, z = (5 * y - 12 * z) / 13, (12 * y + 5 * z) / 13
+    x, y = (3 * x - 4 * y) / 5, (4 * x + 3 * y) / 5
+    return [str(value) if digits is None else f"{float(value):.{digits}f}" for value in (x, y, z)]
+
+
+def hinged(moments: list[str], hinge: list[str], digits: int | None) -> dict[str, Any]:
+    """Return two bodies in space with a hinge between them, one on a ball joint; all typed with so many digits."""
+    axes = [turned(axis, digits) for axis in (["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"])]
+    body = {"mass": 1, "moments": moments, "axes": axes}
+    return {
+        "gravity": turned(["0", "0", "-10"], None),
+        "bodies": {
+            "a": body | {"at": [0, 0, 0], "places": {"p": ["1/2", 0, 0], "q": [0, "3/10", "4/10"]}},
+            "b": body | {"at": turned(["1", "0", "0"], digits), "places": {"p": ["-1/2", 0, 0]}},
+        },
+        "connections": [
+            {"kind": "pin", "a": "a.p", "b": "b.p", "axis": turned(hinge, digits)},
+            {"kind": "ball-joint", "a": "a.q", "b": turned(["0", "3/10", "4/10"], digits)},
+        ],
+    }
+
+
+@pytest.mark.parametrize("digits", [8, 11])
+@pytest.mark.parametrize("moments", [["1/10", "2/10", "3/10"], ["1/5", "1/5", "1/5"]])
+@pytest.mark.parametrize("hinge", [["0", "0", "1"], ["3/5", "4/5", "0"], ["2/3", "1/3", "2/3"]])
+def test_rows_that_are_redundant_to_rounding_are_redundant(moments: list[str], hinge: list[str], digits: int) -> None:
+    """A hinge repeats what makes its bodies rigid: three rows of which two are independent, on its places alone."""
+    times = [0.2, 0.5]
+    exact = solve_scene(read(hinged(moments, hinge, None)), times, ("trajectory",))
+    rounded = solve_scene(read(hinged(moments, hinge, digits)), times, ("trajectory",))
+    assert exact.model.degrees_of_freedom == rounded.model.degrees_of_freedom == 4
+    apart = np.asarray(column(exact, "b.position").values) - np.asarray(column(rounded, "b.position").values)
+    # Rounding moves the start, and the motion by little more.
+    assert 0.0 < np.max(np.abs(apart)) < 100 * 10.0**-digits
+
+
+def test_a_rounded_place_is_compared_with_the_body_and_not_with_a_component_that_is_nought() -> None:
+    rod = {"mass": 1, "inertia": 0.1, "at": ["0.5", "1e-10"], "places": {"p": [-0.5, 0]}}
+    pin = {"kind": "pin", "a": "rod.p", "b": [0, 0]}
+    answer = solve_scene(read({"gravity": [0, -10], "bodies": {"rod": rod}, "connections": [pin]}))
+    assert any("moved by rounding's width" in sentence for sentence in answer.model.noticed)
+    rod["at"] = ["0.5", "1e-5"]
+    with pytest.raises(InvalidParameter, match="agree with the positions"):
+        solve_scene(read({"gravity": [0, -10], "bodies": {"rod": rod}, "connections": [pin]}))
