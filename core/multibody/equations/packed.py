@@ -152,6 +152,10 @@ def units_of(table: Table, acceleration: Sequence[Ball]) -> Units:
     if masses and works:
         # Beside an equilibrium neither rates nor accelerations tell how fast springs swing and loads pull.
         times.append((max(masses) - max(works)) // 2)
+    drags = [e + lengths[i] + lengths[j] for (i, j), x in table.damping.items() if (e := exponent(x)) is not None]
+    if masses and drags:
+        # Nor do they tell how fast dampers bring to rest what moves by rounding.
+        times.append(max(masses) - max(drags))
     time = min(times, default=0)
     lengths = [time if unit == "s" else length for unit, length in zip(table.units, lengths, strict=True)]
     rows = []

@@ -24,6 +24,7 @@ from core.multibody.trajectory.occurrences import (
     ExtremesOf,
     Sampler,
     When,
+    away_from_start,
     brackets,
     component,
     coordinates_of,
@@ -120,7 +121,8 @@ class SearchInPhases:
             # What has the value all the time takes it no more.
             if np.all(np.abs(curve) <= noise):
                 continue
-            inside = brackets(grid, curve, sampler, search.equals, MOST_FOUND)
+            away = away_from_start(curve, noise)
+            inside = brackets(grid[away:], curve[away:], sampler, search.equals, MOST_FOUND)
             if inside and inside[-1][0] == grid[-1]:
                 inside.pop()
             for low, high in inside:

@@ -27,6 +27,8 @@ _SECTIONS = 33
 _ROUNDS = 14
 _MOST_ROUNDS = 100
 _CROWDED = np.concatenate([[0.0], 2.0 ** -np.arange(2, 54, 2), -(2.0 ** -np.arange(2, 54, 2))])
+_ROUNDED = 2.0**-52
+"""Rounding of a difference from a value, as a share of it."""
 _FLAT = 2.0**-51
 MOST_FOUND = 1000
 _BITS_OF_TIME = 60
@@ -93,11 +95,24 @@ def occurrences(grid: Floats, sampler: Sampler, search: When, most: int = MOST_F
     """
     wanted = most if search.nth is None else search.nth
     grid = closer_at_ends(grid)
-    crossings = brackets(grid, sampler(grid).values - search.equals, sampler, search.equals, wanted)
+    column = sampler(grid)
+    _require_in_range(search.quantity, column.error)
+    curve = column.values - search.equals
+    away = away_from_start(curve, column.error + _ROUNDED * abs(search.equals))
+    crossings = brackets(grid[away:], curve[away:], sampler, search.equals, wanted)
     numbered = list(enumerate(crossings, 1))
     if search.nth is not None:
         numbered = numbered[search.nth - 1 : search.nth]
     return [located(sampler, search, low, high, number) for number, (low, high) in numbered]
+
+
+def away_from_start(curve: Floats, noise: float) -> int:
+    """Return the number of the first value that is not zero, as far as is known, of a curve that may begin with zero.
+
+    What leaves its value at the start has it for as long as it moves by less than it is known, and takes it no more.
+    """
+    away = np.abs(curve) > noise
+    return int(np.argmax(away)) if away.any() else max(len(curve) - 1, 0)
 
 
 def brackets(grid: Floats, curve: Floats, sampler: Sampler, equals: float, wanted: int) -> list[tuple[float, float]]:

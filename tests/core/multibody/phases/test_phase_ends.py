@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import acos, ellipf, ellipk, mp, mpf, sqrt
+from mpmath import acos, cos, ellipf, ellipk, linspace, mp, mpf, quad, sqrt
 
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import kinds
@@ -109,3 +109,70 @@ def test_a_wall_beside_a_conical_pendulum_is_met_in_the_first_turn(horizon: floa
     found = solve_scene(read({"gravity": [0, 0, -10], "bodies": {"b": bob}, "connections": [rod, wall]}), [horizon])
     right = (np.pi - np.arccos(0.599 / 0.6)) / np.sqrt(12.5)
     assert found.events[0].time == pytest.approx(right, rel=1e-13)
+
+
+def swing(speed_squared: mpf, height: mpf) -> mpf:
+    """Return the time from the lowest place of a circle of 1 m up to a height above its centre, with g = 10 m/s^2."""
+    return quad(lambda angle: 1 / sqrt(speed_squared - 20 * (1 - cos(angle))), linspace(0, acos(-height), 5))
+
+
+@pytest.mark.parametrize("short", ["1e-3", "1e-6", "1e-9"])
+def test_a_string_that_is_slack_for_a_small_part_of_a_turn_is_slack(short: str) -> None:
+    """Its tension is zero where v^2 = g y, which is 50 e/30 m below the top for v^2 = 50 (1 - e) at the bottom."""
+    stone = {"mass": 1, "at": [0, -1], "velocity": [f"sqrt(50*(1 - {short}))", 0]}
+    string = {"kind": "string", "name": "s", "through": ["stone", [0, 0]]}
+    scene = {"gravity": [0, -10], "bodies": {"stone": stone}, "connections": [string]}
+    answer = solve_scene(read(scene), [0.8])
+    assert kinds(answer)[:2] == [("slack", "s"), ("taut", "s")]
+    with mp.workdps(40):
+        right = swing(50 * (1 - mpf(short)), 1 - 50 * mpf(short) / 30)
+        assert abs(answer.events[0].time - right) <= answer.events[0].error
+
+
+def test_what_lifts_off_at_once_flies_on_with_a_damper_between() -> None:
+    """The damper does nothing, as both move alike; its length and rate change by rounding alone."""
+    loops = [
+        {"kind": "contact", "name": f"loop-{x}", "place": x, "on": {"at": [at, 0], "radius": -1}}
+        for x, at in (("a", 0), ("b", 5))
+    ]
+    bodies = {x: {"mass": 2, "at": [at, -1], "velocity": ["sqrt(35)", 0]} for x, at in (("a", 0), ("b", 5))}
+    damper = {"kind": "damper", "a": "a", "b": "b", "coefficient": 0.5}
+    answer = solve_scene(read({"gravity": [0, -10], "bodies": bodies, "connections": [*loops, damper]}), [0.8])
+    assert kinds(answer) == [("lift-off", "loop-a"), ("lift-off", "loop-b")]
+    with mp.workdps(40):
+        right = swing(mpf(35), mpf(1) / 2)
+        assert all(abs(event.time - right) <= event.error for event in answer.events)
+
+
+def test_a_block_whose_string_reaches_its_pulley_ends_there() -> None:
+    """On a rough table, beside a hanging block of equal mass: one metre at g (1 - 0.2)/2."""
+    scene = {
+        "gravity": [0, "-9.81"],
+        "bodies": {"a": {"mass": 1, "at": [-1, 0]}, "b": {"mass": 1, "at": [0, "-0.5"]}},
+        "connections": [
+            {"kind": "contact", "name": "floor", "place": "a", "on": {"at": [0, 0]}, "friction": 0.2},
+            {"kind": "string", "name": "s", "through": ["a", [0, 0], "b"]},
+        ],
+    }
+    answer = solve_scene(read(scene), [0.5, 1.0])
+    assert kinds(answer) == [("singular", "s")]
+    assert answer.events[0].time == pytest.approx(float(sqrt(2 / mpf("3.924"))), rel=2e-16)
+    assert answer.trajectory is not None
+    assert answer.trajectory.rows.tolist() == [0]
+
+
+def test_an_event_before_a_singular_place_does_not_depend_on_the_last_time() -> None:
+    scene = {
+        "gravity": [0, -10],
+        "bodies": {"v": {"mass": 1, "at": [0, -1], "velocity": ["sqrt(35)", 0]}, "m": {"mass": 1, "at": [3.5, 0]}},
+        "connections": [
+            {"kind": "contact", "name": "loop", "place": "v", "on": {"at": [0, 0], "radius": -1}},
+            {"kind": "track", "place": "m", "on": {"at": [3, 0]}},
+            {"kind": "inverse-square", "a": [3, 0], "b": "m", "strength": 1.5},
+            {"kind": "spring", "a": "m", "b": "v", "stiffness": 5},
+        ],
+    }
+    early, late = (solve_scene(read(scene), [0.375, end]).events for end in (0.4, 0.41))
+    assert [event.kind for event in late] == ["lift-off", "singular"]
+    assert [event.kind for event in early] == ["lift-off"]
+    assert early[0].time == late[0].time

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -155,3 +156,17 @@ def test_what_is_found_beyond_the_range_of_doubles_is_refused(search: ExtremesOf
     scene = {"gravity": [0, "-1e299"], "bodies": {"p": {"mass": 1, "at": [0, 0], "velocity": ["1e299", 0]}}}
     with pytest.raises(NotApplicable, match="leaves the range of doubles"):
         solve_scene(read(scene), [2.0], (search,))
+
+
+@pytest.mark.parametrize(
+    "hold", [{"kind": "slider", "a": "b", "b": [0, 0]}, {"kind": "contact", "place": "b", "on": {"at": [0, 0]}}]
+)
+def test_what_leaves_its_value_at_the_start_takes_it_no_sooner_than_it_returns(hold: dict[str, Any]) -> None:
+    """x = -5 + 2 cos(sqrt(3) t): it leaves -3 with the square of time, and is there again a period later."""
+    spring = {"kind": "spring", "a": "b", "b": [-10, 0], "stiffness": 3, "rest_length": 5}
+    scene = {"gravity": [0, -10], "bodies": {"b": {"mass": 1, "at": [-3, 0]}}, "connections": [hold, spring]}
+    found = solve_scene(read(scene), [4], (When("b.position.x", -3.0), When("b.position.x", -4.0))).occurrences
+    period = 2 * math.pi / math.sqrt(3)
+    right = [(-3.0, period), (-4.0, period / 6), (-4.0, 5 * period / 6)]
+    assert [one.equals for one in found] == [equals for equals, _ in right]
+    assert all(abs(one.time - time) <= one.error + 1e-15 for one, (_, time) in zip(found, right, strict=True))
