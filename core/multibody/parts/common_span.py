@@ -118,7 +118,7 @@ def _within(
 ) -> PartAnswer:
     times = request.times
     rows = np.flatnonzero((times >= span.begin) & (times <= span.end))
-    ends = [end for end in span if math.isfinite(end)]
+    ends = [end for end in span if math.isfinite(end) and end not in times]
     solution = answered(part, replace(request, times=np.concatenate([times[rows], ends])))
     rows = np.concatenate([rows, len(times) + np.arange(len(ends))])
     trajectory = solution.trajectory

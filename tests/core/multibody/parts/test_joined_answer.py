@@ -12,6 +12,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.solve import solve_scene
 from core.multibody.trajectory.occurrences import ExtremesOf, When
 from core.multibody.trajectory.trajectories import MOST_NUMBERS
+from core.systems.budget import Budget
 from tests.core.multibody.worked_examples import read
 
 Description = dict[str, Any]
@@ -141,6 +142,15 @@ def test_the_motion_ends_where_that_of_the_first_part_ends() -> None:
     assert answer.extremes[0].until == answer.ended.time
     assert answer.occurrences is not None
     assert [one.quantity for one in answer.occurrences] == ["moth.position.x"]
+
+
+def test_an_end_that_is_among_the_times_takes_no_further_sample() -> None:
+    parts = scene(FALL, PENDULUM, gravity=(0, 0))
+    ended = solve_scene(parts, [3.0]).ended
+    assert ended is not None
+    answer = solve_scene(parts, [0.1, 0.2, ended.time], ("trajectory",), budget=Budget(samples=3))
+    assert answer.trajectory is not None
+    assert list(answer.trajectory.time)[:2] == [0.1, 0.2]
 
 
 def test_a_part_that_is_refused_later_is_answered_up_to_the_end_of_another() -> None:
