@@ -21,7 +21,7 @@ GENERATED = "reference/endpoints.md", "reference/objects.md", "reference/problem
 
 PHYSICS = (
     "free-rotation free-or-not-free precession stability energy-ellipsoid wobble bodies"
-    " rod-in-hole unwinding-shafts chain-on-wedge scenes undecided error-statements certified"
+    " rod-in-hole unwinding-shafts chain-on-wedge scenes undecided error-statements audit certified"
 )
 """Pages of docs/physics that derive results; the catalogue of scenes is reference."""
 
