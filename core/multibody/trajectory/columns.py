@@ -248,7 +248,7 @@ class Columns:
                 # Of eight nodes a step two do, because nothing turns by more than some two radians in a step.
                 grid = np.append(grid[:-1:4], grid[-1])
             # A motion that repeats is followed for one period, and turns alike in each.
-            period = None if motion.name != "one period" or motion.period is None else float(motion.period)
+            period = None if motion.period is None else float(motion.period)
             if period is not None and abs(grid[-1]) >= period * (1 - 1e-9):
                 grid = np.append(grid[np.abs(grid) < period * (1 - 1e-9)], math.copysign(period, grid[-1]))
             else:
