@@ -142,19 +142,12 @@ def spinning_frame(measures: Measures, name: str, connection: Any, path: Path) -
     if measures.dimension == 3 and not all(is_zero(coordinates.gravity[i]) for i in planar):
         raise InvalidParameter((*path, "about"), "be about the z axis: gravity has to be along it")
     for frame in coordinates.frames.values():
-        if (
-            frame.axis is not None
-            or frame.turns is not None
-            or (measures.dimension == 2 and frame.turn is not None and frame.direction is None)
-        ):
-            raise InvalidParameter(path, f'have no top or wheel whose spin is counted apart, as "{frame.name}" is')
+        if frame.axis is not None or frame.turns is not None:
+            raise InvalidParameter(path, f'have no top or ball whose spin is counted apart, as "{frame.name}" is')
+        # In the plane a steady spin has no moment about a centre: what it adds to a direction is along that.
         vectors = [frame.position]
-        if frame.direction is not None:
-            vectors.append(list(frame.direction))
         if frame.axes is not None:
             vectors.extend(frame.axes)
-        if frame.direction is not None and frame.turn is not None:
-            raise InvalidParameter(path, f'have no body in it whose turn is counted apart, as "{frame.name}" is')
         for vector in vectors:
             _rotating(measures, vector[:2], at if vector is frame.position else None, rate)
         if frame.axes is not None:

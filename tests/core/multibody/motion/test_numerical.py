@@ -212,3 +212,21 @@ def test_a_force_that_a_rod_balances_does_not_stop_what_only_rounding_turns(
         expected = [mpmath.sqrt(1 - leaves**2) + across * late, leaves - down * late - 5 * late**2]
     place = column(answer, "a.position")
     assert np.max(np.abs(np.asarray(place.values)[0] - [float(x) for x in expected])) <= place.error + 1e-15
+
+
+def test_a_damper_sets_the_unit_of_time_where_only_rounding_moves() -> None:
+    """Two stones with a damper between them leave their loops at once, and fly side by side as one alone does."""
+    bodies = {name: {"mass": 2, "at": [x, -1], "velocity": ["sqrt(35)", 0]} for name, x in (("a", 0), ("b", 5))}
+    connections = [
+        {"kind": "contact", "name": f"loop-{name}", "place": name, "on": {"at": [x, 0], "radius": -1}}
+        for name, x in (("a", 0), ("b", 5))
+    ]
+    damper = {"kind": "damper", "a": "a", "b": "b", "coefficient": 0.5}
+    times = [0.36, 0.6, 0.8]
+    both = solve_scene(read({"gravity": [0, -10], "bodies": bodies, "connections": [*connections, damper]}), times)
+    alone = solve_scene(
+        read({"gravity": [0, -10], "bodies": {"a": bodies["a"]}, "connections": connections[:1]}), times
+    )
+    assert [event.kind for event in both.events] == ["lift-off", "lift-off"]
+    first, second = column(both, "a.position"), column(alone, "a.position")
+    assert np.max(np.abs(np.asarray(first.values) - np.asarray(second.values))) <= first.error + second.error

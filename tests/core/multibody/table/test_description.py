@@ -575,3 +575,43 @@ def test_a_spool_of_two_welded_wheels_is_uniformly_accelerated() -> None:
     assert answer.model.name == "constant acceleration"
     assert (answer.model.coordinates, answer.model.rows) == (1, 0)
     assert linear(answer, "flange") == pytest.approx((9.81 / 6, 0), rel=1e-15)
+
+
+@pytest.mark.parametrize("rate", [2, -0.7])
+def test_a_rod_with_a_counted_turn_swings_in_a_spinning_frame(rate: float) -> None:
+    """About a pivot P off the axis of the frame: (I + m h^2) a'' = -m rate^2 h |P| sin a - k (a - a_0), by mpmath."""
+    start, stiffness, half, mass, inertia = 0.8, 1.5, 0.5, 2, 0.3
+    rod = {
+        "mass": mass,
+        "inertia": inertia,
+        "at": [f"1 + {half}*cos({start})", f"{half}*sin({start})"],
+        "angle": start,
+        "places": {"end": [-half, 0]},
+        "angular_velocity": 0.4,
+    }
+    connections = [
+        {"kind": "pin", "a": "rod.end", "b": [1, 0]},
+        {"kind": "torsion-spring", "a": "rod", "stiffness": stiffness},
+        {"kind": "spinning-frame", "rate": rate, "about": "normal"},
+    ]
+    answer = solve_scene(read({"gravity": [0, 0], "bodies": {"rod": rod}, "connections": connections}), [0.7])
+    with mpmath.workdps(25):
+        pull, whole = mpmath.mpf(mass) * mpmath.mpf(rate) ** 2 * half, inertia + mass * mpmath.mpf(half) ** 2
+
+        def change(_: Any, y: Any) -> Any:
+            return [y[1], (-pull * mpmath.sin(y[0]) - stiffness * (y[0] - start)) / whole]
+
+        angle, turn = mpmath.odefun(change, 0, [mpmath.mpf(start), mpmath.mpf("0.4")])(0.7)
+    assert float(column(answer, "rod.angle").values[0]) == pytest.approx(float(angle), rel=1e-13)
+    assert float(column(answer, "rod.angular_velocity").values[0]) == pytest.approx(float(turn), rel=1e-12)
+
+
+def test_a_torque_turns_a_wheel_in_a_spinning_frame_as_elsewhere() -> None:
+    wheel = {"mass": 1, "radius": 0.2, "inertia": 0.02, "at": [0.5, 0], "angular_velocity": 3}
+    connections = [
+        {"kind": "pin", "a": "wheel", "b": [0.5, 0]},
+        {"kind": "torque", "body": "wheel", "torque": 0.1},
+        {"kind": "spinning-frame", "rate": 4, "about": "normal"},
+    ]
+    answer = solve_scene(read({"gravity": [0, -10], "bodies": {"wheel": wheel}, "connections": connections}), [2.0])
+    assert float(column(answer, "wheel.angle").values[0]) == pytest.approx(3 * 2 + 0.1 / 0.02 * 2, rel=1e-14)
