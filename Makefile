@@ -54,6 +54,7 @@ judge: environment
 	$(BIN)/python -m tests.core.multibody.judge 10000
 	$(BIN)/python -m tests.core.multibody.named_judge 1000
 	$(BIN)/python -m tests.core.multibody.contact_judge 10000
+	$(BIN)/python -m tests.core.multibody.audit.judge 20000
 	$(BIN)/python -m tests.core.multibody.relations.judge 20000
 	$(BIN)/python -m tests.oracles.plain_engine.comparison.run 5000 0
 	$(BIN)/python -m tests.oracles.plain_engine.comparison.run catalogue
