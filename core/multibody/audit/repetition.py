@@ -8,7 +8,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import Ledger
 from core.multibody.audit.placement import Numbers
-from core.multibody.audit.samples import Samples
+from core.multibody.audit.samples import Samples, axis_of_top
 
 FRACTIONS = (1, 2, 3, 5)
 """Parts of the period at which the state is compared with that of the start."""
@@ -88,7 +88,12 @@ def _apart(
             (moving.velocity, moved.velocity, error.velocity + late * _gain(later, name)),
         ]
         if first.rotation is not None and then.rotation is not None:
-            pairs.append((first.rotation, then.rotation, error.attitude + late * spin))
+            shown = slice(None)
+            if moving.spin is None:
+                # Of a top the axis alone is answered.
+                k = axis_of_top(description.bodies[name], description)
+                shown = slice(k, k + 1)
+            pairs.append((first.rotation[..., shown], then.rotation[..., shown], error.attitude + late * spin))
         if moving.spin is not None and moved.spin is not None:
             pairs.append((moving.spin, moved.spin, error.spin + late * _gain(later, name) + late * spin * spin))
         for one, other, known in pairs:

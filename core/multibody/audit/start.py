@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import sqrt
 
 import numpy as np
 
@@ -113,7 +114,9 @@ def _check_held(ledger: Ledger, description: Description, start: Samples, gains:
     """Require that the accelerations keep what is held: by the rates a short time before and after the start."""
     fastest = max(float(np.abs(twist.velocity).max()) for twist in start.motion.values())
     steepest = max(float(np.abs(twist.velocity).max()) for twist in gains.values())
-    rate = quickness(description, start)
+    size = max(float(np.abs(pose.position).max()) for pose in start.placement.values())
+    turning = max((float(np.abs(one.spin).max()) for one in gains.values() if one.spin is not None), default=0.0)
+    rate = max(quickness(description, start), sqrt(turning), sqrt(steepest / size) if size > 0.0 else 0.0)
     # Without a rate of its own, in the time that it takes to gain its speed, or in any time.
     step = SHORT * (1.0 / rate if rate > 0.0 else fastest / steepest if fastest > 0.0 < steepest else 1.0)
     for connection in description.connections:
@@ -131,12 +134,12 @@ def _check_held(ledger: Ledger, description: Description, start: Samples, gains:
         spins = [
             float(np.abs(one.spin).max()) for one in (gains[name] for name in connection.bodies) if one.spin is not None
         ]
-        size = steepest + rate * fastest + arm * float(max(spins, default=0.0)) + arm * rate**2
+        terms = steepest + rate * fastest + arm * float(max(spins, default=0.0)) + arm * rate**2
         for key, after in ends[0].items():
             gain = (after.imag - ends[1][key].imag) / STEP / (2.0 * step)
             off = np.abs(gain).reshape(1, -1).max(axis=1)
             ledger.compare(
-                f"{key} held by the accelerations", connection.name, start.times, off, (HELD + ledger.rounding) * size
+                f"{key} held by the accelerations", connection.name, start.times, off, (HELD + ledger.rounding) * terms
             )
 
 

@@ -25,6 +25,9 @@ from core.multibody.audit.samples import Samples, axis_of_top
 NODES = 7
 """Samples of a window: with some seventh of a radian of motion in it, the eighth term is below 1e-12 of the first."""
 
+NOISE = 2.0**-100
+"""Share of the largest forces and places to which what vanishes is solved for: in pairs of doubles."""
+
 SLOWEST = 0.05
 """Decay of the coefficients, two terms on, above which the terms that are left out are not known to be smaller."""
 
@@ -118,6 +121,10 @@ def check_window(ledger: Ledger, description: Description, freedoms: Freedoms, s
             unsure[spin_at : spin_at + freedoms.spins] = largest * off
             _check_attitude(ledger, samples, name, window)
         accelerations[name] = Acceleration(gain.value, angular.value)
+    size = max(float(np.abs(pose.position).max()) for pose in samples.placement.values())
+    size = max(size, *(connection.arm + connection.reach for connection in description.connections), 0.0)
+    heaviest = max(body.mass for body in description.bodies.values())
+    unsure += NOISE * heaviest * size * max(1.0, size) / half**2
     try:
         _balance(ledger, description, freedoms, samples, motion, accelerations, unsure)
     except Undefined:
