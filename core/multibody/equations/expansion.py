@@ -152,11 +152,19 @@ def _parts_apart(size: int, entries: Iterable[tuple[int, int]]) -> list[list[int
     return [members for i, members in enumerate(group) if members[0] == i]
 
 
-def expansion(start: Table, order: int) -> Expansion:
+def expansion(start: Table, order: int, chosen: Sequence[int] | None = None) -> Expansion:
     """Return the Taylor coefficients of the motion of a table from its state.
 
     Friction in space turns with the slip s: its line is -mu (s/|s|) times the two lines of the slip, and the series of
     s/|s| is found to one power with that of s.
+
+    Parameters
+    ----------
+    start : Table
+    order : int
+        Highest power of the places.
+    chosen : sequence of int, optional
+        Rows from which the others follow, where that is known better than from a state with its error.
 
     Raises
     ------
@@ -166,7 +174,7 @@ def expansion(start: Table, order: int) -> Expansion:
     table = start.oriented()
     count = len(table.names)
     lines = [row.line(table.q) for row in table.rows]
-    chosen = independent(lines)
+    chosen = independent(lines) if chosen is None else chosen
     try:
         inverse = saddle(table, chosen).inv() if count + len(chosen) else arb_mat(0, 0)
     except ZeroDivisionError:

@@ -13,6 +13,7 @@ from core.multibody.equations.expansion import expansion
 from core.multibody.equations.packed import GROUPS, pair, two_to
 from core.multibody.motion.series import step_size
 from core.multibody.motion.whole import Whole
+from core.multibody.phases.turning_slip import TurningSlip
 from core.multibody.search.pieces import COEFFICIENTS, Pieces
 from core.multibody.search.taylor import ORDER, TOLERANCE
 
@@ -38,10 +39,12 @@ class ExpandedInBalls:
         lengths, natural = np.zeros(len(times)), np.zeros(len(times))
         places, multipliers = np.zeros((len(times), n, ORDER + 1, 2)), np.zeros((len(times), rows, COEFFICIENTS, 2))
         sizes, others = np.zeros(places.shape[:-1]), np.zeros(multipliers.shape[:-1])
+        (_, turning), *_ = self.whole.parts
+        assert isinstance(turning, TurningSlip)
         q, v = self.whole.in_pairs(times, self.kind)
         for s in range(len(times)):
             places_now, rates_now = ([arb(float(x[0])) + arb(float(x[1])) for x in vector[s]] for vector in (q, v))
-            motion = expansion(replace(table, q=places_now, v=rates_now), ORDER)
+            motion = expansion(replace(table, q=places_now, v=rates_now), ORDER, turning.chosen)
             step = step_size(np.array([[float(x) for x in series] for series in motion.places]), group, TOLERANCE)
             natural[s], exponent = step, math.ceil(math.log2(reach[s]))
             if step < reach[s]:

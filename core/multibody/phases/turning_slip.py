@@ -11,6 +11,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from flint import arb, arb_mat
@@ -78,6 +79,11 @@ class TurningSlip:
     period: Ball | None = None
     _runs: dict[str, Run] = field(default_factory=dict, repr=False)
 
+    @cached_property
+    def chosen(self) -> list[int]:
+        """Rows that do not follow from others."""
+        return independent(row.line(self.table.q) for row in self.table.rows)
+
     def run(self, kind: str, end: float) -> Run:
         """Return the steps to a time, or to the end of the slip.
 
@@ -98,7 +104,8 @@ class TurningSlip:
         return found
 
     def _step(self, run: Run, order: int, tolerance: float) -> None:
-        motion = expansion(run.table, order)
+        # Rows that follow from others at the start do so for good; on a state with its error they may not.
+        motion = expansion(run.table, order, self.chosen)
         run.steps.append(motion)
         for unit, series in zip(self.table.units, motion.places, strict=True):
             run.fastest[unit] = max(run.fastest.get(unit, 0.0), abs(float(series[1])))

@@ -13,7 +13,7 @@ from scipy.optimize import linprog
 from core.multibody.contacts.shares_in_space import Cone, best_share
 from core.multibody.solve import solve_scene
 from tests.core.multibody.table.test_contact_geometry import states
-from tests.core.multibody.worked_examples import read
+from tests.core.multibody.worked_examples import column, read
 
 LEGS = {"f0": (0.5, 0.3), "f1": (-0.5, 0.3), "f2": (-0.5, -0.3), "f3": (0.5, -0.3)}
 SIDES = 360
@@ -172,3 +172,24 @@ def test_a_table_that_is_pulled_less_than_it_bears_stands() -> None:
     answer = solve_scene(read(scene), [1.0])
     assert answer.events == ()
     assert states(answer)[0] == dict.fromkeys(LEGS, "stick")
+
+
+def test_what_slides_on_four_feet_turns_its_slip_as_a_point_does() -> None:
+    """With the feet as high as its centre of mass a body slides without turning, whatever the share of its weight."""
+    moving = {"mass": 2, "at": [0, 0, 0], "velocity": [0, 1.5, 0]}
+    feet = {name: [a, b, 0] for name, (a, b) in LEGS.items()}
+    body = {**moving, "moments": [1, 1.5, 2], "places": feet, "angular_velocity": [0, 0, 0]}
+    found = []
+    for one, places in ((moving, ["body"]), (body, [f"body.{name}" for name in LEGS])):
+        scene = {
+            "gravity": [2, 0, -9.81],
+            "bodies": {"body": one},
+            "connections": [
+                {"kind": "contact", "place": place, "on": {"at": [0, 0, 0], "normal": [0, 0, 1]}, "friction": 0.4}
+                for place in places
+            ],
+        }
+        found.append(column(solve_scene(read(scene), [0.04], ("trajectory",)), "body.position"))
+    point, standing = found
+    assert np.linalg.norm(standing.values[0] - point.values[0]) <= standing.error + point.error
+    assert standing.error < 1e-15
