@@ -60,7 +60,7 @@ class Impact:
     together : bool
         Whether several take impulses at once.
     shared : set of int
-        Measures of which other impulses have the same outcome: friction of places that stick side by side.
+        Measures of which other impulses have the same outcome: places side by side on one body.
     """
 
     v: list[Ball]
@@ -157,7 +157,7 @@ def impact(
             after = [a + x for a, x in zip(after, changes[i], strict=True)]
         taking = [i for i in group if outcome.impulses.get(normal[i], ZERO) != 0]
         together = together or len(taking) > 1
-        if len(taking) > 1 and _shares(unilateral, taking, q, after, found):
+        if _shares(unilateral, group, q, v, after, found):
             shared.update(taking)
         rubs = [[outcome.impulses.get(lines.get(i, -1), ZERO) for lines in (slips, across)] for i in taking]
         impulses.update({i: (outcome.impulses[normal[i]], rub[0], rub[1]) for i, rub in zip(taking, rubs, strict=True)})
@@ -178,12 +178,24 @@ def _driven(table: Table, found: Responses, impulses: Forces) -> Ball:
 
 
 def _shares(
-    unilateral: Sequence[Unilateral], taking: Sequence[int], q: list[Ball], after: list[Ball], found: Responses
+    unilateral: Sequence[Unilateral],
+    group: Sequence[int],
+    q: list[Ball],
+    v: list[Ball],
+    after: list[Ball],
+    found: Responses,
 ) -> bool:
-    """Return whether contacts that stick after an impact could share its impulses otherwise."""
-    if not any(unilateral[i].slips and is_zero(slip_rate(unilateral[i], q, after)) for i in taking):
+    """Return whether contacts could share an impulse otherwise: those that leave it as they do where they take one."""
+    lines = []
+    for i in group:
+        one = unilateral[i]
+        before = gap_rate(one, q, v)
+        if is_zero(gap_rate(one, q, after) + (one.restitution * before if before < 0 else ZERO)):
+            lines.append(found.normal[i])
+            if one.slips and is_zero(slip_rate(one, q, after)):
+                lines.extend(found.grip(i))
+    if len(lines) < 2:
         return False
-    lines = [line for i in taking for line in (found.normal[i], *found.grip(i))]
     return bool(arb_mat([[found.matrix[a][b] for b in lines] for a in lines]).det().contains(0))
 
 
