@@ -186,6 +186,8 @@ def _searched(phase: Phase, watched: Sequence[Watch], left: float) -> list[Cross
         return []
     number, one = hit
     watch = watched[number]
+    if one.width > 0.0 and watch.what == "length":
+        raise SingularPlace(arb(one.time), one.width, watch.one.name)
     if one.width > 0.0:
         raise Undecided(Graze(arb(one.time, one.width), watch))
     try:

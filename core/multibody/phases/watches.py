@@ -48,7 +48,7 @@ class Watch:
     @property
     def watched(self) -> Watched:
         """What a search has to know of it."""
-        return Watched(self.along, self.admissible is not None, self.what == "gap", self.what == "length")
+        return Watched(self.along, self.admissible is not None, self.what in ("gap", "length"), self.what == "length")
 
     def along(self, pieces: Pieces) -> Curve:
         """Return it along a motion in pieces."""

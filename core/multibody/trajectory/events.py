@@ -15,7 +15,7 @@ from core.multibody.motion.whole import Whole
 from core.multibody.search.curves import Curve
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion, Watched
 from core.multibody.search.first_zero import FLOOR, SAFETY_FACTOR, Found
-from core.multibody.search.location import located
+from core.multibody.search.location import NotLocated, located
 from core.multibody.search.pieces import Expanded, Pieces, repeats_after
 from core.multibody.table.connection_effects import Limit
 from core.systems.trajectory import MotionEvent
@@ -42,7 +42,7 @@ def first_event(whole: Whole, watched: Sequence[Limit], end: float) -> MotionEve
     best: MotionEvent | None = None
     for group, reach in _groups(whole, watched, end):
         quantities = [
-            Watched(partial(_along, whole, limit), limit.force is not None, singular=limit.force is None)
+            Watched(partial(_along, whole, limit), limit.force is not None, limit.force is None, limit.force is None)
             for limit in group
         ]
         search = FirstOfMotion(expansions, quantities, copysign(1.0, end))
@@ -106,11 +106,20 @@ def _along(whole: Whole, limit: Limit, pieces: Pieces) -> Curve:
 
 
 def _event(motions: Sequence[Expanded], limit: Limit, quantity: Watched, found: Found) -> MotionEvent:
+    if found.width > 0.0:
+        return MotionEvent(limit.event, limit.name, found.time, found.width)
     reach = copysign(max(abs(found.time), 2.0**-1000), found.time)
-    zeros = [located(motion, quantity.along, found.time, found.rest, reach) for motion in motions]
+    try:
+        zeros = [located(motion, quantity.along, found.time, found.rest, reach) for motion in motions]
+    except NotLocated:
+        # The series of a length that is one of the coordinates do not reach beyond its zero.
+        return MotionEvent(limit.event, limit.name, found.time, SINGULAR_TIME_ERROR * abs(found.time))
     time = float(zeros[0].time)
     error = FLOOR * zeros[0].width + 2.0**-52 * abs(time)
     error += SAFETY_FACTOR * abs(float(zeros[0].time - zeros[-1].time))
+    if limit.force is None:
+        # Beside a singular place slopes tell nothing; that it lies there is known.
+        error = min(error, SINGULAR_TIME_ERROR * abs(time))
     return MotionEvent(limit.event, limit.name, time, error)
 
 

@@ -566,3 +566,16 @@ def test_angles_of_bodies_in_different_parts_are_followed_apart() -> None:
         together, apart = column(both, f"{name}.angle"), column(alone, f"{name}.angle")
         assert np.abs(together.values - apart.values).max() <= together.error + apart.error
         assert np.abs(apart.values).max() > 8
+
+
+@pytest.mark.parametrize("distance", ["1", "1.05"])
+@pytest.mark.parametrize("direction", [["0", "0", "-1"], ["0", "0.8", "-0.6"], ["0.48", "0.64", "-0.6"]])
+def test_a_spring_that_loses_its_length_ends_the_scene_in_every_direction(distance: str, direction: list[str]) -> None:
+    """1 kg from rest on 10 N/m of 0.5 m: its length 0.5 + (d - 0.5) cos(sqrt(10) t) passes zero or turns back there."""
+    body = {"mass": 1, "at": [f"{distance}*{x}" for x in direction]}
+    spring = {"kind": "spring", "name": "s", "a": "b", "b": [0, 0, 0], "stiffness": 10, "rest_length": 0.5}
+    ended = solve_scene(read({"gravity": [0, 0, 0], "bodies": {"b": body}, "connections": [spring]}), [1.0]).ended
+    assert ended is not None
+    assert (ended.kind, ended.name) == ("singular", "s")
+    right = math.acos(-0.5 / (float(distance) - 0.5)) / math.sqrt(10)
+    assert abs(ended.time - right) <= ended.error < 1e-6
