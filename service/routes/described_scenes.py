@@ -306,6 +306,7 @@ def _without_long_searches(question: DescribedSceneRequest, budget: Budget) -> A
 
 
 HEAVY_BODY = scene_catalogue()["kovalevskaya-top"].question
+TURNING_SLIP = {**scene_catalogue()["stone-across-slope"].question, "times": [0.01]}
 BY_METHOD = {
     **scene_catalogue()["double-pendulum"].question,
     "times": [0.0, 0.1],
@@ -323,8 +324,9 @@ DESCRIBED_SCENES = (
         solved,
         CalibratedCost(OPERATION, counted),
         planning_probe=probed,
-        # A heavy body about a point has kernels of its own, one of them for its start alone; so has a named method.
-        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, BY_METHOD),
+        # A heavy body about a point has kernels of its own, one of them for its start alone; so have a named method and
+        # a slip that turns.
+        warming=(HEAVY_BODY, {**HEAVY_BODY, "times": [0.0]}, BY_METHOD, TURNING_SLIP),
         description=DESCRIPTION,
         representations={SVG: draw_described},
     ),

@@ -53,7 +53,10 @@ def axis_error(inertia: PrincipalInertia, pointing: Sequence[float]) -> float:
 
 def found_figures(k: int, inertia: PrincipalInertia, resolved: Resolved) -> Found:
     """Return what the kernel finds, with the decisive difference in exact arithmetic where it needs that."""
-    parts = inertia.moments, inertia.moments_tail, inertia.axes, *resolved.numbers
+    # Copies, as for arrays of another layout, or that cannot be written, the kernel would be compiled once more.
+    given = inertia.moments, inertia.moments_tail, inertia.axes, *resolved.numbers
+    moments, tail, axes, i, it, w, wt = (np.array(x) for x in given)
+    parts = moments, tail, axes, i, it, w, wt
     found = precession_figures(k, *parts, False, 0.0, 0.0, 0)
     if found[0] == UNDECIDED:
         found = precession_figures(k, *parts, True, *exact_difference(resolved))
