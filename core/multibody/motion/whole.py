@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,8 +12,9 @@ from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul
 from core.errors import AccuracyUnreachable
-from core.multibody.algebra.polynomials import Ball, LinearForm, Poly
+from core.multibody.algebra.polynomials import ONE, Ball, LinearForm, Poly
 from core.multibody.algebra.rank import independent
+from core.multibody.equations.dynamics import undetermined
 from core.multibody.equations.packed import Packed, Units, packed, pair, two_to, units_of
 from core.multibody.motion.motion import EvaluatedInDoubles, Motion
 from core.multibody.motion.numerical import Numerical
@@ -21,6 +22,7 @@ from core.multibody.motion.series_pairs import multipliers_pairs
 from core.multibody.reduction.reduction import Reduced
 from core.multibody.table.connection_effects import Force
 from core.multibody.table.measures import Measures
+from core.multibody.table.table import Table
 
 
 @dataclass(frozen=True)
@@ -81,9 +83,22 @@ class Whole:
     @cached_property
     def arrays(self) -> tuple[Packed, Units, list[int]]:
         """The table as described for compiled code, its units, and the rows that it holds."""
-        table, chosen = self.measures.table, self.independent_rows
+        table, chosen = self._with_mass(), self.independent_rows
         units = units_of(table, self.acceleration)
         return packed(table, chosen, units), units, chosen
+
+    def _with_mass(self) -> Table:
+        """Return the table as described, with a mass for what stays and has neither a mass nor a row that sees it.
+
+        A massless pulley that hangs straight down is such across its strings: as it stays, a mass changes nothing.
+        """
+        table = self.measures.table
+        still = {i for i, e in enumerate(self.reduced.expressions) if not any(e) and (i, i) not in table.mass}
+        if not still:
+            return table
+        loose = undetermined(table, still, [row.line(table.q) for row in table.rows])
+        mass = max((x for (i, j), x in table.mass.items() if i == j), key=float, default=ONE)
+        return replace(table, mass={**table.mass, **{(i, i): mass for i in loose}})
 
     @cached_property
     def reduced_arrays(self) -> tuple[Packed, Units, list[int]]:

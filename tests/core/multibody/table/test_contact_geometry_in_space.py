@@ -287,3 +287,23 @@ def test_friction_near_the_end_of_a_slip_that_turns_is_as_right_as_stated(speed:
         rub = answer.trajectory.columns[f"f.friction.{axis}"]
         for value, true in zip(rub.values, found, strict=True):
             assert abs(value - true[i]) <= rub.error
+
+
+def test_redundant_legs_stay_redundant_while_the_friction_of_another_turns() -> None:
+    """A table on four smooth legs, pulled at its centre, moves as a point on a plane does."""
+    spots = {f"f{k}": [x, y, -0.5] for k, (x, y) in enumerate(((0.5, 0.3), (-0.5, 0.3), (-0.5, -0.3), (0.5, -0.3)))}
+    centre = {"mass": 10, "at": [0, 0, 0.5], "velocity": [1, 0, 0]}
+    stone = {"mass": 0.5, "at": [5, 0, 0], "velocity": [-1.6, 0.5, 1.2]}
+    slope = {"kind": "contact", "place": "m", "on": {"at": [5, 0, 0], "normal": [0.6, 0, 0.8]}, "friction": 0.2}
+    spring = {"kind": "spring", "a": "table", "b": "m", "stiffness": 5}
+    floor = {"at": [0, 0, 0], "normal": [0, 0, 1]}
+    legs = [{"kind": "contact", "place": f"table.{spot}", "on": floor} for spot in spots]
+    plane = {"kind": "track", "place": "table", "on": {"at": [0, 0, 0.5], "normal": [0, 0, 1]}}
+    table = centre | {"moments": [1, 1.5, 2], "angular_velocity": [0, 0, 0], "places": spots}
+    answers = []
+    for body, held in ((table, legs), (centre, [plane])):
+        scene = {"gravity": [0, 0, -10], "bodies": {"table": body, "m": stone}, "connections": [*held, slope, spring]}
+        answers.append(solve_scene(read(scene), [0.1, 0.3], ("trajectory",)))
+    for name in ("table.position", "m.position", "m.velocity"):
+        first, second = (column(answer, name) for answer in answers)
+        assert np.max(np.abs(np.asarray(first.values) - np.asarray(second.values))) <= first.error + second.error

@@ -130,3 +130,27 @@ def test_a_yo_yo_thrown_up_reaches_the_end_of_its_string() -> None:
     time = (4 - np.sqrt(16 - 2 * fall * 0.5)) / fall
     assert answer.ended.time == pytest.approx(time, rel=1e-13)
     assert np.max(column(answer, "y.position").values[:, 1]) < 0.0
+
+
+def test_a_massless_pulley_that_hangs_straight_down_is_followed_until_a_weight_reaches_it() -> None:
+    """The pulley stands for 4 m1 m2/(m1 + m2); beside it the lighter weight rises with (g + a)/3."""
+    scene = {
+        "gravity": [0, -G],
+        "bodies": {
+            "m": {"mass": 4, "at": [-0.3, -1]},
+            "p": {"mass": 0, "at": [0.2, -0.5]},
+            "a": {"mass": 1, "at": [0.2, -1]},
+            "b": {"mass": 2, "at": [0.2, -1.2]},
+        },
+        "connections": [
+            {"kind": "string", "name": "u", "through": ["m", [-0.3, 0], [0.2, 0], "p"]},
+            {"kind": "string", "name": "l", "through": ["a", "p", "b"]},
+        ],
+    }
+    gain = G * (4 - 8 / 3) / (4 + 8 / 3)
+    answer = ended(scene, 0.6)
+    assert answer.ended is not None
+    assert answer.ended.time == pytest.approx(np.sqrt(2 * 0.5 / ((G + gain) / 3)), rel=1e-13)
+    assert answer.trajectory is not None
+    fallen = -1 - gain * np.asarray(answer.trajectory.time) ** 2 / 2
+    assert np.max(np.abs(column(answer, "m.position").values[:, 1] - fallen)) < 1e-14
