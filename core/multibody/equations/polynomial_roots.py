@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from flint import arb
@@ -127,13 +126,3 @@ def sharpened(p: Sequence[Ball], root: Ball) -> Ball:
         root = arb((root - step).mid())
     off = abs(value(p, root) / value(derivative, root))
     return arb(root.mid(), 2 * float(off.upper()) + 2.0**-300 * abs(float(root)))
-
-
-def first_of_quadratic(c: float, b: float, a: float) -> float | None:
-    """Return the first positive root of c + b t + a t^2 with c > 0, None without one."""
-    discriminant = b * b - 4.0 * a * c
-    if discriminant < 0.0 or (a == 0.0 and b >= 0.0):
-        return None
-    s = -(b + math.copysign(math.sqrt(discriminant), b)) / 2.0
-    roots = [x for x in ((s / a if a != 0.0 else 0.0), (c / s if s != 0.0 else 0.0)) if x > 0.0]
-    return min(roots, default=None)

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from flint import arb_poly
 
 from core.arrays import Floats
 from core.compiled import kernel
 from core.double_double import dd_add, dd_mul_d
-from core.multibody.algebra.polynomials import ZERO, Ball, Poly, is_zero
+from core.multibody.algebra.polynomials import Ball
 from core.multibody.equations.packed import pair
 from core.multibody.motion.motion import States
 from core.multibody.table.table import Table
@@ -51,33 +50,6 @@ class Uniform:
     def nodes(self, end: float) -> Floats:
         """Return enough times for what is at most quadratic in the state."""
         return np.linspace(0.0, end, 33)
-
-
-def first_zero(length: Poly, table: Table, accelerations: Sequence[Ball], backwards: bool) -> Ball | None:
-    """Return the first time after the start, or before it, at which a polynomial is zero; None for never.
-
-    The coordinates move with constant accelerations `accelerations`, and the polynomial in them is one of degree two in
-    the time, as that of a length is: of a product, one factor is a direction that stays.
-    """
-    path = arb_poly([0])
-    for key, x in length.items():
-        term = arb_poly([x])
-        for i in key:
-            term *= arb_poly([table.q[i], table.v[i], accelerations[i] / 2])
-        path += term
-    assert all(is_zero(x) for x in path.coeffs()[3:]), "a length in constant acceleration is quadratic in the time"
-    c, b, a = path[0], path[1], path[2]
-    if is_zero(a):
-        roots = [] if is_zero(b) else [-c / b]
-    else:
-        discriminant = b * b - 4 * a * c
-        if discriminant < 0:
-            return None
-        root = discriminant.sqrt() if discriminant > 0 else ZERO
-        s = -(b + root) / 2 if b > 0 else (root - b) / 2
-        roots = [s / a] + ([] if is_zero(s) else [c / s])
-    ahead = [r for r in roots if (r < 0 if backwards else r > 0)]
-    return min(ahead, key=lambda r: abs(float(r))) if ahead else None
 
 
 @kernel()
