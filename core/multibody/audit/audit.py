@@ -23,7 +23,7 @@ from core.multibody.audit.energy import check_energy
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
 from core.multibody.audit.laws_at_samples import States, check_samples
 from core.multibody.audit.newton import Freedoms
-from core.multibody.audit.placement import Numbers
+from core.multibody.audit.placement import Numbers, Undefined
 from core.multibody.audit.repetition import check_period, period_of, times_of_period
 from core.multibody.audit.samples import Columns, Samples, samples_of
 from core.multibody.audit.start import check_start
@@ -56,15 +56,35 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
     description = description_of(scene)
     if not description.moderate or answer.phases == ():
         return None
-    ledger = Ledger(MEANT if _was_rounded(answer) else ROUNDING)
-    with np.errstate(over="ignore", invalid="ignore"):
-        _Audit(ledger, description, answer, generator(description, times)).run(sampler)
+    ledger = Ledger(MEANT if _was_rounded(description, answer) else ROUNDING)
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            _Audit(ledger, description, answer, generator(description, times)).run(sampler)
+    except (ArithmeticError, np.linalg.LinAlgError):
+        # What leaves the range of doubles is not compared.
+        return None
     return ledger.worst
 
 
-def _was_rounded(answer: SceneSolution) -> bool:
+def _was_rounded(description: Description, answer: SceneSolution) -> bool:
     """Return whether positions or velocities were taken as rounded, and moved so that connections hold."""
-    return any("rounding" in sentence or "rounded" in sentence for sentence in answer.model.noticed)
+    if any("rounding" in sentence or "rounded" in sentence for sentence in answer.model.noticed):
+        return True
+    for pose in description.start.values():
+        if (
+            pose.rotation is not None
+            and np.abs(pose.rotation.T @ pose.rotation - np.eye(len(pose.position))).max() > ROUNDING
+        ):
+            return True
+    size = max(float(np.abs(pose.position).max()) for pose in description.start.values())
+    for connection in description.connections:
+        known = ROUNDING * (size + connection.arm + connection.reach)
+        try:
+            if any(np.abs(value).max() > known for value in connection.held(description.start).values()):
+                return True
+        except Undefined:
+            continue
+    return False
 
 
 class _Audit:

@@ -60,8 +60,10 @@ class Definition:
 
     def own_rest(
         self, placement: Placement, motion: Motion, gains: Motion, forces: Mapping[str, Numbers]
-    ) -> Numbers | None:
-        """Return what is left over of the equation of motion of what has mass in it (N); None where nothing has.
+    ) -> tuple[Numbers, Numbers] | None:
+        """Return what is left over of the equation of motion of what has mass in it, and the size of its terms (N).
+
+        None where nothing has mass.
 
         Parameters
         ----------
@@ -69,6 +71,11 @@ class Definition:
             Accelerations of the bodies.
         """
         return None
+
+    @property
+    def mass(self) -> float:
+        """Of what it is itself (kg)."""
+        return 0.0
 
     @property
     def coefficients(self) -> Touch | None:

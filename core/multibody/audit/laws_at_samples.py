@@ -27,7 +27,8 @@ def check_samples(ledger: Ledger, description: Description, samples: Samples, st
         Largest speed in the motion (m/s), beside which rates that vanish are known.
     """
     ahead = moved(samples.placement, samples.motion)
-    pull = sum(body.mass for body in description.bodies.values()) * float(np.linalg.norm(description.gravity))
+    mass = sum(body.mass for body in description.bodies.values()) + sum(one.mass for one in description.connections)
+    pull = mass * float(np.linalg.norm(description.gravity))
     scale = pull + np.zeros(samples.times.shape)
     if samples.forces:
         scale = scale + np.abs(np.stack(list(samples.forces.values()))).max(axis=0)

@@ -194,7 +194,9 @@ def _add_inertia(
     )
     for term in terms:
         rest[spin : spin + 3] += term.T
-        size[spin : spin + 3] += np.abs(term.T)
+    # Vectors that are parallel leave a product of rounding's size.
+    largest = np.abs(tensor).max(axis=(-1, -2))
+    size[spin : spin + 3] += largest * (np.abs(angular).max(axis=-1) + 6.0 * np.abs(twist).max(axis=-1) ** 2)
 
 
 def _spread(row: Numbers, numbers: list[int], count: int) -> Numbers:

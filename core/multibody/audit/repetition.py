@@ -42,7 +42,7 @@ def check_period(
     period = period_of(answer)
     assert period is not None, "the caller knows the period"
     late = max(answer.period_error or 0.0, ledger.rounding * period)
-    away, allowed = _apart(description, start, later, late, ledger.rounding)
+    away, allowed = _apart(description, answer, start, later, late, ledger.rounding)
     ledger.compare("the state returns after the period", "", later.times[:1], away[:1], allowed[:1])
     if away.max() < TOLD_APART or not _leaves(answer, start, later, period, ledger.rounding):
         # The motion is hardly larger than what is known of it, or begins beside a place where it would rest.
@@ -73,7 +73,7 @@ def _leaves(answer: SceneSolution, start: Samples, later: Samples, period: float
 
 
 def _apart(
-    description: Description, start: Samples, later: Samples, late: float, rounding: float
+    description: Description, answer: SceneSolution, start: Samples, later: Samples, late: float, rounding: float
 ) -> tuple[Numbers, Numbers]:
     """Return how many times further apart than is allowed the states are in their worst quantity, and one."""
     worst = np.zeros(later.times.shape)
@@ -85,8 +85,10 @@ def _apart(
         spin = 0.0 if moved.spin is None else float(np.abs(moved.spin).max())
         pairs: list[tuple[Numbers, Numbers, float]] = [
             (first.position, then.position, error.position + late * speed),
-            (moving.velocity, moved.velocity, error.velocity + late * _gain(later, name)),
         ]
+        if answer.accelerations is not None:
+            gain = _gain(answer, later, name)
+            pairs.append((moving.velocity, moved.velocity, error.velocity + late * gain))
         if first.rotation is not None and then.rotation is not None:
             shown = slice(None)
             if moving.spin is None:
@@ -95,7 +97,7 @@ def _apart(
                 shown = slice(k, k + 1)
             pairs.append((first.rotation[..., shown], then.rotation[..., shown], error.attitude + late * spin))
         if moving.spin is not None and moved.spin is not None:
-            pairs.append((moving.spin, moved.spin, error.spin + late * _gain(later, name) + late * spin * spin))
+            pairs.append((moving.spin, moved.spin, error.spin + late * _gain(answer, later, name) + late * spin * spin))
         for one, other, known in pairs:
             off = np.abs(other - one).reshape(len(later.times), -1).max(axis=1)
             size = rounding * float(np.abs(other).max()) + 4.0 * known
@@ -103,8 +105,11 @@ def _apart(
     return worst, np.ones(later.times.shape)
 
 
-def _gain(samples: Samples, name: str) -> float:
-    """Return a size of the acceleration of a body: a hundred times its speed in the time between samples (m/s^2)."""
+def _gain(answer: SceneSolution, samples: Samples, name: str) -> float:
+    """Return a size of the acceleration of a body: that of the start, or a hundred times its speed in the time."""
     speed = float(np.abs(samples.motion[name].velocity).max())
     span = float(np.ptp(samples.times))
-    return speed * 100.0 / span if span > 0.0 else 0.0
+    slowly = speed * 100.0 / span if span > 0.0 else 0.0
+    if answer.accelerations is None:
+        return slowly
+    return max(slowly, float(np.abs(answer.accelerations[name].linear).max()))

@@ -95,12 +95,10 @@ def _check_balance(
     except Undefined:
         return
     for connection in description.connections:
-        rest = connection.own_rest(start.placement, start.motion, gains, forces)
-        if rest is not None:
-            size = float(found.size.max()) + abs(rest)
-            ledger.compare(
-                "equation of the chain at the start", connection.name, start.times, rest, ledger.rounding * size
-            )
+        own = connection.own_rest(start.placement, start.motion, gains, forces)
+        if own is not None:
+            allowed = 8.0 * ledger.rounding * own[1]
+            ledger.compare("equation of the chain at the start", connection.name, start.times, own[0], allowed)
     left = np.abs(found.left())
     allowed = found.allowed(np.zeros_like(left), ledger.rounding)
     worst = int(np.argmax(left[:, 0] - allowed[:, 0]))

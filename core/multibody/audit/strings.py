@@ -240,6 +240,11 @@ class Chain(Definition):
         """See `Definition.reach`."""
         return self.length
 
+    @property
+    def mass(self) -> float:
+        """See `Definition.mass`."""
+        return self.density * self.length
+
     def sides(self, placement: Placement) -> tuple[Numbers, Numbers]:
         """Return the lengths of the two sides (m)."""
         first, last = (dot(end.at(placement) - np.array(self.peg), np.array(way)) for end, way in self._both)
@@ -263,7 +268,7 @@ class Chain(Definition):
 
     def own_rest(
         self, placement: Placement, motion: Motion, gains: Motion, forces: Mapping[str, Numbers]
-    ) -> Numbers | None:
+    ) -> tuple[Numbers, Numbers] | None:
         """See `Definition.own_rest`: that of the chain along itself, between its ends."""
         if any(any(end.offset) for end in self.ends) or any(name not in forces for name in self.forces):
             return None
@@ -271,7 +276,9 @@ class Chain(Definition):
         gain = rate(lambda where: self.sides(where)[0], placement, gains)
         drawn = self.density * (self.pulls[0] * first - self.pulls[1] * last)
         tensions = [forces[name] for name in self.forces]
-        return self.density * self.length * gain - drawn - tensions[0] + tensions[1]
+        rest = self.density * self.length * gain - drawn - tensions[0] + tensions[1]
+        size = self.mass * (np.abs(gain) + sum(abs(pull) for pull in self.pulls))
+        return rest, size + np.abs(tensions[0]) + np.abs(tensions[1])
 
     def derived(self, placement: Placement, motion: Motion, forces: Mapping[str, Numbers]) -> Mapping[str, Numbers]:
         """See `Definition.derived`: the tension at the peg, and how hard the chain presses on it."""

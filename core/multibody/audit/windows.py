@@ -124,6 +124,9 @@ def check_window(ledger: Ledger, description: Description, freedoms: Freedoms, s
     size = max(float(np.abs(pose.position).max()) for pose in samples.placement.values())
     size = max(size, *(connection.arm + connection.reach for connection in description.connections), 0.0)
     heaviest = max(body.mass for body in description.bodies.values())
+    if not np.isfinite(unsure).all():
+        # Rates that are not known in the window say nothing of the forces.
+        return
     unsure += NOISE * heaviest * size * max(1.0, size) / half**2
     try:
         _balance(ledger, description, freedoms, samples, motion, accelerations, unsure)
