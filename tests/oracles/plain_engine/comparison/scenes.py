@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
+from core.multibody.language.reading import scene_from
 from tests.oracles.plain_engine.comparison import units_in_plane, units_in_space, units_of_other_kinds
 from tests.oracles.plain_engine.comparison.drawing import Draw, Json, Unit
+from tests.oracles.plain_engine.mechanism import NotSupported
+from tests.oracles.plain_engine.motion import follow
 
 ENDS = (0.3, 0.5, 0.8)
 """Last times asked for (s)."""
 OTHER = 10_000
 """Seed from which on scenes are drawn from the units of other kinds, too."""
+SOON_AFTER = 20_000
+"""Seed from which on the last time is soon after the first event."""
 APART = 5.0
 """How far units stand from one another (m)."""
 
@@ -47,7 +53,17 @@ def scene_of(seed: int) -> tuple[Json, list[float]]:
     if space and draw.chance(0.1):
         scene["connections"].append({"kind": "spinning-frame", "rate": draw.one((1, 2))})
     end = draw.one(ENDS)
-    return scene, [0.0, round(end * 0.45, 4), end]
+    times = [0.0, round(end * 0.45, 4), end]
+    return scene, times if seed < SOON_AFTER else _until_soon_after(scene, times)
+
+
+def _until_soon_after(scene: Json, times: list[float]) -> list[float]:
+    """Return times of which the last is soon after the first event, if there is one."""
+    with suppress(NotSupported):
+        for event in follow(scene_from(scene), times).events:
+            if event.time > 0.01:
+                return [0.0, round(event.time / 2, 6), round(event.time + 1e-3, 6)]
+    return times
 
 
 def _tie(draw: Draw, units: list[Unit]) -> Json:

@@ -62,7 +62,7 @@ def welded(draw: Draw) -> Unit:
 def on_a_parabola(draw: Draw) -> Unit:
     """Return a bead on a parabola."""
     p, x = draw.name("bead"), draw.one((0, 0.3, 0.6, -1))
-    body: Json = {"mass": draw.mass(), "at": draw.at(x, f"{x}^2/2")}
+    body: Json = {"mass": draw.mass(), "at": draw.at(x, f"({x})^2/2")}
     if x == 0:
         body["velocity"] = [draw.one((0, 1, 2)), 0]
     on = {"at": draw.at(0, 0), "curvature": 1}
