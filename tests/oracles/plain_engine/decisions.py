@@ -18,7 +18,18 @@ from scipy.optimize import root
 from tests.oracles.plain_engine.coordinates import Floats, State
 from tests.oracles.plain_engine.impacts import Struck
 from tests.oracles.plain_engine.mechanism import Mechanism, NotSupported, Undecided
-from tests.oracles.plain_engine.phase import CLOSED, OPEN, STICK, Conditions, Inconsistent, Kind, Mode, Phase, Solution
+from tests.oracles.plain_engine.phase import (
+    CLOSED,
+    OPEN,
+    STICK,
+    Conditions,
+    Inconsistent,
+    Kind,
+    Mode,
+    Phase,
+    Solution,
+    sticks_more,
+)
 
 NEARLY = 1e-9
 """Share of the forces, accelerations or rates of a scene below which one of them has no sign."""
@@ -96,15 +107,13 @@ def _decide_group(
             modes = list(settled)
             for i, mode in zip(group, chosen, strict=True):
                 modes[i] = mode
-            if any(_sticks_more(other.phase.modes, modes, group) for other in consistent):
+            if any(sticks_more(other.phase.modes, modes) for other in consistent):
                 continue
             with suppress(Inconsistent):
                 found = _candidate(mechanism, state, modes, group, probe)
                 consistent.extend([] if found is None else [found])
     least = [
-        one
-        for one in consistent
-        if not any(_sticks_more(other.phase.modes, one.phase.modes, group) for other in consistent)
+        one for one in consistent if not any(sticks_more(other.phase.modes, one.phase.modes) for other in consistent)
     ]
     names = [mechanism.one_sided[i].name for i in group]
     if not least:
@@ -143,13 +152,6 @@ def _choices(width: int, slip: Floats | None, speed: float) -> tuple[Mode, ...]:
     if width == 1:
         return (STICK, Mode(Kind.SLIDE, (1.0,)), Mode(Kind.SLIDE, (-1.0,)), OPEN)
     return (STICK, Mode(Kind.SLIDE, ()), OPEN)
-
-
-def _sticks_more(other: Sequence[Mode], one: Sequence[Mode], active: Sequence[int]) -> bool:
-    pairs = [(other[i], one[i]) for i in active]
-    return any(a != b for a, b in pairs) and all(
-        a == b or (a.kind is Kind.STICK and b.kind is Kind.SLIDE) for a, b in pairs
-    )
 
 
 def _candidate(

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 
 from tests.oracles.plain_engine.coordinates import Floats, State
 from tests.oracles.plain_engine.mechanism import Mechanism, Undecided
-from tests.oracles.plain_engine.phase import CLOSED, OPEN, STICK, Kind, Mode, Phase
+from tests.oracles.plain_engine.phase import CLOSED, OPEN, STICK, Kind, Mode, Phase, sticks_more
 
 NONE = 1e-9
 """Share of the largest rate, or impulse, below which one is zero."""
@@ -43,7 +43,13 @@ class Impact:
 class Struck:
     """What impulses at touching contacts change: Delassus' operator of their gaps and slips."""
 
-    def __init__(self, mechanism: Mechanism, state: State, touching: Sequence[int]) -> None:
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        state: State,
+        touching: Sequence[int],
+        restitution: Mapping[int, float] | None = None,
+    ) -> None:
         every = mechanism.one_sided
         modes = [OPEN] * len(every)
         for i in touching:
@@ -59,7 +65,8 @@ class Struck:
         matrix[:n, n:] = -rows.lines[held].T
         matrix[n:, :n] = rows.lines[held]
         self.response = np.linalg.pinv(matrix, rcond=1e-11)[:n, :n]
-        self.mechanism, self.touching, self.every = mechanism, list(touching), every
+        self.touching, self.every = list(touching), every
+        self.restitution = restitution or {}
         self.lines = rows.lines
         self.normals, self.slips = normals, slips
 
@@ -92,7 +99,7 @@ def impact(mechanism: Mechanism, state: State, touching: Sequence[int], restitut
     Undecided
         Where the law has no outcome, or several.
     """
-    struck = Struck(mechanism, state, touching)
+    struck = Struck(mechanism, state, touching, restitution)
     rates, impulses = state.rates.copy(), {}
     mass = mechanism.inertia(state)
     energy = 0.5 * rates @ mass @ rates
@@ -101,7 +108,7 @@ def impact(mechanism: Mechanism, state: State, touching: Sequence[int], restitut
     for group in struck.clusters():
         if not any(struck.lines[struck.normals[i]] @ before < -NONE * size for i in group):
             continue
-        change, given = _group(struck, group, before, size, restitution)
+        change, given = _group(struck, group, before, size)
         rates = rates + change
         impulses.update(given)
     driven = mechanism.rows(state).driven.any()
@@ -113,19 +120,15 @@ def impact(mechanism: Mechanism, state: State, touching: Sequence[int], restitut
 Outcome = tuple[Floats, dict[int, tuple[float, Floats]]]
 
 
-def _group(
-    struck: Struck, group: Sequence[int], rates: Floats, size: float, restitution: Mapping[int, float]
-) -> Outcome:
+def _group(struck: Struck, group: Sequence[int], rates: Floats, size: float) -> Outcome:
     names = [struck.every[i].name for i in group]
     orders = [struck.every[i].order for i in group]
     if len(group) > 1 and all(x is not None for x in orders):
-        in_turn = _in_turn(
-            struck, sorted(group, key=lambda i: (struck.every[i].order or 0.0, i)), rates, size, restitution
-        )
+        in_turn = _in_turn(struck, sorted(group, key=lambda i: (struck.every[i].order or 0.0, i)), rates, size)
         if in_turn is None:
             raise Undecided("simultaneous-impacts", names)
         return in_turn
-    at_once = _at_once(struck, group, rates, size, restitution)
+    at_once = _at_once(struck, group, rates, size)
     push = NONE * max((abs(x[0]) for x in at_once[1].values()), default=0.0)
     taking = [i for i in group if at_once[1][i][0] > push]
     closing = [i for i in group if struck.lines[struck.normals[i]] @ rates < -NONE * size]
@@ -137,7 +140,7 @@ def _group(
     if len(group) > ORDERED:
         raise Undecided("simultaneous-impacts", names)
     for order in permutations(group):
-        in_turn = _in_turn(struck, order, rates, size, restitution)
+        in_turn = _in_turn(struck, order, rates, size)
         if in_turn is not None and np.abs(in_turn[0] - at_once[0]).max() > ALIKE * size:
             raise Undecided("simultaneous-impacts", names)
     return at_once
@@ -147,9 +150,7 @@ def _rate(struck: Struck, i: int, rates: Floats) -> float:
     return float(struck.lines[struck.normals[i]] @ rates)
 
 
-def _in_turn(
-    struck: Struck, order: Sequence[int], rates: Floats, size: float, restitution: Mapping[int, float]
-) -> Outcome | None:
+def _in_turn(struck: Struck, order: Sequence[int], rates: Floats, size: float) -> Outcome | None:
     now = rates.copy()
     total = {i: (0.0, np.zeros(struck.every[i].slips)) for i in order}
     for _ in range(IN_TURN):
@@ -157,7 +158,7 @@ def _in_turn(
         if hit is None:
             return now - rates, total
         try:
-            change, one = _at_once(struck, [hit], now, size, restitution)
+            change, one = _at_once(struck, [hit], now, size)
         except Undecided:
             return None
         now = now + change
@@ -165,20 +166,18 @@ def _in_turn(
     return None
 
 
-def _at_once(
-    struck: Struck, group: Sequence[int], rates: Floats, size: float, restitution: Mapping[int, float]
-) -> Outcome:
+def _at_once(struck: Struck, group: Sequence[int], rates: Floats, size: float) -> Outcome:
     """Return the change of the rates, and the impulses, if all contacts of a group act together."""
     consistent: list[tuple[tuple[Mode, ...], Outcome]] = []
     for states in product(*(_choices(struck.every[i].slips) for i in group)):
-        for chosen in _ways(struck, group, states, rates, restitution):
-            found = _solved(struck, group, chosen, rates, restitution)
-            if found is not None and _holds(struck, group, chosen, rates, found, size, restitution):
+        for chosen in _ways(struck, group, states, rates):
+            found = _solved(struck, group, chosen, rates)
+            if found is not None and _holds(struck, group, chosen, rates, found, size):
                 consistent.append((chosen, found))
     names = [struck.every[i].name for i in group]
     if not consistent:
         raise Undecided("no-impact", names)
-    least = [one for one in consistent if not any(_sticks_more(other[0], one[0]) for other in consistent)]
+    least = [one for one in consistent if not any(sticks_more(other[0], one[0]) for other in consistent)]
     first = least[0][1][0]
     if any(np.abs(other[1][0] - first).max() > ALIKE * size for other in least[1:]):
         raise Undecided("several-impacts", names)
@@ -194,7 +193,10 @@ def _choices(width: int) -> tuple[Mode, ...]:
 
 
 def _ways(
-    struck: Struck, group: Sequence[int], states: tuple[Mode, ...], rates: Floats, restitution: Mapping[int, float]
+    struck: Struck,
+    group: Sequence[int],
+    states: tuple[Mode, ...],
+    rates: Floats,
 ) -> Iterator[tuple[Mode, ...]]:
     """Yield the states with the directions in space in which something slides afterwards."""
     open_ways = [k for k, mode in enumerate(states) if mode.kind is Kind.SLIDE and not mode.along]
@@ -213,7 +215,7 @@ def _ways(
         return (*states[:k], Mode(Kind.SLIDE, tuple(direction.tolist())), *states[k + 1 :])
 
     def beside(angle: float) -> float:
-        found = _solved(struck, group, along(angle), rates, restitution)
+        found = _solved(struck, group, along(angle), rates)
         if found is None:
             return np.nan
         x, y = frame @ (struck.lines[part] @ (rates + found[0]))
@@ -228,9 +230,7 @@ def _ways(
             yield along(float(brentq(beside, a, b, xtol=1e-15, rtol=1e-15)))
 
 
-def _solved(
-    struck: Struck, group: Sequence[int], states: Sequence[Mode], rates: Floats, restitution: Mapping[int, float]
-) -> Outcome | None:
+def _solved(struck: Struck, group: Sequence[int], states: Sequence[Mode], rates: Floats) -> Outcome | None:
     pushes: list[Floats] = []
     wanted: list[int] = []
     targets: list[float] = []
@@ -247,7 +247,7 @@ def _solved(
         pushes.append(push)
         owners.append((i, rub, 1.0))
         wanted.append(row)
-        targets.append(-_rate(struck, i, rates) - restitution[i] * min(_rate(struck, i, rates), 0.0))
+        targets.append(-_rate(struck, i, rates) - struck.restitution[i] * min(_rate(struck, i, rates), 0.0))
         if mode.kind is Kind.STICK:
             part = struck.slips[i]
             for k, line in enumerate(range(part.start, part.stop)):
@@ -281,12 +281,11 @@ def _holds(
     rates: Floats,
     found: Outcome,
     size: float,
-    restitution: Mapping[int, float],
 ) -> bool:
     after = rates + found[0]
     largest = max((abs(push) for push, _ in found[1].values()), default=0.0)
     for i, mode in zip(group, states, strict=True):
-        rebound = restitution[i] * min(_rate(struck, i, rates), 0.0)
+        rebound = struck.restitution[i] * min(_rate(struck, i, rates), 0.0)
         opening = float(struck.lines[struck.normals[i]] @ after) + rebound
         push, rub = found[1][i]
         if mode.kind is Kind.OPEN:
@@ -302,10 +301,3 @@ def _holds(
             if float(np.array(mode.along) @ slip) < -NONE * size:
                 return False
     return True
-
-
-def _sticks_more(other: Sequence[Mode], one: Sequence[Mode]) -> bool:
-    pairs = list(zip(other, one, strict=True))
-    return any(a != b for a, b in pairs) and all(
-        a == b or (a.kind is Kind.STICK and b.kind is Kind.SLIDE) for a, b in pairs
-    )

@@ -30,7 +30,7 @@ REACH = 2.0**-7
 term is some 1e-15 of the rates, and rounding some 1e-14."""
 
 
-MOST_SPENT = 8000
+MOST_SPENT = 5000
 """Evaluations of the accelerations that one motion may take: steps that small mean a singular place or a fast body."""
 
 

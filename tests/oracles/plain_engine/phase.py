@@ -57,6 +57,14 @@ PROGRAMME = 5
 """Evaluations of accelerations that take as long as a linear programme."""
 
 
+def sticks_more(other: Sequence[Mode], one: Sequence[Mode]) -> bool:
+    """Return whether other states differ only in that something sticks where here it slides."""
+    pairs = list(zip(other, one, strict=True))
+    return any(a != b for a, b in pairs) and all(
+        a == b or (a.kind is Kind.STICK and b.kind is Kind.SLIDE) for a, b in pairs
+    )
+
+
 class Inconsistent(Exception):
     """No accelerations go with these states."""
 
