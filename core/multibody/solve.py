@@ -29,6 +29,7 @@ from core.multibody.start import (
     forces_of_start,
     noticed_of,
     scene_model,
+    slack_strings,
 )
 from core.multibody.statics.equilibria import equilibria_of
 from core.multibody.statics.thresholds import RestOf, range_of_rest
@@ -160,6 +161,8 @@ def _answered(scene: Scene, request: SceneRequest) -> tuple[SceneSolution, Descr
         return answer_in_phases(scene, request)
     multipliers = multipliers_at_start(found.described.measures, found.whole.acceleration)
     forces = forces_at_start(found.described.measures, multipliers)
+    if slack_strings(found, forces) and request.method is None and not has_chain(scene):
+        return answer_in_phases(scene, request)
     noticed = noticed_of(found, forces, multipliers)
     still = at_rest(found)
     if still:

@@ -174,6 +174,15 @@ def energy_of(found: Described, numbers: NumberKind = DOUBLES) -> Energy:
     return Energy(kinetic_energy, potential_energy, total, measures.conservative, errors)
 
 
+def slack_strings(found: Modelled, forces: Sequence[ForceAtStart]) -> list[str]:
+    """Return the strings that would have to push at the start: the scene begins with them slack."""
+    return [
+        limit.name
+        for limit in found.described.measures.limits
+        if limit.event == "slack" and limit.force is not None and (forces[limit.force].value or ZERO) < 0
+    ]
+
+
 def at_rest(found: Modelled) -> list[str]:
     """Return the coordinates of bodies that nothing moves."""
     bodies = set(found.described.scene.bodies)

@@ -24,7 +24,7 @@ from core.multibody.motion.modes import Modes
 from core.multibody.motion.motion import Motion, Rest
 from core.multibody.motion.uniform import Uniform
 from core.multibody.proven.proven_series import ProvenSeries, ProvenStep, Vector
-from core.multibody.start import noticed_of, scene_model
+from core.multibody.start import noticed_of, scene_model, slack_strings
 from core.multibody.table.connection_effects import Limit
 from core.multibody.table.frames import Frame
 from core.multibody.trajectory.events import first_event
@@ -49,6 +49,13 @@ class PartProof:
             self.multipliers = multipliers_at_start(self.found.described.measures, self.found.whole.acceleration)
             self.forces = forces_at_start(self.found.described.measures, self.multipliers)
         _require_exact(self.found)
+        slack = slack_strings(self.found, self.forces)
+        if slack:
+            raise NotApplicable(
+                f"{', '.join(slack)} would have to push at the start: strings that are slack are answered in doubles",
+                path=("connections",),
+                remedy="ask POST /v1/scenes, or leave out the string",
+            )
 
     def model(self) -> SceneModel:
         """Return the model, its figures as numerals."""
