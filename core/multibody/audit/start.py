@@ -48,7 +48,8 @@ def check_start(
 
 def _check_places(ledger: Ledger, description: Description, start: Samples) -> None:
     size = max(float(np.max(np.abs(body.start.position))) for body in description.bodies.values())
-    size = max(size, *(connection.reach for connection in description.connections), 0.0)
+    # A body in the origin is moved by as much as its axes turn the arms of its connections.
+    size = max(size, *(connection.reach + connection.arm for connection in description.connections), 0.0)
     known = ledger.rounding
     for name, body in description.bodies.items():
         pose, errors = start.placement[name], start.errors[name]
