@@ -86,9 +86,11 @@ def _apart(
         pairs: list[tuple[Numbers, Numbers, float]] = [
             (first.position, then.position, error.position + late * speed),
         ]
-        if answer.accelerations is not None:
-            gain = _gain(answer, later, name)
-            pairs.append((moving.velocity, moved.velocity, error.velocity + late * gain))
+        velocities = moved.velocity
+        if answer.accelerations is None:
+            # How fast a velocity changes after the period is not known: it tells the parts of the period apart alone.
+            velocities = np.concatenate([moving.velocity[:1], velocities[1:]])
+        pairs.append((moving.velocity, velocities, error.velocity + late * _gain(answer, later, name)))
         if first.rotation is not None and then.rotation is not None:
             shown = slice(None)
             if moving.spin is None:

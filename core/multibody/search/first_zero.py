@@ -248,6 +248,8 @@ class FirstZero:
         times, until = np.array([one.start for one in ahead]), np.array([one.reach for one in ahead])
         pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
         lengths = np.abs(pieces[0].lengths)
+        if not np.isfinite(lengths).all():
+            raise AccuracyUnreachable(None, math.inf, "the motion leaves the range of doubles", path=("times",))
         share = np.minimum(until / lengths, 1.0)
         plain, of = np.ones(len(times), dtype=bool), {}
         remaining = []
