@@ -74,6 +74,7 @@ class Description:
         """Whether its numbers are of sizes for which rates are formed to all digits."""
         numbers = [abs(float(x)) for body in self.bodies.values() for x in (body.mass, *body.start.position) if x]
         numbers.extend(connection.reach for connection in self.connections if connection.reach)
+        numbers.extend(connection.mass for connection in self.connections if connection.mass)
         numbers.extend(abs(x) for x in self.gravity if x)
         return all(LEAST < x < LARGEST for x in numbers)
 
