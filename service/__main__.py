@@ -117,7 +117,6 @@ def _serve(settings: Settings, given: Mapping[str, Any]) -> None:
     import uvicorn
 
     from service.app import app
-    from service.http.connection import Connection
 
     app.address = f"http://{host}:{port}"
     with sharing() if several else contextlib.nullcontext():
@@ -126,15 +125,24 @@ def _serve(settings: Settings, given: Mapping[str, Any]) -> None:
             host=host,
             port=port,
             workers=settings.workers,
-            http=Connection,
-            log_config=None,
-            access_log=False,
-            server_header=False,
-            # The address of the client is used for quotas only; behind a proxy, it is the proxy's.
-            proxy_headers=False,
-            timeout_graceful_shutdown=settings.shutdown_seconds,
-            timeout_keep_alive=settings.keep_alive_seconds,
+            **server_options(settings),
         )
+
+
+def server_options(settings: Settings) -> dict[str, Any]:
+    """Return what uvicorn is given beside the application and its address."""
+    from service.http.connection import Connection
+
+    return {
+        "http": Connection,
+        "log_config": None,
+        "access_log": False,
+        "server_header": False,
+        "proxy_headers": bool(settings.forwarded_allow_ips),
+        "forwarded_allow_ips": settings.forwarded_allow_ips,
+        "timeout_graceful_shutdown": settings.shutdown_seconds,
+        "timeout_keep_alive": settings.keep_alive_seconds,
+    }
 
 
 def unknown_settings(environment: Mapping[str, str]) -> dict[str, str | None]:

@@ -24,7 +24,7 @@ from service.execution.request_handler import RequestHandler
 from service.execution.supervision import end_with_supervisor, remove_temporary_files
 from service.http.dispatch import Dispatcher
 from service.http.keys import Keys
-from service.http.target import path_of_target
+from service.http.target import host_of, is_allowed, path_of_target
 from service.observability.logs import LOG, configure
 from service.observability.metrics import Metrics
 from service.openapi.document import ABOUT, openapi, serve_routes
@@ -91,6 +91,8 @@ class Service(FastAPI):
             starting=lambda: self._starting,
         )
         # Paths with parameters in braces are matched by FastAPI, which reads the parameters.
+        self._unknown_host = dispatcher.unknown_host
+        self._hosts = [name.strip().lower() for name in settings.allowed_hosts.split(",") if name.strip()]
         self._handlers = {route: handler for route, handler in dispatcher.handlers.items() if "{" not in route[1]}
         self._bodies = dispatcher.bodies
         serve_routes(self, self.table, dispatcher.handlers, dispatcher.unrouted)
@@ -109,6 +111,8 @@ class Service(FastAPI):
             path = path_of_target(path)
             scope = {**scope, "path": (root or "") + path, "raw_path": path.encode()}
         handler = self._handlers.get((scope["method"], path)) or super().__call__
+        if self._hosts and not is_allowed(host_of(scope["headers"]), self._hosts):
+            handler = self._unknown_host
         await handler(scope, receive, send)
 
     def _with_cors(self, app: ASGIApp) -> ASGIApp:

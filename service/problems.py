@@ -95,6 +95,12 @@ REGISTRY: Mapping[str, ProblemType] = {
         ),
         ProblemType("body-too-large", 413, "The body is too large", "The limit is named; send less or split it."),
         ProblemType(
+            "unknown-host",
+            421,
+            "The service is not known under this name",
+            "Use a host name of the setting allowed_hosts.",
+        ),
+        ProblemType(
             "unsupported-media-type",
             415,
             "The body has another media type",

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ipaddress import ip_network
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, FilePath
+from pydantic import AfterValidator, BeforeValidator, Field, FilePath
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 LONGEST = 1_000_000
@@ -18,6 +19,13 @@ def _named(value: object) -> object:
     return value
 
 
+def _networks(value: str) -> str:
+    """Refuse what is no list of addresses and networks: a proxy that is not recognised would be every client."""
+    for entry in filter(None, value.replace(" ", "").split(",")):
+        ip_network(entry)
+    return value.replace(" ", "")
+
+
 class Settings(BaseSettings):
     """The service's settings; the description of each field is its documentation."""
 
@@ -26,6 +34,17 @@ class Settings(BaseSettings):
     host: str = Field(default="127.0.0.1", description="Address to listen on.")
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
     workers: int = Field(default=1, ge=1, le=256, description="Number of server processes that share the port.")
+
+    forwarded_allow_ips: Annotated[str, AfterValidator(_networks)] = Field(
+        default="",
+        description="Addresses and networks of reverse proxies, separated by commas, whose X-Forwarded-For names the "
+        "client; empty trusts none, and all clients behind a proxy count as one.",
+    )
+    allowed_hosts: str = Field(
+        default="",
+        description="Host names under which the service is addressed, separated by commas, *.example.org with all "
+        "below; others are refused (421). IP addresses and localhost are always accepted; empty accepts every name.",
+    )
 
     keep_alive_seconds: int = Field(
         default=75,

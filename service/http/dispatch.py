@@ -177,6 +177,13 @@ class Dispatcher:
             negotiated(context.headers[b"accept"], (route.media_type,))
         await context.page(reply.body, reply.media_type, reply.status)
 
+    async def unknown_host(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Refuse a request to a name that is not the service's (a page may have its own name lead to this address)."""
+        detail = "the Host of the request is not one of the setting allowed_hosts"
+        await RequestContext(self._records, "none", scope, receive, send).problem(
+            Problem(REGISTRY["unknown-host"], detail)
+        )
+
     async def unrouted(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request that no handler is there for."""
         context = RequestContext(self._records, "none", scope, receive, send)

@@ -34,6 +34,8 @@ def test_limits_are_those_of_the_service() -> None:
     text = CONFIGURATION.read_text(encoding="utf-8")
     assert f"client_max_body_size {Settings().max_body_bytes};" in text
     assert "server 127.0.0.1:8000;" in text
+    # Replaced, not added to: what a client sends under this name must not be taken for its address.
+    assert "proxy_set_header X-Forwarded-For $remote_addr;" in text
     read = float(text.split("proxy_read_timeout ")[1].split("s;")[0])
     assert read > Settings().deadline_seconds
     # The proxy closes idle connections first: one that the service closed while a request is on its way is a 502.

@@ -46,9 +46,15 @@ def test_times_are_those_that_a_timer_can_keep(monkeypatch: pytest.MonkeyPatch, 
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("KEYS_FILE", ""), ("KEYS_FILE", "/none/such"), ("KEYS_FILE", "/")],
+    [
+        ("KEYS_FILE", ""),
+        ("KEYS_FILE", "/none/such"),
+        ("KEYS_FILE", "/"),
+        ("FORWARDED_ALLOW_IPS", "*"),
+        ("FORWARDED_ALLOW_IPS", "127.0.0.1,proxy"),
+    ],
 )
-def test_paths_lead_somewhere_or_stop_the_start(
+def test_paths_and_proxies_lead_somewhere_or_stop_the_start(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, value: str
 ) -> None:
     """An empty name of the file of keys must not let everybody in."""

@@ -212,6 +212,32 @@ async def test_targets_in_absolute_form_lead_to_their_path(target: str, status: 
     assert sent[0]["status"] == status
 
 
+@pytest.mark.parametrize(
+    ("host", "status"),
+    [
+        ("polhode.example.org", 200),
+        ("Polhode.Example.ORG:8443", 200),
+        ("a.course.example.org", 200),
+        ("localhost:8000", 200),
+        ("127.0.0.1", 200),
+        ("[::1]:8000", 200),
+        ("course.example.org", 421),
+        ("polhode.example.org.attacker.net", 421),
+        ("attackercourse.example.org", 421),
+        ("", 421),
+    ],
+)
+async def test_other_host_names_are_refused_where_those_of_the_service_are_known(host: str, status: int) -> None:
+    named = toy_service(allowed_hosts="polhode.example.org, *.course.example.org")
+    async with client_of(named) as client:
+        for path in ("/healthz", "/v1/nothing"):
+            response = await client.get(path, headers={"host": host})
+            if status == 421:
+                assert (response.status_code, response.json()["code"]) == (421, "unknown-host")
+            else:
+                assert response.status_code in (200, 404)
+
+
 async def respond_to(app: Service, target: str) -> list[Any]:
     """Return what an application sends as its response to GET, however its target is written."""
     sent: list[Any] = []

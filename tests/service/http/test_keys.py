@@ -12,12 +12,15 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
+import uvicorn
 
-from service.__main__ import main
+from service.__main__ import main, server_options
 from service.http import keys as module
 from service.http.keys import Allowance, Key, Keys, new_key
 from service.problems import Refusal
+from service.settings import Settings
 from tests.service.conftest import client_of, inline_toys
 from tests.service.toy_routes import GOOD
 
@@ -292,3 +295,27 @@ def test_a_file_that_cannot_be_used_stops_the_start(tmp_path: Path, text: str, r
         Keys(file)
     with pytest.raises(FileNotFoundError):
         Keys(tmp_path / "absent")
+
+
+@pytest.mark.parametrize(("trusted", "others"), [("127.0.0.1", 401), ("192.0.2.0/24", 429), ("", 429)])
+async def test_a_trusted_proxy_names_its_clients_and_nobody_else_does(
+    tmp_path: Path, trusted: str, others: int
+) -> None:
+    """Wrong keys are limited by address: ten at once, then one in a second."""
+    (tmp_path / "keys").write_text(new_key("somebody")[1] + "\n")
+    settings = Settings(keys_file=tmp_path / "keys", forwarded_allow_ips=trusted)
+    served = uvicorn.Config(inline_toys(keys_file=tmp_path / "keys"), **server_options(settings))
+    served.load()
+    transport = httpx.ASGITransport(served.loaded_app, client=("127.0.0.1", 5))
+    async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
+
+        async def status_for(address: str) -> int:
+            response = await client.post("/v1/toy", json=GOOD, headers={"X-Forwarded-For": address})
+            return response.status_code
+
+        statuses = [await status_for("198.51.100.1") for _ in range(20)]
+        assert statuses[:10] == [401] * 10
+        assert 429 in statuses
+        assert await status_for("198.51.100.2") == others
+        # What a client put in front of its address is not believed.
+        assert await status_for("198.51.100.9, 198.51.100.1") == 429
