@@ -55,7 +55,7 @@ SERVICE_LAYERS = (
 
 
 MULTIBODY_LAYERS = (
-    {"__init__", "algebra", "undecided"},
+    {"__init__", "algebra", "undecided", "model_answer"},
     {"language", "answer"},
     {"table", "audit"},
     {"equations"},
@@ -248,7 +248,7 @@ TESTED_IN |= {
         ),
         "audit/test_definitions": (
             "audit/bodies audit/contact_definitions audit/contacts audit/definition audit/joints audit/laws "
-            "audit/newton audit/placement audit/strings"
+            "audit/newton audit/placement audit/rolling audit/strings audit/surfaces"
         ),
         "table/test_description": (
             "algebra/directions language/inertia table/connection_effects table/coordinates "
@@ -276,7 +276,9 @@ TESTED_IN |= {
         "statics/test_equilibria": "statics/equilibrium_search statics/resting_places statics/static_equations",
         "motion/test_free_body": "motion/turning_body",
         "trajectory/test_nearest": "motion/attitudes",
-        "search/test_first_zero": ("search/curves search/first_of_motion search/location search/pieces search/taylor"),
+        "search/test_first_zero": (
+            "search/bands search/batch search/curves search/first_of_motion search/location search/pieces search/taylor"
+        ),
         "phases/test_sums_in_phases": "phases/stretches",
         "proven/test_proven_answer": "proven/part_proof",
         "parts/test_joined_answer": (
@@ -286,7 +288,9 @@ TESTED_IN |= {
             "equations/packed motion/products motion/returns motion/series motion/series_pairs motion/vertical_symmetry"
         ),
         "phases/test_phase_answer": "phases/phase_states phases/phased_system",
-        "test_solve": ("answer motion/modelling motion/motion motion/uniform motion/whole trajectory/events"),
+        "test_solve": (
+            "answer model_answer motion/modelling motion/motion motion/uniform motion/whole trajectory/events"
+        ),
     }.items()
     for name in names.split()
 }

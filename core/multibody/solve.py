@@ -13,10 +13,11 @@ from core.balls import precision
 from core.errors import InvalidParameter, SelfCheckFailed, SlackAtStart
 from core.multibody.algebra.doubles import error_in_doubles
 from core.multibody.algebra.polynomials import BITS
-from core.multibody.answer import PartErrors, PartModel, SceneSolution
+from core.multibody.answer import SceneSolution
 from core.multibody.audit.audit import audited
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
+from core.multibody.model_answer import PartErrors, PartModel
 from core.multibody.motion.modelling import modelled
 from core.multibody.parts.joined_answer import answered_by_parts
 from core.multibody.phases.phase_answer import THRESHOLDS, answer_in_phases

@@ -8,18 +8,9 @@ from typing import Any, NamedTuple, Protocol
 
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import ZERO, Ball, is_zero
-from core.multibody.answer import (
-    AccelerationErrors,
-    BodyAcceleration,
-    Energy,
-    EnergyErrors,
-    ForceAnswer,
-    PartErrors,
-    PartModel,
-    SceneModel,
-    SmallMotion,
-)
+from core.multibody.answer import AccelerationErrors, BodyAcceleration, Energy, EnergyErrors, ForceAnswer
 from core.multibody.equations.dynamics import ForceAtStart, Multipliers, kinetic, potential
+from core.multibody.model_answer import PartErrors, PartModel, SceneModel, SmallMotion
 from core.multibody.motion.modelling import Modelled
 from core.multibody.motion.modes import Modes
 from core.multibody.motion.periods import Periodic

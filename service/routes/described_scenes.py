@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from core.errors import BudgetExceeded
-from core.multibody.answer import RestRange, SceneModel, SmallMotion
+from core.multibody.answer import RestRange
 from core.multibody.language.scene import check_size
+from core.multibody.model_answer import SceneModel, SmallMotion
 from core.multibody.motion.generic_equation import weight_of
 from core.multibody.solve import OUTPUTS, solve_scene
 from core.multibody.trajectory.inherited import MOST_PROPAGATED_NUMBERS

@@ -23,7 +23,8 @@ from service.observability.logs import LOG
 from service.problems import Refusal
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
 from service.studies.cluster import Cluster
-from service.studies.store import FAILED, Store, reason_of
+from service.studies.store import Store, reason_of
+from service.studies.study import FAILED
 from service.studies.summary import summary
 from service.studies.task import Computed, compute, end_process, without_answer
 from service.studies.unfinished_study import CHUNK_SECONDS, Stretch, UnfinishedStudy, gaps, stretch_seconds

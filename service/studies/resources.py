@@ -26,7 +26,8 @@ from service.studies.chunk_files import CorruptedChunk
 from service.studies.figures import figure
 from service.studies.results import Results
 from service.studies.states import JSON_TYPE, REPRESENTATIONS, signed, state_of
-from service.studies.store import DISMISSED, SUCCESSFUL, Owner, Quotas, Study, storage_unavailable
+from service.studies.store import storage_unavailable
+from service.studies.study import DISMISSED, SUCCESSFUL, Owner, Quotas, Study
 from service.studies.supervisor import Supervisor
 
 MOST_LISTED = 200

@@ -12,7 +12,8 @@ from numpy.lib import format as npy
 
 from service.responses.npz import METADATA, Sink
 from service.studies.chunk_files import Chunk, ChunkFiles, CorruptedChunk
-from service.studies.store import Store, Study
+from service.studies.store import Store
+from service.studies.study import Study
 from service.studies.unfinished_study import gaps
 
 

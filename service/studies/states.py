@@ -12,7 +12,7 @@ from service.responses.svg import SVG
 from service.routes.studies import PATH
 from service.schemas import SIGNATURE
 from service.studies import grids, tables
-from service.studies.store import SUCCESSFUL, Study
+from service.studies.study import SUCCESSFUL, Study
 
 JSON_TYPE = "application/json"
 

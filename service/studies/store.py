@@ -14,21 +14,15 @@ import time
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Any, NamedTuple
+from typing import Any
 
 from service.observability.logs import LOG
 from service.problems import Refusal
+from service.studies.study import ACCEPTED, DISMISSED, RUNNING, STATES, SUCCESSFUL, UNFINISHED, Owner, Quotas, Study
 
 DATABASE = "studies.sqlite"
-
-ACCEPTED, RUNNING, SUCCESSFUL, FAILED, DISMISSED = "accepted", "running", "successful", "failed", "dismissed"
-"""States, as OGC API Processes names them."""
-
-STATES = (ACCEPTED, RUNNING, SUCCESSFUL, FAILED, DISMISSED)
-UNFINISHED = (ACCEPTED, RUNNING)
 
 PLANNED = {"path", "count", "shape", "inputs", "figures", "together", "seconds", "bytes"}
 """What a plan says."""
@@ -58,63 +52,6 @@ CREATE TABLE IF NOT EXISTS chunks (
 ) WITHOUT ROWID;
 CREATE INDEX IF NOT EXISTS studies_by_owner ON studies (owner, created);
 """
-
-
-@dataclass(frozen=True)
-class Study:
-    """A study as it is recorded.
-
-    Attributes
-    ----------
-    id, owner : str
-        The owner is the name of a key, empty where none are required.
-    plan : mapping
-        What was answered at its submission.
-    status, message : str
-    created, started, finished : float
-        Seconds since 1970; None for what has not happened.
-    done, failed : int
-        Members whose results are stored, and how many of them have none but a problem.
-    seconds : float
-        Processor time that they took.
-    """
-
-    id: str
-    owner: str
-    plan: Mapping[str, Any]
-    status: str
-    message: str
-    created: float
-    started: float | None
-    finished: float | None
-    done: int
-    failed: int
-    seconds: float
-
-    @property
-    def count(self) -> int:
-        """Number of members."""
-        return int(self.plan["count"])
-
-    @property
-    def unfinished(self) -> bool:
-        """Whether there is something left to do."""
-        return self.status in UNFINISHED
-
-
-class Owner(NamedTuple):
-    """Whose a study is: the name of a key, and the address that it came from where no keys are required."""
-
-    name: str
-    address: str = ""
-
-
-class Quotas(NamedTuple):
-    """Unfinished studies of one owner and of one address without keys; bytes of all studies together."""
-
-    studies: int
-    of_address: int
-    bytes: int
 
 
 _STUDY = """SELECT id, owner, plan, status, message, created, started, finished, done, failed, seconds FROM studies """

@@ -11,7 +11,7 @@ import numpy as np
 
 from core.studies.statistics import ColumnStatistics, column_statistics, failure_counts
 from service.studies.chunk_files import Chunk
-from service.studies.store import Study
+from service.studies.study import Study
 
 LARGEST_COLUMNS = 2**25
 """Numbers that are held at once, of as many figures; for the others the results are read again."""

@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import Any
 
-from service.studies.store import Study
+from service.studies.study import Study
 
 CHUNK_SECONDS = 0.5
 """Processor time that a stretch should take, unless many processes have to be supplied."""

@@ -6,20 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 from core.multibody.audit.bodies import Path, Reader
-from core.multibody.audit.contacts import (
-    Face,
-    OnFace,
-    OnRound,
-    RollingOnBall,
-    RollingOnCylinder,
-    RollingOnFace,
-    RollingOnRound,
-    Round,
-    Stop,
-)
+from core.multibody.audit.contacts import OnFace, OnRound, Stop
 from core.multibody.audit.definition import Definition, Touch
 from core.multibody.audit.joints import AXES
 from core.multibody.audit.placement import Undefined
+from core.multibody.audit.rolling import RollingOnBall, RollingOnCylinder, RollingOnFace, RollingOnRound
+from core.multibody.audit.surfaces import Face, Round
 from core.multibody.language.connections import GROUND
 
 

@@ -23,8 +23,8 @@ from core.multibody.algebra.characteristic_roots import roots_but_zero
 from core.multibody.algebra.doubles import error_in_doubles, in_doubles
 from core.multibody.algebra.polynomials import BITS, ONE, ZERO, Ball, Poly, degree, entry, is_zero
 from core.multibody.algebra.spectrum import spectrum
-from core.multibody.answer import ModeErrors, SmallMotion
 from core.multibody.equations.packed import pair
+from core.multibody.model_answer import ModeErrors, SmallMotion
 from core.multibody.motion.motion import States, check_sample_count
 from core.multibody.motion.turning import FEW_RADIANS
 from core.multibody.table.table import Table

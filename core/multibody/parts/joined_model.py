@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from core.multibody.answer import SceneModel, SceneSolution
+from core.multibody.answer import SceneSolution
+from core.multibody.model_answer import SceneModel
 
 UNDECIDED = "undecided"
 """The name of the model of what mechanics does not decide from the start on."""

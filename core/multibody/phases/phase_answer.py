@@ -9,17 +9,11 @@ from itertools import zip_longest
 import numpy as np
 
 from core.errors import InvalidParameter, NotApplicable
-from core.multibody.answer import (
-    BodyAcceleration,
-    ForceAnswer,
-    MotionPhase,
-    SceneModel,
-    SceneProblem,
-    SceneSolution,
-)
+from core.multibody.answer import BodyAcceleration, ForceAnswer, MotionPhase, SceneProblem, SceneSolution
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.equations.packed import nearest
 from core.multibody.language.scene import Scene
+from core.multibody.model_answer import SceneModel
 from core.multibody.phases.phase import Phase, PhaseMotion
 from core.multibody.phases.phased_system import PhasedSystem
 from core.multibody.phases.phases import motion_in_phases

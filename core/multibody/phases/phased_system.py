@@ -10,10 +10,7 @@ from flint import arb
 
 from core.arrays import Floats
 from core.errors import AccuracyUnreachable, MechanicsError
-from core.multibody.answer import (
-    Occurrence,
-    SceneExtremes,
-)
+from core.multibody.answer import Occurrence, SceneExtremes
 from core.multibody.language.scene import Scene
 from core.multibody.phases.inherited_in_phases import inherited_in_phases
 from core.multibody.phases.phase import PhaseMotion

@@ -15,9 +15,9 @@ from core.certified.adaptive_precision import working_bits
 from core.certified.decimals import decimal, floor_below, place_of
 from core.errors import NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO, Ball, evaluated, is_zero
-from core.multibody.answer import PartModel, SceneModel, SmallMotion
 from core.multibody.equations.dynamics import forces_at_start, multipliers_at_start
 from core.multibody.language.scene import Scene
+from core.multibody.model_answer import PartModel, SceneModel, SmallMotion
 from core.multibody.motion.attitudes import angular_velocity, dot, quaternion
 from core.multibody.motion.modelling import Modelled, Piece, modelled
 from core.multibody.motion.modes import Modes

@@ -19,10 +19,11 @@ from core.certified.adaptive_precision import bits_for, check_digits, until_dete
 from core.certified.exact_inputs import enclosed
 from core.errors import InvalidParameter, NotApplicable
 from core.multibody.algebra.polynomials import BITS, ZERO
-from core.multibody.answer import Energy, SceneModel
+from core.multibody.answer import Energy
 from core.multibody.language.faults_of_parts import FaultsOfParts
 from core.multibody.language.independent_parts import independent_parts
 from core.multibody.language.scene import Scene
+from core.multibody.model_answer import SceneModel
 from core.multibody.parts.joined_model import joined_model
 from core.multibody.phases.phases import one_sided
 from core.multibody.proven.part_proof import PartProof, ProvenColumn

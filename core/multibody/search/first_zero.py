@@ -8,12 +8,12 @@ anew close by.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.arrays import Floats, Integers
+from core.arrays import Floats
 from core.errors import AccuracyUnreachable, BudgetExceeded
 from core.multibody.algebra.bernstein import (
     FALLING,
@@ -26,29 +26,19 @@ from core.multibody.algebra.bernstein import (
     decided_each,
     zero_between,
 )
-from core.multibody.search.curves import Curve
-from core.multibody.search.pieces import Expanded, Pieces
+from core.multibody.search.bands import FLOOR, Quantity, later, with_band
+from core.multibody.search.batch import Batch, Signs, segments, usual_length
+from core.multibody.search.pieces import Expanded
 
-Quantity = Callable[[Pieces], Curve]
-"""What is watched, along a motion."""
-
-SAFETY_FACTOR = 16.0
-"""The difference of two computations, times this, is what a state is taken to be wrong by."""
-FLOOR = 2.0**-96
-"""Share of its terms that a quantity is wrong by at least: a thousand roundings of pairs."""
 MOST_PIECES = 60_000
 """Pieces that one search may take."""
 _AT_ONCE = 256
 """Pieces that are expanded at once at most: twice as many each time, as what follows an event is expanded in vain."""
 _COARSE = 2.0**-40
 """Share of the terms that a quantity is wrong by at most in doubles: thousands of roundings."""
-_USUAL = 0.1
-"""Share of pieces that is shorter than expected: what is left of these is expanded one by one."""
 _CLOSER = 2.0**-4
 """Share of a piece in which it is expanded anew: what is left out then is 2^-84 of what it was."""
 _BELOW = (FALLING, NEGATIVE)
-_LEFT_OUT = 2.0
-"""Sum of what is left out, as a multiple of the last coefficients: they fall by two or more."""
 
 
 @dataclass(frozen=True)
@@ -72,37 +62,6 @@ class Found:
     width: float = 0.0
 
 
-@dataclass(frozen=True)
-class _Signs:
-    """What is known of one quantity on some pieces: its curve, and the segments of each piece."""
-
-    curves: Floats
-    counts: Integers
-    ends: Floats
-    signs: Integers
-
-
-@dataclass(frozen=True)
-class _Batch:
-    """Pieces that are expanded at once, and what every quantity does on them.
-
-    Attributes
-    ----------
-    lengths : ndarray, shape (p,)
-    usual : float
-        How long most of them could be at least.
-    plain : ndarray of bool, shape (p,)
-        Where everything is above zero.
-    of : dict of int to _Signs
-        By the number of the quantity.
-    """
-
-    lengths: Floats
-    usual: float
-    plain: np.ndarray
-    of: dict[int, _Signs]
-
-
 @dataclass
 class _Interval:
     """Part of the time that is still to be searched, and, once expanded, its piece.
@@ -115,7 +74,7 @@ class _Interval:
 
     start: float
     reach: float
-    batch: _Batch | None = None
+    batch: Batch | None = None
     number: int = 0
     closely: bool = False
 
@@ -219,7 +178,7 @@ class FirstZero:
             one = self._left.pop()
             longest = self._last if self._last > 0.0 else one.reach
             while len(ahead) < most and one.reach > longest:
-                following = _later(one.start, longest)
+                following = later(one.start, longest)
                 if not following > one.start:
                     break
                 ahead.append(_Interval(one.start, longest, closely=one.closely))
@@ -243,7 +202,7 @@ class FirstZero:
         self._last = batch.usual
         self._left.extend(reversed(ahead))
 
-    def _batch(self, ahead: Sequence[_Interval], *, closely: bool) -> _Batch:
+    def _batch(self, ahead: Sequence[_Interval], *, closely: bool) -> Batch:
         """Return pieces, and what every quantity does on them."""
         times, until = np.array([one.start for one in ahead]), np.array([one.reach for one in ahead])
         pieces = [motion(self.way * times, self.way * until) for motion in (self.motions if closely else self.coarse)]
@@ -254,7 +213,7 @@ class FirstZero:
         plain, of = np.ones(len(times), dtype=bool), {}
         remaining = []
         for watch in self.watched:
-            values, sizes, band, left_out = _with_band(watch.quantity, pieces)
+            values, sizes, band, left_out = with_band(watch.quantity, pieces)
             if not closely:
                 watch.largest = np.maximum(watch.largest, np.max(sizes, axis=0))
                 band = band + _COARSE * (sizes + watch.largest)
@@ -270,9 +229,9 @@ class FirstZero:
             ends, signs = np.empty((len(times), MOST_SEGMENTS)), np.empty((len(times), MOST_SEGMENTS), dtype=np.int64)
             decided_each(values, band, left_out, power, share, watch.above, counts, ends, signs)
             plain &= (counts == 1) & (signs[:, 0] == POSITIVE)
-            of[watch.index] = _Signs(values, counts, ends, signs)
+            of[watch.index] = Signs(values, counts, ends, signs)
         self.watched = remaining
-        return _Batch(lengths, _usual(pieces[0].natural, lengths), plain, of)
+        return Batch(lengths, usual_length(pieces[0].natural, lengths), plain, of)
 
     def _divided(self, watch: _Watched, values: Floats, rounded: Floats, band: Floats) -> tuple[Floats, Floats, int]:
         """Return the only piece of a quantity at time zero, with what is zero there but for rounding divided out.
@@ -307,7 +266,7 @@ class FirstZero:
         for watch in self.watched:
             own = batch.of[watch.index]
             start = 0.0
-            for end, sign in _segments(own, number):
+            for end, sign in segments(own, number):
                 if sign == OPEN:
                     open_from = min(open_from, start)
                 if sign == OPEN or (watch.above and sign in _BELOW):
@@ -325,15 +284,15 @@ class FirstZero:
         """Put back what is still to be searched of an interval."""
         end = one.start + one.reach
         if open_from < min(one.reach / length, 1.0):
-            start = _later(one.start, open_from * length)
+            start = later(one.start, open_from * length)
             closer = _CLOSER * length
-            following = _later(start, closer)
+            following = later(start, closer)
             if start < following < end:
                 self._left.append(_Interval(following, end - following))
             # Where there is no double between two times the rest follows from the same start.
             self._left.append(_Interval(start, closer, closely=True))
         elif one.reach > length:
-            start = _later(one.start, length)
+            start = later(one.start, length)
             if start < end:
                 self._left.append(_Interval(start, end - start))
 
@@ -342,7 +301,7 @@ class FirstZero:
         assert one.batch is not None
         own, length = one.batch.of[watch.index], float(one.batch.lengths[one.number])
         start = 0.0
-        for end, sign in _segments(own, one.number):
+        for end, sign in segments(own, one.number):
             if start >= until:
                 break
             here = one.start + start * length
@@ -372,41 +331,3 @@ class FirstZero:
         time = start + moved
         rounded = moved - (time - start) if start >= moved else start - (time - moved)
         return Found(watch.index, self.way * time, self.way * (rounded + tail * length))
-
-
-def _segments(own: _Signs, number: int) -> list[tuple[float, int]]:
-    """Return the ends and signs of the segments of a piece."""
-    count = own.counts[number]
-    return list(zip(own.ends[number, :count].tolist(), own.signs[number, :count].tolist(), strict=True))
-
-
-def _with_band(quantity: Quantity, pieces: Sequence[Pieces]) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return the coefficients of a quantity on some pieces, the sizes of their terms, their errors, what is left out.
-
-    The errors are rounding, and the difference of two computations of the motion.
-    """
-    own = quantity(pieces[0])
-    band = FLOOR * own.sizes
-    for other in pieces[1:]:
-        curve = quantity(other).values
-        # Both in powers of the same time.
-        ratio = (pieces[0].lengths / other.lengths)[:, None] ** np.arange(curve.shape[1])
-        apart = (own.values[..., 0] - ratio * curve[..., 0]) + (own.values[..., 1] - ratio * curve[..., 1])
-        band = band + SAFETY_FACTOR * np.abs(apart)
-    return own.values, own.sizes, band, _LEFT_OUT * np.max(own.sizes[:, -3:], axis=1)
-
-
-def _usual(natural: Floats, lengths: Floats) -> float:
-    """Return a length that most pieces could have at least, a power of two as theirs are."""
-    # What is a polynomial exactly could be followed for ever.
-    longest = 2.0 * float(lengths.max())
-    found = min(float(np.sort(natural)[int(_USUAL * len(natural))]), longest)
-    return float(2.0 ** math.floor(math.log2(found)))
-
-
-def _later(start: float, more: float) -> float:
-    """Return a sum, rounded towards its first term: no time is passed over."""
-    total = start + more
-    part = total - start
-    rounded = (start - (total - part)) + (more - part)
-    return math.nextafter(total, start) if rounded < 0.0 else total

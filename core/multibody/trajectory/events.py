@@ -12,9 +12,10 @@ from core.multibody.motion.kepler import Kepler
 from core.multibody.motion.modes import Modes
 from core.multibody.motion.numerical import BEFORE_SINGULAR, SINGULAR_TIME_ERROR, Numerical
 from core.multibody.motion.whole import Whole
+from core.multibody.search.bands import FLOOR, SAFETY_FACTOR
 from core.multibody.search.curves import Curve
 from core.multibody.search.first_of_motion import Expansions, FirstOfMotion, Watched
-from core.multibody.search.first_zero import FLOOR, SAFETY_FACTOR, Found
+from core.multibody.search.first_zero import Found
 from core.multibody.search.location import NotLocated, located
 from core.multibody.search.pieces import Expanded, Pieces, repeats_after
 from core.multibody.table.connection_effects import Limit

@@ -21,7 +21,8 @@ from service.studies.chunk_files import ChunkFiles
 from service.studies.cluster import Cluster
 from service.studies.engine import Engine
 from service.studies.results import Results
-from service.studies.store import Owner, Quotas, Store, Study
+from service.studies.store import Store
+from service.studies.study import Owner, Quotas, Study
 from service.studies.task import opened
 from tests.service.studies.toy_table import TABLE
 from tests.service.toy_routes import GOOD

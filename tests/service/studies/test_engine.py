@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.studies.store import DISMISSED, SUCCESSFUL
+from service.studies.study import DISMISSED, SUCCESSFUL
 from service.studies.task import compute
 from tests.service.studies.conftest import TERMS, UNIFORM, Desk, sleeping
 from tests.service.toy_routes import GOOD

@@ -23,7 +23,8 @@ from service.problems import Refusal
 from service.settings import Settings
 from service.studies import resources
 from service.studies.folder import Ownership
-from service.studies.store import Owner, Quotas, Store
+from service.studies.store import Store
+from service.studies.study import Owner, Quotas
 from service.studies.supervisor import Supervisor
 from tests.service.conftest import INLINE, client_of
 from tests.service.observability.test_metrics import read

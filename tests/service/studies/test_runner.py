@@ -16,7 +16,7 @@ import pytest
 from service.observability.metrics import Metrics
 from service.settings import Settings
 from service.studies.folder import Ownership
-from service.studies.store import SUCCESSFUL
+from service.studies.study import SUCCESSFUL
 from service.studies.supervisor import Supervisor
 from tests.service.conftest import ROOT
 from tests.service.studies.conftest import Desk, sleeping

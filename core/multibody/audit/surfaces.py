@@ -1,0 +1,100 @@
+"""What bodies touch one another with: faces, and rims or balls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.multibody.audit.placement import Motion, Numbers, Place, Placement, across, carried, cross, dot, spin_of
+
+
+@dataclass(frozen=True)
+class Face:
+    """A line of the plane or a plane of space, fixed in the body of `at`; free on the side of its unit normal."""
+
+    at: Place
+    normal: tuple[float, ...]
+
+    def normal_in(self, placement: Placement) -> Numbers:
+        """Return the normal in space, shape (d,)."""
+        pose = None if self.at.body is None else placement[self.at.body]
+        # A particle carries directions of the ground.
+        return carried(None if pose is None or pose.rotation is None else pose, self.normal)
+
+    def height(self, placement: Placement, place: Place) -> Numbers:
+        """Return the height of a place above the face (m), shape ()."""
+        return dot(self.normal_in(placement), place.at(placement) - self.at.at(placement))
+
+    def slip(self, placement: Placement, motion: Motion, place: Place, radius: float) -> Numbers:
+        """Return the rate of slip of a rim or ball around a place (m/s): along the face in the plane, else a vector."""
+        n = self.normal_in(placement)
+        relative = place.velocity(placement, motion) - self.at.velocity(placement, motion)
+        spin = spin_of(motion, place.body) if radius else 0.0
+        if n.shape[-1] == 2:
+            # The points of a face move along it as one, so that its turning does not enter.
+            return dot(-across(n), relative) + radius * spin
+        inside: Numbers = relative - n * dot(n, relative)[..., None]
+        return inside - radius * cross(np.asarray(spin), n) if radius else inside
+
+
+@dataclass(frozen=True)
+class Round:
+    """Two rims or balls, of which the second is hollow where its radius is negative, and either may be a point."""
+
+    a: Place
+    b: Place
+    radii: tuple[float, float]
+
+    @property
+    def reach(self) -> float:
+        """Sum of the radii (m), negative where the first is inside the second."""
+        return self.radii[0] + self.radii[1]
+
+    @property
+    def size(self) -> float:
+        """Sum of the sizes of the radii (m)."""
+        return sum(abs(radius) for radius in self.radii)
+
+    def between(self, placement: Placement) -> Numbers:
+        """Return the vector from the first centre to the second (m), shape (d,)."""
+        return self.b.at(placement) - self.a.at(placement)
+
+    def departure(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return the rate of the vector between the centres (m/s), shape (d,)."""
+        return self.b.velocity(placement, motion) - self.a.velocity(placement, motion)
+
+    def gap_rate(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return the rate of `gap` (m/s)."""
+        found: Numbers = dot(self.between(placement), self.departure(placement, motion)) / self.reach
+        return found
+
+    def gap(self, placement: Placement) -> Numbers:
+        """Return (d^2 - r^2)/(2r) with d the distance and r the reach (m).
+
+        It has the sign of the gap and is equal to it to first order, also in a hollow whose centre d = 0 may pass.
+        """
+        d = self.between(placement)
+        return (dot(d, d) - self.reach**2) / (2.0 * self.reach)
+
+    def slip(self, placement: Placement, motion: Motion) -> Numbers:
+        """Return the rate of slip in the plane (m/s): of the second along the normal turned counter-clockwise."""
+        d = self.between(placement)
+        along = dot(across(d) / self.reach, self.departure(placement, motion))
+        return along - sum(
+            radius * spin_of(motion, place.body)
+            for place, radius in zip((self.a, self.b), self.radii, strict=True)
+            if radius
+        )
+
+
+def friction_powers(names: tuple[str, ...], slips: Iterable[Numbers]) -> Mapping[str, Numbers]:
+    """Return the power of one unit of each component of friction."""
+    found: dict[str, Numbers] = {}
+    for slip in slips:
+        if len(names) == 1:
+            found[names[0]] = slip
+        else:
+            found.update((name, slip[..., i]) for i, name in enumerate(names))
+    return found
