@@ -10,23 +10,24 @@ R. M. McConnell, K. Mehlhorn, S. Näher, P. Schweitzer, "Certifying algorithms",
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from random import Random
 
 import numpy as np
 
 from core.errors import MechanicsError
 from core.multibody.answer import SceneSolution
+from core.multibody.audit.balanced import Moment, check_balance
 from core.multibody.audit.chosen_times import generator, quickness, rows_of, windows
 from core.multibody.audit.definitions import Description, description_of
-from core.multibody.audit.energy import check_energy
+from core.multibody.audit.energy import Energies
 from core.multibody.audit.failure import ROUNDING, Failure, Ledger
-from core.multibody.audit.laws_at_samples import States, check_samples
+from core.multibody.audit.laws_at_samples import Measures, Sizes, States, check_samples, measured
 from core.multibody.audit.newton import Freedoms
-from core.multibody.audit.placement import Numbers, Undefined
-from core.multibody.audit.repetition import check_period, period_of, times_of_period
-from core.multibody.audit.samples import Columns, Samples, samples_of
-from core.multibody.audit.start import check_start
+from core.multibody.audit.placement import Motion, Numbers, Placement, Pose, Twist, moved
+from core.multibody.audit.repetition import FRACTIONS, check_period, period_of, times_of_period
+from core.multibody.audit.samples import Columns, Samples, joined, samples_of
+from core.multibody.audit.start import AfterStart, accelerations_of, check_places, forces_of
 from core.multibody.audit.windows import NODES, check_window, nodes
 from core.multibody.language.scene import Scene
 
@@ -56,78 +57,119 @@ def audited(scene: Scene, answer: SceneSolution, sampler: Sampler, times: Number
     description = description_of(scene)
     if not description.moderate or answer.phases == ():
         return None
-    ledger = Ledger(MEANT if _was_rounded(description, answer) else ROUNDING)
-    try:
-        with np.errstate(over="ignore", invalid="ignore"):
-            _Audit(ledger, description, answer, generator(description, times)).run(sampler)
-    except (ArithmeticError, np.linalg.LinAlgError):
-        # What leaves the range of doubles is not compared.
-        return None
-    return ledger.worst
-
-
-def _was_rounded(description: Description, answer: SceneSolution) -> bool:
-    """Return whether positions or velocities were taken as rounded, and moved so that connections hold."""
-    if any("rounding" in sentence or "rounded" in sentence for sentence in answer.model.noticed):
-        return True
-    for pose in description.start.values():
-        if (
-            pose.rotation is not None
-            and np.abs(pose.rotation.T @ pose.rotation - np.eye(len(pose.position))).max() > ROUNDING
-        ):
-            return True
-    size = max(float(np.abs(pose.position).max()) for pose in description.start.values())
-    for connection in description.connections:
-        known = ROUNDING * (size + connection.arm + connection.reach)
-        try:
-            if any(np.abs(value).max() > known for value in connection.held(description.start).values()):
-                return True
-        except Undefined:
-            continue
-    return False
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _Audit(description, answer, generator(description, times)).worst(sampler)
 
 
 class _Audit:
-    """One audit, with what its laws share."""
+    """One audit, with what its laws share.
 
-    def __init__(self, ledger: Ledger, description: Description, answer: SceneSolution, random: Random) -> None:
-        self.ledger, self.description, self.answer, self.random = ledger, description, answer, random
+    All samples are rows of one set: that of the start, those of windows and of the period, those of the answer. Behind
+    them come the start that the accelerations lead to, a short time before and after, and that of the description.
+    """
+
+    def __init__(self, description: Description, answer: SceneSolution, random: Random) -> None:
+        self.description, self.answer, self.random = description, answer, random
         found = answer.trajectory
-        self.samples: Samples | None = None
+        self.own_samples: Samples | None = None
         self.begin = self.end = 0.0
         if found is not None and len(found.time):
             self.begin, self.end = min(float(found.time.min()), 0.0), max(float(found.time.max()), 0.0)
             if all(f"{name}.velocity" in found.columns for name in description.bodies):
                 rows = rows_of(random, len(found.time))
-                self.samples = samples_of(description, found.time, found.columns, rows)
+                self.own_samples = samples_of(description, found.time, found.columns, rows)
         # A method that a client names computes samples of its own.
         self.own = found is None or found.method == CLOSED_FORM
 
-    def run(self, sampler: Sampler) -> None:
-        """Compare everything."""
-        known = self._asked(sampler)
-        near = None if known is None else known[0].at(slice(0, 1 + len(known[1]) * NODES))
-        fastest = max((_fastest(one) for one in (self.samples, near) if one), default=0.0)
-        complete = self.samples is not None and len(self.samples.forces) > 0
-        for one in (self.samples, None if complete else near):
-            if one is not None:
-                states = states_of(self.description, self.answer, one.times)
-                check_samples(self.ledger, self.description, one, states, fastest)
-        if known is None or near is None:
-            return
-        extra, halves = known
-        freedoms = Freedoms(self.description)
-        start = extra.at(slice(0, 1))
-        check_start(self.ledger, self.description, freedoms, self.answer, start)
+    def worst(self, sampler: Sampler) -> Failure | None:
+        """Compare everything, and return the worst failure."""
+        description, answer = self.description, self.answer
+        halves: list[float] = []
+        samples = self.own_samples
+        asked = self._asked(sampler)
+        if asked is not None:
+            halves = asked[1]
+            samples = asked[0] if samples is None else asked[0].followed_by(samples)
+        if samples is None:
+            return None
+        after = None
+        if asked is not None:
+            gains = accelerations_of(description, answer)
+            if gains is not None and _spun(description, samples):
+                after = AfterStart(description, gains, samples.at(slice(0, 1)))
+        behind = [] if after is None else [after.samples()]
+        every = joined([(samples.placement, samples.motion), *behind, _described(description)])
+        ahead = moved(*every)
+        measures = measured(description, ahead)
+        ledger = Ledger(MEANT if _was_rounded(description, answer, measures) else ROUNDING)
+        states = states_of(description, answer, samples.times)
+        check_samples(ledger, measures, samples, states, Sizes(description, samples))
+        if asked is not None:
+            self._check_motion(ledger, samples, ahead, after, measures, halves)
+        return ledger.worst
+
+    def _check_motion(
+        self,
+        ledger: Ledger,
+        samples: Samples,
+        ahead: Placement,
+        after: AfterStart | None,
+        measures: Sequence[Measures],
+        halves: Sequence[float],
+    ) -> None:
+        """Compare what needs the start or windows of the motion."""
+        description, answer, freedoms = self.description, self.answer, Freedoms(self.description)
+        start, moments, motion = samples.at(slice(0, 1)), [], dict(samples.motion)
+        check_places(ledger, description, start)
+        if after is not None:
+            after.check(ledger, measures, len(samples.times))
+            if answer.forces is not None and not description.undefined:
+                none, forces = np.zeros((freedoms.count, 1)), forces_of(answer)
+                errors = {name: np.zeros(1) for name in forces}
+                law = "Newton and Euler at the start"
+                moments.append(Moment(law, slice(0, 1), after.gains, forces, errors, none, stated=False))
+                for own in measures:
+                    rest = own.connection.own_rest(start.placement, start.motion, after.gains_as_motion, forces)
+                    if rest is not None:
+                        law, allowed = "equation of the chain at the start", 8.0 * ledger.rounding * rest[1]
+                        ledger.compare(law, own.connection.name, start.times, rest[0], allowed)
         for number, half in enumerate(halves):
-            first = 1 + number * NODES
-            check_window(self.ledger, self.description, freedoms, extra.at(slice(first, first + NODES)), half)
-        if self.own and period_of(self.answer) is not None:
-            later = extra.at(slice(1 + len(halves) * NODES, None))
-            check_period(self.ledger, self.description, self.answer, start, later)
-        losses = _losses(self.description, self.answer)
+            rows = slice(1 + number * NODES, 1 + (number + 1) * NODES)
+            window = samples.at(rows)
+            gains = check_window(ledger, description, freedoms, window, _rows(ahead, rows), half)
+            for name, twist in gains.spins.items():
+                spin = motion[name].spin
+                spin = np.zeros((len(samples.times), 3)) if spin is None else spin
+                spin[rows] = twist.spin
+                motion[name] = Twist(motion[name].velocity, spin)
+            moments.append(
+                Moment("Newton and Euler", rows, gains.accelerations, window.forces, window.force_errors, gains.unsure,
+                       stated=True)
+            )  # fmt: skip
+        check_balance(ledger, description, freedoms, samples, motion, moments)
+        if self.own and period_of(answer) is not None:
+            first = 1 + len(halves) * NODES
+            later = samples.at(slice(first, first + len(FRACTIONS)))
+            check_period(ledger, description, answer, start, later)
+        if _spun(description, samples):
+            self._check_energy(ledger, samples)
+
+    def _check_energy(self, ledger: Ledger, samples: Samples) -> None:
+        description, answer = self.description, self.answer
+        losses = _losses(description, answer)
+        stated = None if any(event.time <= 0.0 for event in answer.events) else answer.energy
+        if losses is None and stated is None:
+            return
+        energies = Energies(description, samples)
+        if stated is not None:
+            size = 8.0 * ledger.rounding * energies.size[:1]
+            for own, given, found in (
+                ("kinetic", stated.kinetic, energies.kinetic),
+                ("potential", stated.potential, energies.potential),
+            ):
+                ledger.compare(f"{own} energy at the start", "", samples.times[:1], found[:1] - given, size)
         if losses is not None:
-            check_energy(self.ledger, self.description, self.samples or near, start, losses)
+            energies.check(ledger, losses)
 
     def _asked(self, sampler: Sampler) -> tuple[Samples, list[float]] | None:
         """Return samples of the motion at the start and in windows, with half of the width of each of these.
@@ -135,11 +177,11 @@ class _Audit:
         None where the motion is not known there: laws that need it are not checked then.
         """
         try:
-            rated = self.samples
-            if rated is None:
-                rated = samples_of(self.description, np.zeros(1), sampler(np.zeros(1)), slice(None))
             placed: list[tuple[float, float]] = []
             if self.own and self.end > self.begin:
+                rated = self.own_samples
+                if rated is None:
+                    rated = samples_of(self.description, np.zeros(1), sampler(np.zeros(1)), slice(None))
                 placed = windows(self.random, self.answer, self.begin, self.end, quickness(self.description, rated))
             period = period_of(self.answer) if self.own else None
             repeated = [] if period is None else [times_of_period(period)]
@@ -149,9 +191,51 @@ class _Audit:
             return None
 
 
-def _fastest(samples: Samples) -> float:
-    """Return the largest speed in some samples (m/s)."""
-    return max(float(np.abs(twist.velocity).max(initial=0.0)) for twist in samples.motion.values())
+def _spun(description: Description, samples: Samples) -> bool:
+    """Return whether the spins of all bodies are answered."""
+    return all(samples.spun(name) for name, body in description.bodies.items() if body.inertia is not None)
+
+
+def _rows(placement: Placement, rows: slice) -> Placement:
+    return {
+        name: Pose(*(None if x is None else x[rows] for x in (pose.position, pose.rotation, pose.turn)))  # type: ignore[arg-type]
+        for name, pose in placement.items()
+    }
+
+
+def _described(description: Description) -> tuple[Placement, Motion]:
+    """Return the start of a description as one sample, at rest."""
+    placement, motion = {}, {}
+    for name, body in description.bodies.items():
+        at = body.start
+        placement[name] = Pose(*(None if x is None else x[None] for x in (at.position, at.rotation, at.turn)))  # type: ignore[arg-type]
+        still = np.zeros((1, description.dimension))
+        spin = np.zeros((1, 3) if description.dimension == 3 else 1)
+        motion[name] = Twist(still, None if body.inertia is None else spin)
+    return placement, motion
+
+
+def _was_rounded(description: Description, answer: SceneSolution, measures: Sequence[Measures]) -> bool:
+    """Return whether positions or velocities were taken as rounded, and moved so that connections hold.
+
+    Parameters
+    ----------
+    measures : sequence of Measures
+        Of which the last sample is the start as it is described.
+    """
+    if any("rounding" in sentence or "rounded" in sentence for sentence in answer.model.noticed):
+        return True
+    size = 0.0
+    for pose in description.start.values():
+        size = max(size, float(np.abs(pose.position).max()))
+        axes = pose.rotation
+        if axes is not None and np.abs(axes.T @ axes - np.eye(len(axes))).max() > ROUNDING:
+            return True
+    for own in measures:
+        known = ROUNDING * (size + own.connection.arm + own.connection.reach)
+        if any(np.abs(value[-1].real).max() > known for value in own.held.values()):
+            return True
+    return False
 
 
 def _losses(description: Description, answer: SceneSolution) -> list[tuple[float, float]] | None:

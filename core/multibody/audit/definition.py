@@ -54,6 +54,11 @@ class Definition:
         return type(self).derived is not Definition.derived
 
     @property
+    def loads(self) -> bool:
+        """Whether it has forces that the answer does not name."""
+        return type(self).load is not Definition.load
+
+    @property
     def forces(self) -> tuple[str, ...]:
         """Names of the forces from which others follow."""
         return ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import hypot
 
 import numpy as np
 
@@ -41,10 +42,10 @@ def potential(description: Description, samples: Samples) -> Numbers:
     return total
 
 
-def size_of(description: Description, samples: Samples) -> Numbers:
-    """Return the sum of the sizes of all energies (J), shape (n,)."""
-    total = np.abs(kinetic(description, samples))
-    pull = float(np.linalg.norm(description.gravity))
+def size_of(description: Description, samples: Samples, moving: Numbers) -> Numbers:
+    """Return the sum of the sizes of all energies (J), shape (n,), of which the kinetic one is given."""
+    total = np.abs(moving)
+    pull = hypot(*description.gravity)
     for name, body in description.bodies.items():
         # Whatever the direction: a component that vanishes is known to rounding of the others.
         total = total + body.mass * pull * np.abs(samples.placement[name].position).max(axis=-1)
@@ -53,33 +54,32 @@ def size_of(description: Description, samples: Samples) -> Numbers:
     return total
 
 
-def check_energy(
-    ledger: Ledger,
-    description: Description,
-    samples: Samples,
-    at_start: Samples,
-    losses: Sequence[tuple[float, float]],
-) -> None:
-    """Require the energy to be that of the start, less what events have taken.
+class Energies:
+    """Energies at the samples of an audit, of which the first is that of the start (J), shapes (n,)."""
 
-    Parameters
-    ----------
-    samples, at_start : Samples
-    losses : sequence of (float, float)
-        Times of events and what they take (J).
-    """
-    if any(not samples.spun(name) for name, body in description.bodies.items() if body.inertia is not None):
-        return
-    taken = np.zeros(samples.times.shape)
-    for time, loss in losses:
+    def __init__(self, description: Description, samples: Samples) -> None:
+        self.description, self.samples = description, samples
+        self.kinetic, self.potential = kinetic(description, samples), potential(description, samples)
+        self.size = size_of(description, samples, self.kinetic)
+
+    def check(self, ledger: Ledger, losses: Sequence[tuple[float, float]]) -> None:
+        """Require the energy to be that of the start, less what events have taken.
+
+        Parameters
+        ----------
+        losses : sequence of (float, float)
+            Times of events and what they take (J).
+        """
+        samples, start = self.samples, self.kinetic[0] + self.potential[0]
         # What an impact at the start takes is gone from the motion before its first sample.
-        taken = taken + np.where((samples.times >= time) & (time > 0.0), loss, 0.0)
-    start = kinetic(description, at_start)[0] + potential(description, at_start)[0]
+        taken = [(time, loss) for time, loss in losses if time > 0.0]
 
-    def change(at: Samples) -> Numbers:
-        found: Numbers = kinetic(description, at) + potential(description, at) + taken - start
-        return found
+        def missing(times: Numbers) -> Numbers:
+            return sum((np.where(times >= time, loss, 0.0) for time, loss in taken), -start * np.ones(times.shape))
 
-    size = size_of(description, samples)
-    size = size + size_of(description, at_start)[0] + sum(abs(loss) for _, loss in losses)
-    ledger.hold("energy", "", samples, change, 4.0 * size, bodies=tuple(description.bodies))
+        def change(at: Samples) -> Numbers:
+            return kinetic(self.description, at) + potential(self.description, at) + missing(at.times)
+
+        value = self.kinetic + self.potential + missing(samples.times)
+        size = self.size + self.size[0] + sum(abs(loss) for _, loss in losses)
+        ledger.hold("energy", "", samples, change, 4.0 * size, value=value, bodies=tuple(self.description.bodies))

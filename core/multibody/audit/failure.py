@@ -84,9 +84,10 @@ class Ledger:
         residual: Residual,
         size: Numbers | float,
         *,
+        value: Numbers,
         bodies: tuple[str, ...] = (),
         forces: tuple[str, ...] = (),
-        value: Numbers | None = None,
+        rows: Numbers | None = None,
         one_sided: bool = False,
     ) -> None:
         """Require a residual to vanish within the stated errors of bodies and forces.
@@ -97,24 +98,28 @@ class Ledger:
             Of samples, shape (n,) or (n, k).
         size : ndarray, shape (n,), or float
             Of its terms.
-        value : ndarray, optional
-            The residual of the samples, where it is known already.
+        value : ndarray
+            The residual of the samples.
+        rows : ndarray of bool, shape (n,), optional
+            Samples at which it should vanish, all if omitted.
         one_sided : bool
             Whether it may be larger than zero.
         """
         self.checked += 1
-        found = residual(samples) if value is None else value
-        if one_sided:
-            found = np.minimum(found, 0.0)
-        found = components(np.abs(found), samples)
+        found = np.abs(np.minimum(value, 0.0) if one_sided else value)
         floor = self.rounding * size
-        highest = found.max(axis=1)
-        if (highest <= floor).all():
+        beyond = ~((found if found.ndim == 1 else found.max(axis=1)) <= floor)
+        if rows is not None:
+            beyond &= rows
+        if not beyond.any():
             return
-        allowed = np.reshape(floor, (-1, 1)) + propagated(samples, bodies, forces, residual)
+        where = np.flatnonzero(beyond)
+        some, found = samples.at(where), found[where].reshape(len(where), -1)
+        allowed = np.reshape(floor[where] if np.ndim(floor) else floor, (-1, 1))
+        allowed = allowed + propagated(some, bodies, forces, residual)
         k = np.argmax(found - allowed, axis=1)
-        rows = np.arange(len(k))
-        self.compare(law, connection, samples.times, found[rows, k], allowed[rows, k])
+        own = np.arange(len(k))
+        self.compare(law, connection, some.times, found[own, k], allowed[own, k])
 
 
 def propagated(samples: Samples, bodies: tuple[str, ...], forces: tuple[str, ...], residual: Residual) -> Numbers:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
+from math import hypot
 
 import numpy as np
 
@@ -18,25 +20,82 @@ States = Mapping[str, Numbers]
 "stick", "slide", "slide back". Empty where the answer has no phases: strings are then taut."""
 
 
-def check_samples(ledger: Ledger, description: Description, samples: Samples, states: States, fastest: float) -> None:
+@dataclass(frozen=True)
+class Measures:
+    """The measures of a connection at the samples of an audit, moved by an imaginary step along the motion.
+
+    Attributes
+    ----------
+    held, gaps : mapping of str to ndarray, shape (n,) or (n, k)
+        Complex: their rates are the imaginary parts over the step.
+    """
+
+    connection: Definition
+    held: Mapping[str, Numbers]
+    gaps: Mapping[str, Numbers]
+
+
+def measured(description: Description, ahead: Placement) -> list[Measures]:
+    """Return the measures of all connections of which the samples have enough."""
+    found = []
+    for connection in description.connections:
+        try:
+            found.append(Measures(connection, connection.held(ahead), connection.gaps(ahead)))
+        except Undefined:
+            continue
+    return found
+
+
+class Sizes:
+    """How large the places, rates and forces of some samples are, beside which differences of them are known.
+
+    Attributes
+    ----------
+    place, speed, spin : mapping of str to float
+        Largest components of each body (m, m/s, rad/s).
+    fastest : float
+        Largest speed (m/s).
+    force : ndarray, shape (n,)
+        N.
+    """
+
+    def __init__(self, description: Description, samples: Samples) -> None:
+        self.place = {name: float(np.abs(pose.position).max()) for name, pose in samples.placement.items()}
+        self.speed = {name: float(np.abs(twist.velocity).max()) for name, twist in samples.motion.items()}
+        self.spin = {
+            name: float(np.abs(twist.spin).max())
+            for name, twist in samples.motion.items()
+            if twist.spin is not None
+        }  # fmt: skip
+        self.fastest = max(self.speed.values())
+        mass = sum(body.mass for body in description.bodies.values()) + sum(one.mass for one in description.connections)
+        self.force = np.full(samples.times.shape, mass * hypot(*description.gravity))
+        if samples.forces:
+            self.force += np.nan_to_num(np.fmax.reduce([np.abs(force) for force in samples.forces.values()]))
+
+    def of(self, connection: Definition) -> tuple[float, float]:
+        """Return how large the places and the rates are that the measures of a connection are formed of (m, m/s)."""
+        arm = connection.arm + connection.reach
+        size, speed = 0.0, self.fastest
+        for name in connection.bodies:
+            size = max(size, self.place[name])
+            speed = max(speed, self.spin.get(name, 0.0) * arm)
+        return size + arm, speed
+
+
+def check_samples(ledger: Ledger, measures: Sequence[Measures], samples: Samples, states: States, sizes: Sizes) -> None:
     """Compare all connections with their definitions at some samples.
 
     Parameters
     ----------
-    fastest : float
-        Largest speed in the motion (m/s), beside which rates that vanish are known.
+    measures : sequence of Measures
+        At these samples, and perhaps at others behind them.
     """
-    ahead = moved(samples.placement, samples.motion)
-    mass = sum(body.mass for body in description.bodies.values()) + sum(one.mass for one in description.connections)
-    pull = mass * float(np.linalg.norm(description.gravity))
-    scale = pull + np.zeros(samples.times.shape)
-    if samples.forces:
-        scale = scale + np.abs(np.stack(list(samples.forces.values()))).max(axis=0)
-    for connection in description.connections:
+    for own in measures:
+        one = _Connection(ledger, own.connection, samples, states, sizes.force, *sizes.of(own.connection))
         try:
-            one = _Connection(ledger, connection, samples, ahead, states, fastest, scale)
-            one.check_held()
-            one.check_gaps()
+            one.check_held(own.held)
+            one.check_gaps(own.gaps)
             one.check_laws()
             one.check_derived()
         except Undefined:
@@ -49,57 +108,42 @@ class _Connection:
 
     Attributes
     ----------
-    ahead : mapping of str to Pose
-        The placement moved by an imaginary step along the motion.
-    fastest : float
     scale : ndarray, shape (n,)
         Size of the forces of the scene (N).
+    size, speed : float
+        Of the places and the rates that it is formed of (m, m/s).
     """
 
     ledger: Ledger
     connection: Definition
     samples: Samples
-    ahead: Placement
     states: States
-    fastest: float
     scale: Numbers
+    size: float
+    speed: float
 
-    @property
+    @cached_property
     def known(self) -> bool:
         """Whether all rates of its bodies are answered."""
         samples = self.samples
         return all(samples.spun(name) or samples.placement[name].rotation is None for name in self.connection.bodies)
 
-    def sizes(self) -> tuple[float, float]:
-        """Return how large the places and the rates are that it is formed of, in all samples (m, m/s)."""
-        arm = self.connection.arm + self.connection.reach
-        size, speed = 0.0, self.fastest
-        for name in self.connection.bodies:
-            pose, twist = self.samples.placement[name], self.samples.motion[name]
-            size = max(size, float(np.abs(pose.position).max()))
-            speed = max(speed, float(np.abs(twist.velocity).max()))
-            if twist.spin is not None and arm:
-                speed = max(speed, float(np.abs(twist.spin).max()) * arm)
-        return size + arm, speed
-
-    def check_held(self) -> None:
+    def check_held(self, held: Mapping[str, Numbers]) -> None:
         """Hold measures that stay zero, their rates, and combinations of rates."""
         connection, samples = self.connection, self.samples
-        held = connection.held(self.ahead)
-        if held:
-            size, speed = self.sizes()
-        for key, value in held.items():
+        for key, found in held.items():
+            value = found[: len(samples.times)]
 
             def measure(at: Samples, key: str = key) -> Numbers:
                 return connection.held(at.placement)[key]
 
-            self._hold(f"{key} held", measure, size, value=value.real)
+            self._hold(f"{key} held", measure, self.size, value.real)
             if self.known:
 
                 def change(at: Samples, key: str = key) -> Numbers:
                     return connection.held(moved(at.placement, at.of(connection.bodies)))[key].imag / STEP
 
-                self._hold(f"rate of {key} held", change, speed, value=value.imag / STEP)
+                self._hold(f"rate of {key} held", change, self.speed, value.imag / STEP)
         if not connection.rolls or not self.known:
             return
         for key, rate in connection.held_rates(samples.placement, samples.motion).items():
@@ -107,74 +151,73 @@ class _Connection:
             def slip(at: Samples, key: str = key) -> Numbers:
                 return connection.held_rates(at.placement, at.motion)[key]
 
-            self._hold(f"{key} held", slip, self.sizes()[1] + connection.driven, value=rate)
+            self._hold(f"{key} held", slip, self.speed + connection.driven, rate)
 
-    def check_gaps(self) -> None:
+    def check_gaps(self, gaps: Mapping[str, Numbers]) -> None:
         """Keep gaps open, those that are closed at zero, and their forces pushing; hold friction to its law."""
         connection = self.connection
-        gaps = connection.gaps(self.ahead)
-        if gaps:
-            size, speed = self.sizes()
-        for force, value in gaps.items():
+        for force, found in gaps.items():
             steps = connection.steps(force)
             if len(steps) > 1:
                 # Whole turns of several drums can make any length.
                 continue
             step = steps[0] if steps else 0.0
 
-            def measure(at: Samples, force: str = force, step: float = step) -> Numbers:
-                found = connection.gaps(at.placement)[force]
-                return found - step * np.round(found / step) if step else found
+            def wound(gap: Numbers, step: float = step) -> Numbers:
+                return gap - step * np.round(gap / step) if step else gap
+
+            def measure(at: Samples, force: str = force) -> Numbers:
+                return wound(connection.gaps(at.placement)[force])
 
             def change(at: Samples, force: str = force) -> Numbers:
                 return connection.gaps(moved(at.placement, at.of(connection.bodies)))[force].imag / STEP
 
-            state = self.states.get(force)
+            state, value = self.states.get(force), found[: len(self.samples.times)]
+            gap = wound(value.real)
             if not step:
-                self._hold(f"gap of {force} open", measure, size, value=value.real, one_sided=True)
+                self._hold(f"gap of {force} open", measure, self.size, gap, one_sided=True)
             closed = connection.closed(state, len(self.samples.times))
             if closed is not None and closed.any():
-                self._hold(f"gap of {force} closed", measure, size, rows=closed)
+                self._hold(f"gap of {force} closed", measure, self.size, gap, rows=closed)
                 if self.known:
-                    self._hold(f"rate of gap of {force} closed", change, speed, rows=closed)
+                    self._hold(f"rate of gap of {force} closed", change, self.speed, value.imag / STEP, rows=closed)
             if force in self.samples.forces:
-                self._check_force(force, state, speed)
+                self._check_force(force, state)
 
-    def _check_force(self, force: str, state: Numbers | None, speed: float) -> None:
+    def _check_force(self, force: str, state: Numbers | None) -> None:
+        value = self.samples.forces[force]
+        given = ~np.isnan(value)
+
         def push(at: Samples) -> Numbers:
             return at.forces[force]
 
-        value = self.samples.forces[force]
-        self._hold(f"{force} not negative", push, self.scale, forces=(force,), value=value, one_sided=True)
-        if state is not None and (state == "open").any():
-            self._hold(f"{force} of nothing that touches", push, 0.0, forces=(force,), rows=state == "open")
+        self._hold(f"{force} not negative", push, self.scale, value, forces=(force,), rows=given, one_sided=True)
+        if state is not None:
+            idle = given & (state == "open")
+            self._hold(f"{force} of nothing that touches", push, 0.0, value, forces=(force,), rows=idle)
         touch = self.connection.coefficients
         if touch is not None and touch.friction and all(name in self.samples.forces for name in touch.friction):
-            self._check_friction(force, touch, state, speed)
+            given = given & ~np.isnan(self.samples.forces[touch.friction[0]])
+            self._check_friction(force, touch, state, given)
 
-    def _check_friction(self, force: str, touch: Touch, state: Numbers | None, speed: float) -> None:
+    def _check_friction(self, force: str, touch: Touch, state: Numbers | None, given: Numbers) -> None:
         """Hold friction to its cone; no slip where it sticks, and against the slip where it slides."""
         names = touch.friction
         every = (force, *names)
 
-        def within(at: Samples) -> Numbers:
-            return touch.static * at.forces[force] - np.sqrt(sum(at.forces[name] ** 2 for name in names))
+        def below(coefficient: float, at: Samples) -> Numbers:
+            found: Numbers = coefficient * at.forces[force] - np.sqrt(sum(at.forces[name] ** 2 for name in names))
+            return found
 
-        self._hold(f"cone of friction of {force}", within, self.scale, forces=every, one_sided=True)
+        within, full = partial(below, touch.static), partial(below, touch.kinetic)
+        value = within(self.samples)
+        law = f"cone of friction of {force}"
+        self._hold(law, within, self.scale, value, forces=every, rows=given, one_sided=True)
         if state is None:
             return
 
         def slip(at: Samples) -> Numbers:
             return self.connection.slips(at.placement, at.motion)[force]
-
-        if (state == "stick").any():
-            self._hold(f"stick of {force}", slip, speed, rows=state == "stick")
-        sliding = (state == "slide") | (state == "slide back")
-        if not sliding.any():
-            return
-
-        def full(at: Samples) -> Numbers:
-            return touch.kinetic * at.forces[force] - np.sqrt(sum(at.forces[name] ** 2 for name in names))
 
         def against(at: Samples) -> Numbers:
             rate = slip(at)
@@ -182,9 +225,16 @@ class _Connection:
                 return -at.forces[names[0]] * rate
             return -dot(np.stack([at.forces[name] for name in names], axis=-1), rate)
 
-        self._hold(f"sliding friction of {force}", full, self.scale[sliding], forces=every, rows=sliding)
-        size = self.scale[sliding] * speed
-        self._hold(f"friction of {force} against the slip", against, size, forces=every, rows=sliding, one_sided=True)
+        stuck = state == "stick"
+        if stuck.any():
+            self._hold(f"stick of {force}", slip, self.speed, slip(self.samples), rows=stuck)
+        sliding = given & ((state == "slide") | (state == "slide back"))
+        if not sliding.any():
+            return
+        self._hold(f"sliding friction of {force}", full, self.scale, full(self.samples), forces=every, rows=sliding)
+        law, value = f"friction of {force} against the slip", against(self.samples)
+        size = self.scale * self.speed
+        self._hold(law, against, size, value, forces=every, rows=sliding, one_sided=True)
 
     def check_laws(self) -> None:
         """Compare forces that follow from places and rates with those that are answered."""
@@ -198,8 +248,9 @@ class _Connection:
             def law(at: Samples, key: str = key) -> Numbers:
                 return connection.laws(at.placement, at.motion)[key] - at.forces[key]
 
-            size = np.abs(value) + connection.law_size(samples.placement, *self.sizes())
-            self._hold(f"law of {key}", law, size, forces=(key,), value=value - samples.forces[key])
+            size = np.abs(value) + connection.law_size(samples.placement, self.size, self.speed)
+            rest = value - samples.forces[key]
+            self._hold(f"law of {key}", law, size, rest, forces=(key,), rows=~np.isnan(rest))
 
     def check_derived(self) -> None:
         """Compare forces that follow from others of the connection with those that are answered."""
@@ -207,35 +258,36 @@ class _Connection:
         names = tuple(name for name in connection.forces if name in samples.forces)
         if not connection.derives or len(names) < len(connection.forces) or not self.known:
             return
-        for key in connection.derived(samples.placement, samples.motion, samples.forces):
+        for key, value in connection.derived(samples.placement, samples.motion, samples.forces).items():
             if key not in samples.forces:
                 continue
 
             def law(at: Samples, key: str = key) -> Numbers:
                 return connection.derived(at.placement, at.motion, at.forces)[key] - at.forces[key]
 
-            self._hold(f"{key} by the others", law, self.scale, forces=(*names, key))
+            rest = value - samples.forces[key]
+            self._hold(f"{key} by the others", law, self.scale, rest, forces=(*names, key), rows=~np.isnan(rest))
 
     def _hold(
         self,
         law: str,
         residual: Residual,
         size: Numbers | float,
+        value: Numbers,
         *,
         forces: tuple[str, ...] = (),
-        value: Numbers | None = None,
         rows: Numbers | None = None,
         one_sided: bool = False,
     ) -> None:
-        samples = self.samples if rows is None else self.samples.at(rows)
         self.ledger.hold(
             law,
             self.connection.name,
-            samples,
+            self.samples,
             residual,
             size,
+            value=value,
             bodies=self.connection.bodies,
             forces=forces,
-            value=value,
+            rows=rows,
             one_sided=one_sided,
         )

@@ -60,6 +60,10 @@ class Freedoms:
         self.spins = spins
         self._virtual: dict[tuple[str, ...], tuple[list[int], Motion]] = {}
 
+    def body(self, number: int) -> str:
+        """Return the body to which a component belongs."""
+        return max((first, name) for name, (first, _) in self.where.items() if first <= number)[1]
+
     def virtual(self, bodies: tuple[str, ...]) -> tuple[list[int], Motion]:
         """Return the components of some bodies, and the unit virtual motions along each; they are the first axis."""
         if bodies not in self._virtual:
@@ -126,7 +130,7 @@ def balance(
     motion: Motion,
     accelerations: Mapping[str, Acceleration],
     forces: Forces,
-    force_errors: Mapping[str, float] | None = None,
+    force_errors: Forces | None = None,
     freedoms: Freedoms | None = None,
 ) -> Balance:
     """Return what is left over of the equations of motion at some samples.
@@ -136,7 +140,8 @@ def balance(
     placement, motion, accelerations
         With one leading axis, the samples.
     forces : mapping of str to ndarray, shape (samples,)
-        Those of the answer. Those that it does not determine are left out, and projected out.
+        Those of the answer. Those that it does not determine are left out, or NaN, and projected out.
+    force_errors : mapping of str to ndarray, shape (samples,)
     """
     freedoms = freedoms or Freedoms(description)
     samples = next(iter(placement.values())).position.shape[0]
@@ -148,17 +153,26 @@ def balance(
         numbers, virtual = freedoms.virtual(connection.bodies)
         for name, effort in connection.efforts(placement, virtual).items():
             row = np.broadcast_to(effort, (len(numbers), samples))
-            if name in forces:
-                rest[numbers] -= row * forces[name]
-                size[numbers] += np.abs(row * forces[name])
-                unsure[numbers] += np.abs(row) * (force_errors or {}).get(name, 0.0)
-            else:
+            force = forces.get(name)
+            if force is None:
                 held.append(_spread(row, numbers, freedoms.count))
+                continue
+            open_ = np.isnan(force)
+            if open_.any():
+                # A direction that vanishes holds nothing.
+                held.append(_spread(row * open_, numbers, freedoms.count))
+                force = np.where(open_, 0.0, force)
+            power = row * force
+            rest[numbers] -= power
+            size[numbers] += np.abs(power)
+            if force_errors is not None:
+                unsure[numbers] += np.abs(row) * np.where(open_, 0.0, force_errors[name])
         for line in connection.unanswered(placement, virtual):
             held.append(_spread(np.broadcast_to(line, (len(numbers), samples)), numbers, freedoms.count))
-        load = np.broadcast_to(connection.load(placement, motion, virtual), (len(numbers), samples))
-        rest[numbers] -= load
-        size[numbers] += np.abs(load)
+        if connection.loads:
+            load = np.broadcast_to(connection.load(placement, motion, virtual), (len(numbers), samples))
+            rest[numbers] -= load
+            size[numbers] += np.abs(load)
     return Balance(rest, size, _free(held), unsure)
 
 

@@ -8,7 +8,7 @@ from core.multibody.answer import SceneSolution
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import Ledger
 from core.multibody.audit.placement import Numbers
-from core.multibody.audit.samples import Samples, axis_of_top
+from core.multibody.audit.samples import ATTITUDE, POSITION, SPIN, VELOCITY, Samples, axis_of_top
 
 FRACTIONS = (1, 2, 3, 5)
 """Parts of the period at which the state is compared with that of the start."""
@@ -67,7 +67,7 @@ def _leaves(answer: SceneSolution, start: Samples, later: Samples, period: float
             gain = float(np.abs(answer.accelerations[name].linear).max())
         way = soon * float(np.abs(twist.velocity).max()) + soon * soon * gain
         size = rounding * float(np.abs(start.placement[name].position).max())
-        if way > TOLD_APART * (later.errors[name].position + size):
+        if way > TOLD_APART * (later.errors[name][0, POSITION] + size):
             return True
     return False
 
@@ -78,28 +78,30 @@ def _apart(
     """Return how many times further apart than is allowed the states are in their worst quantity, and one."""
     worst = np.zeros(later.times.shape)
     for name in description.bodies:
-        error = later.errors[name]
+        error = later.errors[name][0]
         first, then = start.placement[name], later.placement[name]
         moving, moved = start.motion[name], later.motion[name]
         speed = float(np.abs(moved.velocity).max())
         spin = 0.0 if moved.spin is None else float(np.abs(moved.spin).max())
         pairs: list[tuple[Numbers, Numbers, float]] = [
-            (first.position, then.position, error.position + late * speed),
+            (first.position, then.position, error[POSITION] + late * speed),
         ]
         velocities = moved.velocity
         if answer.accelerations is None:
             # How fast a velocity changes after the period is not known: it tells the parts of the period apart alone.
             velocities = np.concatenate([moving.velocity[:1], velocities[1:]])
-        pairs.append((moving.velocity, velocities, error.velocity + late * _gain(answer, later, name)))
+        pairs.append((moving.velocity, velocities, error[VELOCITY] + late * _gain(answer, later, name)))
         if first.rotation is not None and then.rotation is not None:
             shown = slice(None)
             if moving.spin is None:
                 # Of a top the axis alone is answered.
                 k = axis_of_top(description.bodies[name], description)
                 shown = slice(k, k + 1)
-            pairs.append((first.rotation[..., shown], then.rotation[..., shown], error.attitude + late * spin))
+            pairs.append((first.rotation[..., shown], then.rotation[..., shown], error[ATTITUDE] + late * spin))
         if moving.spin is not None and moved.spin is not None:
-            pairs.append((moving.spin, moved.spin, error.spin + late * _gain(answer, later, name) + late * spin * spin))
+            pairs.append(
+                (moving.spin, moved.spin, error[SPIN] + late * _gain(answer, later, name) + late * spin * spin)
+            )
         for one, other, known in pairs:
             off = np.abs(other - one).reshape(len(later.times), -1).max(axis=1)
             size = rounding * float(np.abs(other).max()) + 4.0 * known

@@ -15,19 +15,13 @@ from core.systems.trajectory import Column
 Columns = Mapping[str, Column]
 
 
-@dataclass(frozen=True)
-class BodyErrors:
-    """Stated errors of a body, of vectors of their length (m, rad, m/s, rad/s)."""
-
-    position: float
-    attitude: float
-    velocity: float
-    spin: float
+POSITION, ATTITUDE, VELOCITY, SPIN = range(4)
+"""Numbers of the stated errors of a body, of vectors of their length (m, rad, m/s, rad/s)."""
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Some rows of an answer.
+    """Some rows of an answer, or of several.
 
     Attributes
     ----------
@@ -36,8 +30,10 @@ class Samples:
         With the samples as leading axis. Bodies of which the attitude is not answered have no rotation, and those of
         which the spin is not answered no spin.
     forces : mapping of str to ndarray, shape (n,)
-    errors : mapping of str to BodyErrors
-    force_errors : mapping of str to float
+        NaN where a force is not answered at a sample.
+    errors : mapping of str to ndarray, shape (n, 4)
+        Stated errors of each body.
+    force_errors : mapping of str to ndarray, shape (n,)
     placed : set of str
         Bodies of which the attitude is answered, of tops that of the axis.
     """
@@ -46,8 +42,8 @@ class Samples:
     placement: Placement
     motion: Motion
     forces: Mapping[str, Numbers]
-    errors: Mapping[str, BodyErrors]
-    force_errors: Mapping[str, float]
+    errors: Mapping[str, Numbers]
+    force_errors: Mapping[str, Numbers]
     placed: frozenset[str] = frozenset()
 
     @property
@@ -65,8 +61,26 @@ class Samples:
             name: Twist(twist.velocity[rows], None if twist.spin is None else twist.spin[rows])
             for name, twist in self.motion.items()
         }
-        forces = {name: values[rows] for name, values in self.forces.items()}
-        return Samples(self.times[rows], placement, motion, forces, self.errors, self.force_errors, self.placed)
+        forces, errors, force_errors = (
+            {name: values[rows] for name, values in each.items()}
+            for each in (self.forces, self.errors, self.force_errors)
+        )
+        return Samples(self.times[rows], placement, motion, forces, errors, force_errors, self.placed)
+
+    def followed_by(self, other: Samples) -> Samples:
+        """Return these samples and others of the same bodies after them."""
+        placement, motion = joined([(self.placement, self.motion), (other.placement, other.motion)])
+        unknown = (np.full(len(self.times), np.nan), np.full(len(other.times), np.nan))
+        forces, force_errors = (
+            {
+                name: np.concatenate([first.get(name, unknown[0]), then.get(name, unknown[1])])
+                for name in first.keys() | then.keys()
+            }
+            for first, then in ((self.forces, other.forces), (self.force_errors, other.force_errors))
+        )
+        errors = {name: np.concatenate([own, other.errors[name]]) for name, own in self.errors.items()}
+        times = np.concatenate([self.times, other.times])
+        return Samples(times, placement, motion, forces, errors, force_errors, self.placed)
 
     def flattened(self) -> Samples:
         """Return perturbed samples with their two axes in one."""
@@ -136,15 +150,15 @@ class Samples:
             if body != name:
                 continue
             if what == "position":
-                position[p, ..., i] += error.position
+                position[p, ..., i] += error[:, POSITION]
             elif what == "velocity":
-                velocity[p, ..., i] += error.velocity
+                velocity[p, ..., i] += error[:, VELOCITY]
             elif what == "spin" and spin is not None:
-                spin[(p, ..., i) if not plane else p] += error.spin
+                spin[(p, ..., i) if not plane else p] += error[:, SPIN]
             elif what == "attitude" and rotation is not None:
                 if turn is not None:
-                    turn[p] += error.attitude
-                rotation[p] += error.attitude * _tilted(rotation[p], i)
+                    turn[p] += error[:, ATTITUDE]
+                rotation[p] += error[:, ATTITUDE, None, None] * _tilted(rotation[p], i)
         return Pose(position, rotation, turn), Twist(velocity, spin)
 
 
@@ -156,6 +170,27 @@ def _tilted(rotation: Numbers, i: int) -> Numbers:
     return np.swapaxes(cross(np.broadcast_to(axis, rotation.shape), np.swapaxes(rotation, -1, -2)), -1, -2)
 
 
+def joined(parts: Sequence[tuple[Placement, Motion]]) -> tuple[Placement, Motion]:
+    """Return placements and motions of the same bodies one after another; what one of them lacks is left out."""
+
+    def every(values: list[Numbers | None]) -> Numbers | None:
+        given = [value for value in values if value is not None]
+        return np.concatenate(given) if len(given) == len(values) else None
+
+    placement, motion = {}, {}
+    for name in parts[0][0]:
+        poses, twists = [where[name] for where, _ in parts], [how[name] for _, how in parts]
+        position, velocity = (
+            np.concatenate([pose.position for pose in poses]),
+            np.concatenate([twist.velocity for twist in twists]),
+        )
+        rotation = None if poses[0].rotation is None else every([pose.rotation for pose in poses])
+        turn = None if poses[0].turn is None else every([pose.turn for pose in poses])
+        spin = None if twists[0].spin is None else every([twist.spin for twist in twists])
+        placement[name], motion[name] = Pose(position, rotation, turn), Twist(velocity, spin)
+    return placement, motion
+
+
 def samples_of(description: Description, times: Numbers, columns: Columns, rows: Numbers | slice) -> Samples:
     """Return rows of the columns of an answer.
 
@@ -164,34 +199,34 @@ def samples_of(description: Description, times: Numbers, columns: Columns, rows:
     KeyError
         Where the columns are not those of a trajectory.
     """
+    times = times[rows]
     placement, motion, errors = {}, {}, {}
     for name, body in description.bodies.items():
-        placement[name], motion[name], errors[name] = _body(body, description, columns, rows)
+        placement[name], motion[name], stated = _body(body, description, columns, rows)
+        errors[name] = np.repeat([stated], len(times), axis=0)
     forces: dict[str, Numbers] = {}
-    force_errors: dict[str, float] = {}
+    force_errors: dict[str, Numbers] = {}
     for key, column in columns.items():
         if column.unit in ("N", "N m") and column.values.ndim == 1:
-            forces[key], force_errors[key] = column.values[rows], column.error
+            forces[key], force_errors[key] = column.values[rows], np.full(len(times), column.error)
     placed = frozenset(name for name in placement if {f"{name}.attitude", f"{name}.axis"} & columns.keys())
-    return Samples(times[rows], placement, motion, forces, errors, force_errors, placed)
+    return Samples(times, placement, motion, forces, errors, force_errors, placed)
 
 
 def _body(
     body: RigidBody, description: Description, columns: Columns, rows: Numbers | slice
-) -> tuple[Pose, Twist, BodyErrors]:
+) -> tuple[Pose, Twist, tuple[float, float, float, float]]:
+    """Return the samples of a body, and its stated errors."""
     name = body.name
     where, speed = columns[f"{name}.position"], columns[f"{name}.velocity"]
     position, velocity = where.values[rows], speed.values[rows]
     if body.inertia is None:
-        return Pose(position), Twist(velocity), BodyErrors(where.error, 0.0, speed.error, 0.0)
+        return Pose(position), Twist(velocity), (where.error, 0.0, speed.error, 0.0)
     if description.dimension == 2:
         angle, rate = columns[f"{name}.angle"], columns[f"{name}.angular_velocity"]
         turn = angle.values[rows]
-        return (
-            Pose(position, turned(turn), turn),
-            Twist(velocity, rate.values[rows]),
-            BodyErrors(where.error, angle.error, speed.error, rate.error),
-        )
+        known = (where.error, angle.error, speed.error, rate.error)
+        return Pose(position, turned(turn), turn), Twist(velocity, rate.values[rows]), known
     if f"{name}.attitude" in columns:
         attitude, rate = columns[f"{name}.attitude"], columns[f"{name}.angular_velocity"]
         rotation = rotation_of(attitude.values[rows])
@@ -199,19 +234,16 @@ def _body(
         # A quaternion that is wrong by e turns by 2e; the spin, which is given in body axes, turns with it.
         tilt = 2.0 * attitude.error
         off = rate.error + tilt * float(np.max(np.linalg.norm(spin, axis=1), initial=0.0))
-        return Pose(position, rotation), Twist(velocity, spin), BodyErrors(where.error, tilt, speed.error, off)
+        return Pose(position, rotation), Twist(velocity, spin), (where.error, tilt, speed.error, off)
     if f"{name}.axis" in columns:
         axis = columns[f"{name}.axis"]
         rotation = _around(axis.values[rows], axis_of_top(body, description))
-        return Pose(position, rotation), Twist(velocity), BodyErrors(where.error, axis.error, speed.error, 0.0)
+        return Pose(position, rotation), Twist(velocity), (where.error, axis.error, speed.error, 0.0)
     rate = columns[f"{name}.angular_velocity_in_space"]
     # A ball with equal moments: its attitude is not answered, and its tensor is the same in all.
     still = np.broadcast_to(np.eye(3), (len(position), 3, 3))
-    return (
-        Pose(position, still),
-        Twist(velocity, rate.values[rows]),
-        BodyErrors(where.error, 0.0, speed.error, rate.error),
-    )
+    known = (where.error, 0.0, speed.error, rate.error)
+    return Pose(position, still), Twist(velocity, rate.values[rows]), known
 
 
 def rotation_of(quaternion: Numbers) -> Numbers:

@@ -6,11 +6,12 @@ decay of the coefficients gives a size.
 
 References
 ----------
-L. N. Trefethen, "Approximation Theory and Approximation Practice", chapters 3, 8 and 21.
+L. N. Trefethen, "Approximation Theory and Approximation Practice", chapters 3, 5, 8 and 21.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +19,9 @@ from numpy.polynomial import chebyshev
 
 from core.multibody.audit.definitions import Description
 from core.multibody.audit.failure import ROUNDING, Ledger
-from core.multibody.audit.newton import Acceleration, Freedoms, balance
-from core.multibody.audit.placement import Numbers, Twist, Undefined, cross
-from core.multibody.audit.samples import Samples, axis_of_top
+from core.multibody.audit.newton import Acceleration, Freedoms
+from core.multibody.audit.placement import STEP, Numbers, Placement, Twist, cross
+from core.multibody.audit.samples import ATTITUDE, POSITION, SPIN, VELOCITY, Samples, axis_of_top
 
 NODES = 7
 """Samples of a window: with some seventh of a radian of motion in it, the eighth term is below 1e-12 of the first."""
@@ -32,8 +33,10 @@ SLOWEST = 0.05
 """Decay of the coefficients, two terms on, above which the terms that are left out are not known to be smaller."""
 
 _PLACES = np.cos((2 * np.arange(NODES) + 1) * np.pi / (2 * NODES))[::-1]
+_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(_PLACES, NODES - 1))
 _STEEPEST = float(NODES**2)
 """Largest rate of the first term that is left out."""
+_ITSELF = np.eye(NODES, dtype=bool)
 
 
 @dataclass(frozen=True)
@@ -64,98 +67,175 @@ class Window:
 
     def __init__(self, times: Numbers, half: float, rounding: float = ROUNDING) -> None:
         self.half, self.rounding = half, rounding
-        middle = (times[0] + times[-1]) / 2.0
-        places = (times - middle) / half
-        values = chebyshev.chebvander(places, NODES - 1)
-        # The rate of T_k is k U_(k-1), with U_k = 2 T_k + U_(k-2).
-        second = np.zeros((NODES, NODES + 1))
-        second[:, 1], second[:, 2] = 1.0, 2.0 * places
-        for k in range(2, NODES):
-            second[:, k + 1] = 2.0 * values[:, k] + second[:, k - 1]
-        self.coefficients = np.linalg.inv(values)
-        self.differences = (np.arange(NODES) * second[:, :NODES]) @ self.coefficients / half
+        places = (times - (times[0] + times[-1]) / 2.0) / half
+        self.away = places - _PLACES
+        # The weights of the barycentric formula give those of the rate.
+        apart = np.where(_ITSELF, 1.0, places[:, None] - places)
+        weights = 1.0 / apart.prod(axis=1)
+        rates = np.where(_ITSELF, 0.0, weights / (weights[:, None] * apart))
+        self.differences = (rates - np.where(_ITSELF, rates.sum(axis=1), 0.0)) / half
         self.weights = np.abs(self.differences).sum(axis=1)
+
+    def rates(self, values: Numbers, starts: Sequence[int], errors: Numbers) -> tuple[Numbers, Numbers]:
+        """Return the rates of several quantities, shape (NODES, components), and their errors, (NODES, quantities).
+
+        Parameters
+        ----------
+        values : ndarray, shape (NODES, components)
+        starts : sequence of int
+            The first component of every quantity.
+        errors : ndarray, shape (quantities,)
+        """
+        found = self.differences @ values
+        # To first order the values at the zeros themselves.
+        coefficients = _COEFFICIENTS @ (values - (self.half * self.away)[:, None] * found)
+        terms = np.sqrt(np.add.reduceat(coefficients**2, starts, axis=1))
+        noise = errors + self.rounding * np.maximum.reduceat(np.abs(values).max(axis=0), starts)
+        seen = np.maximum(terms, noise)
+        # The slowest decay from one coefficient to the next of its parity, down to where they are noise.
+        ratios = seen[3:] / np.maximum(seen[1:-2], np.finfo(float).tiny)
+        decay = ratios.max(axis=0, where=seen[3:] > 2.0 * noise, initial=0.0)
+        last = 4.0 * SLOWEST * _STEEPEST * np.maximum(terms[-1], terms[-2]) / self.half
+        return found, self.weights[:, None] * noise + np.where(decay <= SLOWEST, last, np.inf)
 
     def rate(self, values: Numbers, error: float) -> Rate:
         """Return the rate of a quantity from its samples, shape (NODES, ...), with an error."""
-        flat = values.reshape(NODES, -1)
-        coefficients = np.sqrt(((self.coefficients @ flat) ** 2).sum(axis=1))
-        noise = error + self.rounding * float(np.abs(flat).max())
-        seen = np.maximum(coefficients, noise)
-        # The slowest decay from one coefficient to the next of its parity, down to where they are noise.
-        decay = float(
-            (seen[3:] / np.maximum(seen[1:-2], np.finfo(float).tiny)).max(where=seen[3:] > 2.0 * noise, initial=0.0)
-        )
-        left_out = np.inf
-        if decay <= SLOWEST:
-            left_out = 4.0 * SLOWEST * _STEEPEST * float(max(coefficients[-1], coefficients[-2])) / self.half
-        return Rate((self.differences @ flat).reshape(values.shape), self.weights * noise + left_out)
+        found, known = self.rates(values.reshape(NODES, -1), [0], np.array([error]))
+        return Rate(found.reshape(values.shape), known[:, 0])
 
 
-def check_window(ledger: Ledger, description: Description, freedoms: Freedoms, samples: Samples, half: float) -> None:
-    """Compare rates with velocities, and accelerations with forces, in a window."""
+@dataclass(frozen=True)
+class _Quantity:
+    """One quantity of a body in a window.
+
+    Attributes
+    ----------
+    values : ndarray, shape (NODES, k)
+    error : float
+    expected : ndarray, shape (NODES, k), or None
+        Its rate, where the answer has it: that of places.
+    known : float
+        Error of that rate.
+    """
+
+    law: str
+    body: str
+    values: Numbers
+    error: float
+    expected: Numbers | None = None
+    known: float = 0.0
+
+
+@dataclass(frozen=True)
+class Gains:
+    """Accelerations in a window, and how wrong the equations of motion may be for them.
+
+    Attributes
+    ----------
+    accelerations : mapping of str to Acceleration
+    spins : mapping of str to ndarray
+        Of tops: their angular velocities, of which the answer has the axis alone.
+    unsure : ndarray, shape (freedoms, NODES)
+    """
+
+    accelerations: dict[str, Acceleration]
+    spins: dict[str, Twist]
+    unsure: Numbers
+
+
+def check_window(
+    ledger: Ledger, description: Description, freedoms: Freedoms, samples: Samples, ahead: Placement, half: float
+) -> Gains:
+    """Compare rates with velocities in a window, and return the accelerations in it.
+
+    Parameters
+    ----------
+    ahead : mapping of str to Pose
+        The placement moved by an imaginary step along the motion.
+    """
     window = Window(samples.times, half, ledger.rounding)
-    accelerations: dict[str, Acceleration] = {}
-    motion = dict(samples.motion)
+    places, speeds = _quantities(samples, ahead)
+    every = [*places, *speeds]
+    widths = [one.values.shape[1] for one in every]
+    starts = np.concatenate([[0], np.cumsum(widths[:-1])])
+    values = np.concatenate([one.values for one in every], axis=1)
+    found, errors = window.rates(values, starts, np.array([one.error for one in every]))
+    _check_kinematics(ledger, samples, places, starts, found, errors)
+    return _gains(
+        description, freedoms, samples, window, (speeds, starts[len(places) :], found, errors[:, len(places) :])
+    )
+
+
+def _quantities(samples: Samples, ahead: Placement) -> tuple[list[_Quantity], list[_Quantity]]:
+    """Return places and attitudes, whose rates the answer has, and velocities and spins."""
+    places, speeds = [], []
+    for name, pose in ahead.items():
+        twist, error = samples.motion[name], samples.errors[name][0]
+        own = [("velocity", pose.position, error[POSITION], error[VELOCITY])]
+        if pose.turn is not None:
+            own.append(("spin", pose.turn[:, None], error[ATTITUDE], error[SPIN]))
+        elif pose.rotation is not None and twist.spin is not None and name in samples.placed:
+            own.append(("spin", pose.rotation.reshape(NODES, 9), 2.0 * error[ATTITUDE], error[SPIN]))
+        places.extend(
+            _Quantity(f"rate of place is {law}", name, at.real, known, at.imag / STEP, rate)
+            for law, at, known, rate in own
+        )
+        speeds.append(_Quantity("velocity", name, twist.velocity, error[VELOCITY]))
+        if twist.spin is not None:
+            speeds.append(_Quantity("spin", name, twist.spin.reshape(NODES, -1), error[SPIN]))
+    return places, speeds
+
+
+def _check_kinematics(
+    ledger: Ledger, samples: Samples, places: list[_Quantity], starts: Numbers, found: Numbers, errors: Numbers
+) -> None:
+    expected = np.concatenate([one.expected for one in places if one.expected is not None], axis=1)
+    own = starts[: len(places)]
+    off = np.maximum.reduceat(np.abs(found[:, : expected.shape[1]] - expected), own, axis=1)
+    size = np.maximum.reduceat(np.abs(expected), own, axis=1)
+    allowed = errors[:, : len(places)] + np.array([one.known for one in places]) + ledger.rounding * size
+    ledger.checked += 1
+    for k in np.flatnonzero(~(off <= allowed).all(axis=0)).tolist():
+        ledger.compare(places[k].law, places[k].body, samples.times, off[:, k], allowed[:, k])
+
+
+def _gains(
+    description: Description,
+    freedoms: Freedoms,
+    samples: Samples,
+    window: Window,
+    rates: tuple[list[_Quantity], Numbers, Numbers, Numbers],
+) -> Gains:
+    speeds, starts, found, errors = rates
+    linear: dict[str, Numbers] = {}
+    angular: dict[str, Numbers] = {}
+    spins: dict[str, Twist] = {}
     unsure = np.zeros((freedoms.count, NODES))
-    for name, body in description.bodies.items():
-        pose, twist, error = samples.placement[name], samples.motion[name], samples.errors[name]
-        going = window.rate(pose.position, error.position)
-        _compare(ledger, "velocity", name, samples, going, twist.velocity, error.velocity)
-        gain = window.rate(twist.velocity, error.velocity)
+    for k, one in enumerate(speeds):
+        name, body, gain = one.body, description.bodies[one.body], found[:, starts[k] : starts[k] + one.values.shape[1]]
         first, spin_at = freedoms.where[name]
-        unsure[first : first + description.dimension] = body.mass * gain.error
-        if body.inertia is None:
-            accelerations[name] = Acceleration(gain.value, None)
+        if one.law == "velocity":
+            linear[name] = gain
+            unsure[first : first + description.dimension] = body.mass * errors[:, k]
             continue
-        largest = float(np.max(np.abs(body.inertia)))
-        if twist.spin is None:
-            spun = _of_top(description, samples, name, window)
-            motion[name], angular = Twist(twist.velocity, spun[0].value), spun[1]
-            speed = float(np.max(np.abs(spun[0].value)))
-            unsure[spin_at : spin_at + 3] = largest * (angular.error + 4.0 * speed * spun[0].error)
-        else:
-            angular = window.rate(twist.spin, error.spin)
-            speed = float(np.max(np.abs(twist.spin)))
-            off = angular.error + 4.0 * speed * (error.spin + speed * error.attitude)
-            unsure[spin_at : spin_at + freedoms.spins] = largest * off
-            _check_attitude(ledger, samples, name, window)
-        accelerations[name] = Acceleration(gain.value, angular.value)
+        assert body.inertia is not None, "what spins has inertia"
+        angular[name] = gain.reshape(one.values.shape) if freedoms.spins == 3 else gain[:, 0]
+        speed, error = float(np.abs(one.values).max()), samples.errors[name][0]
+        off = errors[:, k] + 4.0 * speed * (error[SPIN] + speed * error[ATTITUDE])
+        unsure[spin_at : spin_at + freedoms.spins] = float(np.abs(body.inertia).max()) * off
+    for name, body in description.bodies.items():
+        if body.inertia is None or name in angular:
+            continue
+        spin, gained = _of_top(description, samples, name, window)
+        angular[name], spins[name] = gained.value, Twist(samples.motion[name].velocity, spin.value)
+        speed, spin_at = float(np.abs(spin.value).max()), freedoms.where[name][1]
+        off = gained.error + 4.0 * speed * spin.error
+        unsure[spin_at : spin_at + 3] = float(np.abs(body.inertia).max()) * off
     size = max(float(np.abs(pose.position).max()) for pose in samples.placement.values())
     size = max(size, *(connection.arm + connection.reach for connection in description.connections), 0.0)
     heaviest = max(body.mass for body in description.bodies.values())
-    if not np.isfinite(unsure).all():
-        # Rates that are not known in the window say nothing of the forces.
-        return
-    unsure += NOISE * heaviest * size * max(1.0, size) / half**2
-    try:
-        _balance(ledger, description, freedoms, samples, motion, accelerations, unsure)
-    except Undefined:
-        return
-
-
-def _compare(
-    ledger: Ledger, law: str, name: str, samples: Samples, rate: Rate, expected: Numbers, error: float
-) -> None:
-    off = (rate.value - expected).reshape(NODES, -1)
-    size = ledger.rounding * np.abs(expected).reshape(NODES, -1).max(axis=1)
-    ledger.compare(f"rate of place is {law}", name, samples.times, np.abs(off).max(axis=1), rate.error + error + size)
-
-
-def _check_attitude(ledger: Ledger, samples: Samples, name: str, window: Window) -> None:
-    """Compare the rate of an angle or an attitude with the spin."""
-    pose, spin, error = samples.placement[name], samples.motion[name].spin, samples.errors[name]
-    assert spin is not None, "the caller knows the spin"
-    if pose.turn is not None:
-        _compare(ledger, "spin", name, samples, window.rate(pose.turn, error.attitude), spin, error.spin)
-        return
-    if pose.rotation is None or not np.ptp(pose.rotation, axis=0).any():
-        # A ball, of which no attitude is answered.
-        return
-    turning = window.rate(pose.rotation, error.attitude)
-    product = turning.value @ np.swapaxes(pose.rotation, 1, 2)
-    found = np.stack([product[:, 2, 1], product[:, 0, 2], product[:, 1, 0]], axis=1)
-    _compare(ledger, "spin", name, samples, Rate(found, 2.0 * turning.error), spin, error.spin)
+    unsure += NOISE * heaviest * size * max(1.0, size) / window.half**2
+    return Gains({name: Acceleration(one, angular.get(name)) for name, one in linear.items()}, spins, unsure)
 
 
 def _of_top(description: Description, samples: Samples, name: str, window: Window) -> tuple[Rate, Rate]:
@@ -164,65 +244,13 @@ def _of_top(description: Description, samples: Samples, name: str, window: Windo
     The component of the spin along the axis n is that of the start, for nothing turns it about its axis:
     w = n x n' + w_n n and w' = n x n'' + w_n n'.
     """
-    body, pose, error = description.bodies[name], samples.placement[name], samples.errors[name]
+    body, pose, error = description.bodies[name], samples.placement[name], samples.errors[name][0, ATTITUDE]
     k = axis_of_top(body, description)
     about = 0.0 if body.angular_velocity is None else float(body.angular_velocity[k])
     assert pose.rotation is not None, "a top has an axis"
     n = pose.rotation[:, :, k]
-    first = window.rate(n, error.attitude)
+    first = window.rate(n, error)
     second = window.rate(first.value, float(np.max(first.error)))
-    spin = Rate(cross(n, first.value) + about * n, first.error + abs(about) * error.attitude)
-    off = second.error + abs(about) * first.error + error.attitude * float(np.max(np.abs(second.value)))
+    spin = Rate(cross(n, first.value) + about * n, first.error + abs(about) * error)
+    off = second.error + abs(about) * first.error + error * float(np.max(np.abs(second.value)))
     return spin, Rate(cross(n, second.value) + about * first.value, off)
-
-
-def _balance(
-    ledger: Ledger,
-    description: Description,
-    freedoms: Freedoms,
-    samples: Samples,
-    motion: dict[str, Twist],
-    accelerations: dict[str, Acceleration],
-    unsure: Numbers,
-) -> None:
-    found = balance(
-        description, samples.placement, motion, accelerations, samples.forces, samples.force_errors, freedoms
-    )
-    left, allowed = np.abs(found.left()), found.allowed(unsure, ledger.rounding)
-    if np.all(left <= allowed):
-        ledger.checked += 1
-        return
-    allowed = allowed + _moved(description, samples, motion, accelerations)
-    ratio = np.max(left - allowed, axis=0)
-    worst = np.argmax(left - allowed, axis=0)
-    rows = np.arange(len(ratio))
-    k = int(np.argmax(ratio))
-    where = freedoms.where
-    name = max((name for name in where if where[name][0] <= worst[k]), key=lambda name: where[name][0])
-    ledger.compare("Newton and Euler", name, samples.times, left[worst, rows], allowed[worst, rows])
-
-
-def _moved(
-    description: Description,
-    samples: Samples,
-    motion: dict[str, Twist],
-    accelerations: dict[str, Acceleration],
-) -> Numbers:
-    """Return by how much the stated errors of places and rates change the equations, shape (freedoms, n)."""
-    changed = Samples(
-        samples.times, samples.placement, motion, samples.forces, samples.errors, samples.force_errors
-    ).perturbed(description.bodies)
-    count = next(iter(changed.placement.values())).position.shape[0]
-    flat = changed.flattened()
-    repeated = {
-        name: Acceleration(
-            np.tile(one.linear, (count, 1)),
-            None if one.angular is None else np.tile(one.angular, (count, *(1,) * (one.angular.ndim - 1))),
-        )
-        for name, one in accelerations.items()
-    }
-    forces = {name: np.tile(values, count) for name, values in samples.forces.items()}
-    left = balance(description, flat.placement, flat.motion, repeated, forces).left()
-    left = left.reshape(left.shape[0], count, -1)
-    moved: Numbers = 2.0 * np.abs(left[:, 1:] - left[:, :1]).sum(axis=1)
-    return moved

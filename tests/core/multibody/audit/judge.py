@@ -1,6 +1,7 @@
-"""How many answers to random scenes the audit refuses, and what it costs: `-m tests.core.multibody.audit.judge COUNT`.
+"""How many answers to random scenes the audit refuses, and what it costs: `-m tests.core.multibody.audit.judge COUNT [FIRST]`.
 
-Right answers should all pass; what is refused is printed, with its seed, to be looked into.
+Right answers should all pass; what is refused is printed, with its seed, to be looked into. Scenes are numbered, so that
+many of them may be answered in pieces.
 """
 
 from __future__ import annotations
@@ -28,12 +29,12 @@ SOURCES: tuple[Callable[[int], dict[str, Any]], ...] = (
 )
 
 
-def main(count: int) -> None:
+def main(count: int, first: int = 0) -> None:
     """Answer `count` scenes, print the refused ones, their number, and the share of the audit in the time."""
     found: Counter[str] = Counter()
     shares: list[float] = []
     own = solving.audited
-    for number in range(count):
+    for number in range(first, first + count):
         source, seed = SOURCES[number % len(SOURCES)], number // len(SOURCES)
         times = np.linspace(0.0, float(np.random.default_rng(seed).choice([0.5, 2.0, 10.0])), 21)
         spent = 0.0
@@ -62,4 +63,4 @@ def main(count: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]))
+    main(*map(int, sys.argv[1:]))
